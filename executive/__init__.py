@@ -1,0 +1,1 @@
+"""MIND: plans, instantiates, asserts, refines and acts. Pure but for shell.py."""

@@ -1,0 +1,195 @@
+"""The action library: executable actions, their parameters, and the domain that declares them.
+
+These are the only words that core, planning and refinement share with a domain (paper 4.1, Table 6).
+A domain folder fills them in; nothing here knows a robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import Message, Sample
+
+Array = NDArray[np.float64]
+Fact = tuple[str, ...]  # a ground atom: ("robot", "pos1")
+Belief = Any  # a domain's own frozen value
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A closed range of values, lower <= upper; a bound value is a range of one point."""
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of an executable action.
+
+    `argument` is the index of the PDDL argument that it belongs to (Algorithm 2, line 8), `quantity` what is asked
+    of that label ("x", "phi", ...): parameters with one label and one quantity are one variable.
+    """
+
+    name: str
+    argument: int
+    quantity: str
+    unit: str
+    lower: float
+    upper: float
+    periodic: bool = False  # wraps around at the ends of its range
+
+
+Outcome = Literal["running", "done", "failed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """What a controller answers: its new memory, the command (one float an axis), and how it stands."""
+
+    memory: Any
+    command: tuple[float, ...]
+    outcome: Outcome = "running"
+    reason: str = ""
+
+
+class Controller(Protocol):
+    """A pure, deterministic control program; `memory` is None at the first call."""
+
+    def __call__(self, memory: Any, now_ns: int, belief: Belief, arguments: Array) -> Control:
+        """One 10 Hz step towards `arguments`, shape (k,): the controller's arguments, see Action.arguments."""
+        ...
+
+
+def _same(values: Array) -> Array:
+    return values
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """An executable action: what a symbolic action turns into.
+
+    `arguments` maps action parameters, shape (n, p), to what controller and models take, shape (n, k): an approach
+    whose parameters name the ball becomes a pose of the robot behind it.
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    controller: Controller
+    duration_model: str  # "goToPose/duration": path in the robot's model zoo
+    success_model: str = ""  # empty: never predicted to fail
+    detour: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
+    arguments: Callable[[Array], Array] = _same
+    time_limit_factor: float = 3.0  # times the predicted duration
+    time_limit_floor_s: float = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a robot's command with its limits."""
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """A task: initial abstract state and goal in PDDL, and what its labels mean.
+
+    `places` gives known values by label, e.g. {"pos3": {"x": 0.0, "y": -1.0, "phi": 2.6}}.
+    """
+
+    name: str
+    problem: str  # PDDL text
+    places: Mapping[str, Mapping[str, float]]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Domain(Protocol):
+    """All that the executive is told about a robot and its tasks. Every function is pure."""
+
+    name: str  # "soccer"
+    robot: str  # "agilo"
+    pddl: str  # domain text
+    actions: Mapping[str, Action]  # by executable name
+    executables: Mapping[str, str]  # PDDL action name (lower case) -> executable name
+    axes: tuple[Axis, ...]
+    command_topic: str  # name in schemas.topics
+    sensors: tuple[str, ...]  # topic names that the belief is made from
+    required: tuple[str, ...]  # those of them that must be fresh while moving
+    belief_names: tuple[str, ...]  # names of belief_values, with units in parentheses
+
+    def initial_belief(self) -> Belief:
+        """The belief before the first percept."""
+        ...
+
+    def update(self, belief: Belief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]) -> Belief:
+        """Filter new samples (oldest first) and predict to now; `command` is the one sent last."""
+        ...
+
+    def ready(self, belief: Belief) -> bool:
+        """Whether the belief is good enough to plan and act on."""
+        ...
+
+    def belief_values(self, belief: Belief) -> tuple[float, ...]:
+        """The belief's state variables for telemetry (Table 5)."""
+        ...
+
+    def anchor(self, belief: Belief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
+        """The abstract state of now: what can be observed is read off the belief, the rest remembered."""
+        ...
+
+    def value(
+        self,
+        quantity: str,
+        label: str,
+        holds: tuple[Fact, ...],
+        achieved: tuple[Fact, ...],
+        belief: Belief,
+        scenario: Scenario,
+    ) -> Interval | None:
+        """What the predicates over `label` say about a quantity of it (Algorithm 2, line 10).
+
+        `holds` are predicates linked from the initial state, `achieved` those linked from earlier actions. None: they
+        say nothing, and the parameter's default range stands. An empty intersection raises `Conflict`.
+        """
+        ...
+
+    def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
+        """The command as a message."""
+        ...
+
+
+class Conflict(Exception):
+    """The predicates over a label exclude each other; the instantiation has failed with this reason."""
+
+
+class DurationModel(Protocol):
+    """Predicts how long an action takes."""
+
+    def predict(self, arguments: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation in seconds, shape (n,), for arguments of shape (n, k); NaN is invalid."""
+        ...
+
+
+class SuccessModel(Protocol):
+    """Predicts whether an action succeeds."""
+
+    def probability(self, arguments: Array) -> Array:
+        """Probability of success, shape (n,), for arguments of shape (n, k); NaN is invalid."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Models:
+    """The loaded action models of one robot, by zoo path ("goToPose/duration")."""
+
+    durations: Mapping[str, DurationModel]
+    successes: Mapping[str, SuccessModel]

@@ -1,0 +1,1 @@
+"""NERVES: the only place that touches zenoh, the clock and the operating system."""

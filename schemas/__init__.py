@@ -1,0 +1,1 @@
+"""WORDS: what may be said on the bus. Imports nothing of ours."""

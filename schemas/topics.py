@@ -1,0 +1,53 @@
+"""The one table of topics: key, type, rate, freshness, priority, direction, and whether it is recorded.
+
+Everything else about topics derives from here: codecs, freshness limits, recording policy, documentation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from schemas import messages as m
+
+Priority = Literal["real_time", "interactive_high", "data"]
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One row of the table; `{robot}` in a key stands for the robot's name."""
+
+    key: str
+    type: type
+    rate_hz: float  # 0: on demand or on change
+    source: Literal["driver", "executive", "people", "simulator"]
+    fresh_s: float | None = None  # older than this is stale; None: never
+    priority: Priority = "data"
+    recorded: bool = True
+    max_bytes: int = 4096
+
+
+STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
+
+TOPICS: dict[str, Topic] = {
+    "cmd_vel": Topic("{robot}/cmd_vel", m.VelocityCommand, 10, "executive", priority="real_time"),
+    "odom": Topic("{robot}/odom", m.Odometry, 50, "driver", STALE_S, "interactive_high"),
+    "pose": Topic("{robot}/pose", m.PoseEstimate, 12.5, "driver", 1.0),
+    "ball": Topic("{robot}/ball", m.BallPercept, 12.5, "driver"),
+    "driver": Topic("{robot}/driver", m.DriverState, 10, "driver", STALE_S, "interactive_high"),
+    "arm_request": Topic("{robot}/arm_request", m.ArmRequest, 0, "people", priority="interactive_high"),
+    "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
+    "truth": Topic("{robot}/sim/truth", m.SimTruth, 10, "simulator"),
+    "status": Topic("exec/status", m.ExecStatus, 10, "executive"),
+    "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
+    "plan": Topic("exec/plan", m.PlanReport, 0, "executive", max_bytes=65536),
+    "subgoals": Topic("exec/subgoals", m.Subgoals, 0, "executive", max_bytes=65536),
+    "refinement": Topic("exec/refinement", m.RefinementReport, 0, "executive", max_bytes=65536),
+    "tick": Topic("exec/tick", m.TickReport, 10, "executive", max_bytes=65536),
+    "provenance": Topic("exec/provenance", m.Provenance, 1, "executive", max_bytes=262144),
+}
+
+
+def key_of(name: str, robot: str) -> str:
+    """The zenoh key of a topic, e.g. `key_of("odom", "agilo") == "agilo/odom"`."""
+    return TOPICS[name].key.format(robot=robot)

@@ -1,0 +1,1 @@
+"""BODY: simulated robots behind the driver contract. Never imports the executive."""

@@ -1,0 +1,1 @@
+"""The actuator-side stop: the last link before the motors. Standard library alone."""
