@@ -1,0 +1,1 @@
+"""The AGILO soccer robot as a simulated body: MuJoCo physics, firmware, sensors."""
