@@ -1,0 +1,86 @@
+"""Our own messages (`tailor_msgs`) as ROS values and back, by reflection over the dataclass.
+
+Fields go by name and order; `stamp_ns` becomes a header. Tuples of numbers become numpy arrays, because rosbags
+writes only those.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import is_dataclass
+from functools import cache
+from typing import Any, get_args, get_type_hints
+
+import numpy as np
+
+from schemas.ros_time import Refusal, header, stamp_ns
+from schemas.typesystem import ros_class, ros_type
+
+Convert = Callable[[Any], Any]
+FRAMES = {"BallPercept": "base_link", "SimTruth": "map"}
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _finite(value: float) -> float:
+    if not math.isfinite(value):
+        raise Refusal("not finite")
+    return value
+
+
+def _finite_tuple(values: Any) -> tuple[float, ...]:
+    if not np.isfinite(values).all():
+        raise Refusal("not finite")
+    return tuple(values.tolist())
+
+
+def _field(hint: Any) -> tuple[Convert, Convert]:
+    """How one field is written and read, by its type hint."""
+    if hint is float:
+        return float, _finite
+    if hint in {int, bool, str}:
+        return _same, _same
+    item: Any = get_args(hint)[0]
+    if item is float:
+        return lambda values: np.array(values, dtype=np.float64), _finite_tuple
+    if item is int:
+        return lambda values: np.array(values, dtype=np.int64), lambda values: tuple(values.tolist())
+    if item is str:
+        return list, tuple
+    write, read = converters(item)
+    return lambda parts: [write(part) for part in parts], lambda parts: tuple(read(part) for part in parts)
+
+
+@cache
+def converters(kind: Any) -> tuple[Convert, Convert]:
+    """Functions that turn a message of this own type into a ROS value and back; reading raises Refusal."""
+    hints = get_type_hints(kind)
+    stamped = next(iter(hints)) == "stamp_ns"
+    frame = FRAMES.get(kind.__name__, "")
+    rows = [(name, *_field(hint)) for name, hint in hints.items() if name != "stamp_ns"]
+    target = ros_class(ros_type(kind))
+
+    def write(message: Any) -> Any:
+        values = [convert(getattr(message, name)) for name, convert, _ in rows]
+        return target(header(message.stamp_ns, frame), *values) if stamped else target(*values)
+
+    def read(ros: Any) -> Any:
+        values = [convert(getattr(ros, name)) for name, _, convert in rows]
+        return kind(stamp_ns(ros.header), *values) if stamped else kind(*values)
+
+    return write, read
+
+
+def example(kind: Any) -> Any:
+    """A legal message of any type, all zeros and empty strings, with one element in every nested sequence."""
+    return kind(*(_example_field(hint) for hint in get_type_hints(kind).values()))
+
+
+def _example_field(hint: Any) -> Any:
+    if hint in {int, float, bool, str}:
+        return hint()
+    item: Any = get_args(hint)[0]
+    return (example(item),) if is_dataclass(item) else ()

@@ -1,0 +1,158 @@
+"""Every message survives its bytes; no bytes whatever raise."""
+
+import math
+from dataclasses import fields, is_dataclass, replace
+from typing import get_args, get_type_hints
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from schemas import messages as m
+from schemas.codec import decode, encode
+from schemas.errors import Rejected
+from schemas.own import example
+from schemas.ros_time import MAX_STAMP_NS
+from schemas.topics import TOPICS
+from schemas.typesystem import MESSAGES, STANDARD
+
+OWN = [kind for kind in MESSAGES if kind not in STANDARD]
+FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+PLAIN = {
+    float: FLOATS,
+    int: st.integers(-(2**63), 2**63 - 1),
+    bool: st.booleans(),
+    str: st.text(max_size=20).filter(lambda text: "\0" not in text),
+}
+
+
+def values(name, hint):
+    if name == "stamp_ns":
+        return st.integers(0, MAX_STAMP_NS)
+    if hint in PLAIN:
+        return PLAIN[hint]
+    item = get_args(hint)[0]
+    return st.lists(PLAIN[item] if item in PLAIN else messages(item), max_size=4).map(tuple)
+
+
+def messages(kind):
+    return st.builds(kind, **{name: values(name, hint) for name, hint in get_type_hints(kind).items()})
+
+
+any_own = st.sampled_from(OWN).flatmap(messages)
+any_message = st.sampled_from(MESSAGES).flatmap(messages)
+
+
+@given(any_own)
+@settings(max_examples=300, deadline=None)
+def test_own_messages_survive_their_bytes_exactly(message):
+    assert decode(type(message), encode(message)) == message
+
+
+@given(messages(m.VelocityCommand) | messages(m.EStop))
+@settings(deadline=None)
+def test_command_and_estop_survive_their_bytes_exactly(message):
+    assert decode(type(message), encode(message)) == message
+
+
+@given(messages(m.Odometry) | messages(m.PoseEstimate), st.floats(-math.pi, math.pi))
+@settings(deadline=None)
+def test_poses_survive_with_their_angle_within_rounding(message, phi):
+    message = replace(message, phi=phi)
+    found = decode(type(message), encode(message))
+    assert isinstance(found, type(message))
+    assert abs(math.remainder(found.phi - phi, math.tau)) < 1e-12
+    assert replace(found, phi=phi) == message
+
+
+@given(st.sampled_from(MESSAGES), st.binary(max_size=400))
+@settings(max_examples=300, deadline=None)
+def test_random_bytes_never_raise(kind, noise):
+    assert isinstance(decode(kind, noise), Rejected | kind)
+    assert isinstance(decode(kind, b"\0\1\0\0" + noise), Rejected | kind)
+
+
+@given(any_message, st.data())
+@settings(max_examples=200, deadline=None)
+def test_truncated_bytes_are_rejected(message, data):
+    whole = encode(message)
+    cut = data.draw(st.integers(0, len(whole) - 1))
+    assert decode(type(message), whole[:cut]) in (Rejected("malformed"), Rejected("trailing bytes"))
+
+
+@given(any_message, st.data())
+@settings(max_examples=300, deadline=None)
+def test_mutated_bytes_never_raise(message, data):
+    whole = bytearray(encode(message))
+    for _ in range(data.draw(st.integers(1, 4))):
+        whole[data.draw(st.integers(0, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    assert isinstance(decode(type(message), bytes(whole)), Rejected | type(message))
+
+
+@given(any_message, st.integers(0, 12))
+@settings(deadline=None)
+def test_up_to_seven_trailing_bytes_are_padding(message, count):
+    found = decode(type(message), encode(message) + bytes(count))
+    assert (found == Rejected("trailing bytes")) == (count > 7)
+
+
+def float_paths(kind):
+    """Every float of a message type, as a function that puts a value there."""
+    for field in fields(kind):
+        hint = get_type_hints(kind)[field.name]
+        if hint is float:
+            yield field.name, lambda message, value, n=field.name: replace(message, **{n: value})
+        elif get_args(hint) and get_args(hint)[0] is float:
+            yield field.name, lambda message, value, n=field.name: replace(message, **{n: (0.0, value)})
+        elif get_args(hint) and is_dataclass(get_args(hint)[0]):
+            item = get_args(hint)[0]
+            for path, put in float_paths(item):
+                yield (
+                    f"{field.name}.{path}",
+                    lambda message, value, n=field.name, i=item, p=put: replace(
+                        message, **{n: (p(example(i), value),)}
+                    ),
+                )
+
+
+FLOAT_FIELDS = [
+    pytest.param(kind, put, id=f"{kind.__name__}.{path}") for kind in MESSAGES for path, put in float_paths(kind)
+]
+
+
+@pytest.mark.parametrize(("kind", "put"), FLOAT_FIELDS)
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_float_that_is_not_finite_is_refused(kind, put, bad):
+    if (kind, put.__defaults__) in [(m.Odometry, ("phi",)), (m.PoseEstimate, ("phi",))] and math.isinf(bad):
+        pytest.skip("an infinite angle has no quaternion to write")
+    found = decode(kind, encode(put(example(kind), bad)))
+    assert found == Rejected("not finite")
+
+
+@pytest.mark.parametrize("topic", TOPICS.values(), ids=TOPICS)
+def test_a_message_longer_than_its_topic_allows_is_refused(topic):
+    assert decode(topic, bytes(topic.max_bytes + 1)) == Rejected("too long")
+
+
+def test_every_float_of_a_standard_message_must_be_finite_even_those_that_are_not_used():
+    whole = encode(m.Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    refused = 0
+    for offset in range(4 + 8, len(whole) - 7, 8):
+        damaged = bytearray(whole)
+        damaged[offset : offset + 8] = np.float64(np.nan).tobytes()
+        refused += decode(m.Odometry, bytes(damaged)) == Rejected("not finite")
+    assert refused >= 85 - 3  # 85 floats; those beside the strings may fall on another grid
+
+
+def test_a_quaternion_that_is_no_rotation_is_refused():
+    whole = bytearray(encode(m.PoseEstimate(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
+    one = whole.index(np.float64(1.0).tobytes())
+    whole[one : one + 8] = np.float64(0.9).tobytes()
+    assert decode(m.PoseEstimate, bytes(whole)) == Rejected("orientation is not a unit quaternion")
+
+
+def test_a_stamp_with_more_than_a_second_of_nanoseconds_is_refused():
+    whole = bytearray(encode(m.VelocityCommand(0, 0.1, 0.2)))
+    whole[8:12] = (10**9).to_bytes(4, "little")
+    assert decode(m.VelocityCommand, bytes(whole)) == Rejected("stamp out of range")
