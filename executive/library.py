@@ -34,6 +34,7 @@ class Parameter:
 
     `argument` is the index of the PDDL argument that it belongs to (Algorithm 2, line 8), `quantity` what is asked
     of that label ("x", "phi", ...): parameters with one label and one quantity are one variable.
+    `tolerance` is how far the believed value may move while the action runs before the executive thinks again.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Parameter:
     lower: float
     upper: float
     periodic: bool = False  # wraps around at the ends of its range
+    tolerance: float | None = None  # None: it may move as it likes
 
 
 Outcome = Literal["running", "done", "failed"]

@@ -1,0 +1,21 @@
+"""The executive's own check of what it sends; the driver's guard checks again and shares no code with this one."""
+
+from __future__ import annotations
+
+import math
+
+from executive.library import Axis
+
+
+def checked(command: tuple[float, ...], axes: tuple[Axis, ...]) -> tuple[tuple[float, ...], str]:
+    """A command that is finite and within limits, and what was wrong with it ("" if nothing but a clamp).
+
+    Finiteness is tested first: in Python `max(-.5, min(.5, nan))` is .5, full speed ahead.
+    """
+    zero = tuple(0.0 for _ in axes)
+    if len(command) != len(axes):
+        return zero, f"command has {len(command)} values, the robot has {len(axes)} axes"
+    for value, axis in zip(command, axes, strict=True):
+        if not math.isfinite(value):
+            return zero, f"command for {axis.name} is {value}"
+    return tuple(min(a.upper, max(a.lower, c)) for c, a in zip(command, axes, strict=True)), ""

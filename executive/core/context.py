@@ -1,0 +1,61 @@
+"""What stays the same while the executive runs: domain, scenario, models, settings, identity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from executive import planning
+from executive.library import Domain, Models, Scenario
+from executive.refinement.settings import RefinementSettings
+
+PERIOD_NS = 100_000_000  # 10 Hz
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Everything about the executive that a deployment may choose."""
+
+    seed: int = 0
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
+    planner: planning.Settings = planning.DEFAULT
+    coast_ticks: int = 2  # how long the last command stands between two actions before zero
+    replan_failures: int = 2  # this many failures in a row with one reason are a fault
+    refine_while_running_s: float = 1.0  # for so long a better subgoal may still be adopted
+    adopt_gain_s: float = 0.3  # and only if it is predicted to save this much
+    overruns_to_hold: int = 3  # in one second
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """The fixed part of every step."""
+
+    domain: Domain
+    scenario: Scenario
+    models: Models
+    pddl_domain: planning.Domain
+    problem: planning.Problem
+    settings: Settings
+    sender: str  # this executive's sender id, 32 hex digits
+    stamp_offset_ns: int = 0  # added to the monotonic time for the stamps of messages
+
+    def stamp(self, now_ns: int) -> int:
+        """The stamp of a message that is made at `now_ns`."""
+        return now_ns + self.stamp_offset_ns
+
+
+def make_context(
+    domain: Domain, scenario: Scenario, models: Models, settings: Settings, sender: str, stamp_offset_ns: int = 0
+) -> Context:
+    """Read the domain's and the scenario's PDDL once; raises UsageError with line and column."""
+    pddl_domain = planning.parse_domain(domain.pddl, f"domain {domain.name}")
+    problem = planning.parse_problem(scenario.problem, pddl_domain, f"scenario {scenario.name}")
+    return Context(domain, scenario, models, pddl_domain, problem, settings, sender, stamp_offset_ns)
+
+
+def check_goal(context: Context, goal: str) -> str:
+    """Why a PDDL goal cannot be accepted, or "" if it can."""
+    try:
+        context.problem.with_goal(goal)
+    except planning.PddlError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,86 @@
+"""The first part of a tick: what came in changes belief, driver, goal and mode; decided on one snapshot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from executive.core.context import Context
+from executive.core.freshness import newest_arrivals, stale_topics
+from executive.core.modes import Conditions, Mode, next_mode
+from executive.core.state import Arming, Inputs, State, Task
+from schemas.messages import DriverState
+from schemas.topics import key_of
+
+
+def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
+    """The state after this tick's inputs and the mode that follows from it."""
+    domain = context.domain
+    backward = now_ns < state.now_ns
+    now_ns = max(now_ns, state.now_ns)
+    sensors = {key_of(topic, domain.robot) for topic in domain.sensors}
+    belief = domain.update(state.belief, now_ns, tuple(s for s in inputs.samples if s.key in sensors), state.command)
+    second_ago = now_ns - 1_000_000_000
+    overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
+    state = replace(
+        state,
+        tick=state.tick + 1,
+        now_ns=now_ns,
+        belief=belief,
+        arrivals=newest_arrivals(state.arrivals, inputs.samples),
+        overruns_ns=overruns,
+        arming=_driver_of(context, state.arming, inputs),
+    )
+    if inputs.goal:
+        state = _with_goal(context, state, inputs.goal)
+    return _with_mode(context, state, "the clock went backward" if backward else "")
+
+
+def disarmed(context: Context, state: State) -> str:
+    """Why the driver does not obey this executive, or "" if it does."""
+    driver = state.arming.driver
+    if driver is None or stale_topics(("driver",), context.domain.robot, state.arrivals, state.now_ns):
+        return f"no word from the driver of {context.domain.robot}"
+    if driver.mode != "armed":
+        return f"driver is {driver.mode}" + (f": {driver.reason}" if driver.reason else "")
+    if driver.armed_sender != context.sender:
+        return f"driver obeys another executive ({driver.armed_sender[:8]})"
+    return ""
+
+
+def _driver_of(context: Context, arming: Arming, inputs: Inputs) -> Arming:
+    key = key_of("driver", context.domain.robot)
+    for sample in inputs.samples:
+        if sample.key == key and isinstance(sample.message, DriverState):
+            arming = replace(arming, driver=sample.message)
+    return arming
+
+
+def _with_goal(context: Context, state: State, goal: str) -> State:
+    facts = state.task.facts or frozenset(context.problem.initial)
+    return replace(state, task=Task(goal=goal, active=True, facts=facts), deliberation=None, fault="", mode=Mode.READY)
+
+
+def _with_mode(context: Context, state: State, clock_fault: str) -> State:
+    mode, reason = next_mode(
+        state.mode,
+        Conditions(
+            fault=state.fault,
+            disarmed=disarmed(context, state),
+            hold=clock_fault or _hold(context, state),
+            goal_active=state.task.active,
+        ),
+    )
+    if mode is Mode.DISARMED and state.task.running is not None:
+        state = replace(state, task=replace(state.task, running=None, decision=None, plan=None), deliberation=None)
+    return replace(state, mode=mode, reason=reason)
+
+
+def _hold(context: Context, state: State) -> str:
+    stale = stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
+    if stale:
+        return f"stale: {', '.join(stale)}"
+    if not context.domain.ready(state.belief):
+        return "waiting for the first percepts"
+    if len(state.overruns_ns) >= context.settings.overruns_to_hold:
+        return f"{len(state.overruns_ns)} overruns in a second"
+    return ""

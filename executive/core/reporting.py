@@ -1,0 +1,138 @@
+"""What the executive tells of itself: status each tick; plan, subgoals and the search behind them on change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from executive import planning
+from executive.core.context import Context
+from executive.core.deliberation import Decision, Deliberation, PlanFound
+from executive.core.state import Output, State
+from executive.refinement.sequence import InstantiatedAction, Variable
+from schemas import messages as m
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What had been told before this tick's deliberation."""
+
+    deliberation: Deliberation | None
+    found: PlanFound | None
+    decision: Decision | None
+    evaluations: int
+
+
+def snapshot(state: State) -> Told:
+    """What the state before deliberation has told already."""
+    deliberation = state.deliberation
+    return Told(
+        deliberation,
+        deliberation.found if deliberation is not None else None,
+        state.task.decision,
+        _evaluations(deliberation),
+    )
+
+
+def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
+    """The messages about this tick, the status last."""
+    outputs: list[Output] = []
+    deliberation = state.deliberation
+    if deliberation is not None:
+        found = deliberation.found
+        if found is not None and (deliberation is not told.deliberation or found is not told.found):
+            outputs.append(Output("plan", _plan(context, state, found)))
+        if _evaluations(deliberation) != told.evaluations or deliberation is not told.deliberation:
+            outputs.extend(_refinement(context, state, deliberation))
+    if state.task.decision is not None and state.task.decision is not told.decision:
+        outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))
+    return (*outputs, Output("status", _status(context, state)))
+
+
+def _evaluations(deliberation: Deliberation | None) -> int:
+    if deliberation is None or deliberation.refinement is None:
+        return 0
+    return deliberation.refinement.report().evaluations
+
+
+def _plan(context: Context, state: State, found: PlanFound) -> m.PlanReport:
+    text = planning.format_links(found.plan) if found.plan is not None else ""
+    stamp_ns = context.stamp(state.now_ns)
+    return m.PlanReport(stamp_ns, found.status, found.way, text, found.generated, found.visited, found.reason)
+
+
+def _refinement(context: Context, state: State, deliberation: Deliberation) -> tuple[Output, ...]:
+    if deliberation.refinement is None:
+        return ()
+    report = deliberation.refinement.report()
+    settings = context.settings.refinement
+    message = m.RefinementReport(
+        stamp_ns=context.stamp(state.now_ns),
+        tick=state.tick,
+        horizon=settings.horizon,
+        solver=settings.solver,
+        finished=deliberation.refinement.finished,
+        evaluations=report.evaluations,
+        checks=report.checks,
+        greedy_s=report.greedy_s,
+        best_s=report.best_s,
+        trace_evaluations=tuple(evaluations for evaluations, _ in report.trace),
+        trace_best_s=tuple(best_s for _, best_s in report.trace),
+    )
+    return (Output("refinement", message),)
+
+
+def _subgoals(context: Context, state: State, decision: Decision) -> m.Subgoals:
+    return m.Subgoals(
+        stamp_ns=context.stamp(state.now_ns),
+        tick=state.tick,
+        horizon=context.settings.refinement.horizon,
+        actions=tuple(_action(decision, i, action) for i, action in enumerate(decision.sequence.actions)),
+    )
+
+
+def _action(decision: Decision, index: int, action: InstantiatedAction) -> m.InstantiatedAction:
+    choice = decision.choice
+    predicted = index < len(choice.predicted_s)
+    names = (parameter.name for parameter in action.action.parameters)
+    variables = (decision.sequence.variables[i] for i in action.variables)
+    return m.InstantiatedAction(
+        action=action.action.name,
+        step=action.step,
+        asserted=action.asserted,
+        predicted_s=choice.predicted_s[index] if predicted else 0.0,
+        spread_s=choice.spread_s[index] if predicted else 0.0,
+        parameters=tuple(_parameter(n, v, decision) for n, v in zip(names, variables, strict=True)),
+    )
+
+
+def _parameter(name: str, variable: Variable, decision: Decision) -> m.Parameter:
+    chosen = decision.choice.values.get(variable.id, variable.lower)
+    return m.Parameter(
+        name=name,
+        id=variable.id,
+        label=variable.label,
+        unit=variable.unit,
+        bound=variable.value is not None,
+        lower=variable.lower,
+        upper=variable.upper,
+        value=variable.value if variable.value is not None else chosen,
+    )
+
+
+def _status(context: Context, state: State) -> m.ExecStatus:
+    running = state.task.running
+    return m.ExecStatus(
+        stamp_ns=context.stamp(state.now_ns),
+        tick=state.tick,
+        mode=str(state.mode),
+        reason=state.reason,
+        scenario=context.scenario.name,
+        goal=state.task.goal,
+        result=state.task.result,
+        action=running.action.name if running else "",
+        action_index=state.task.finished,
+        action_elapsed_s=running.elapsed_s(state.now_ns) if running else 0.0,
+        action_predicted_s=running.predicted_s if running else 0.0,
+        belief=context.domain.belief_values(state.belief),
+        sender=context.sender,
+    )
