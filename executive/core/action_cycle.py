@@ -76,9 +76,9 @@ def _started(context: Context, state: State) -> State:
 def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> Fact | None:
     """A precondition that the plan took from the initial state and that does not hold any more."""
     for link in plan.links:
-        if link.consumer == step and link.producer == 0 and planning.is_positive(link.literal):
-            if link.literal not in facts:
-                return link.literal
+        initial = link.consumer == step and link.producer == 0 and planning.is_positive(link.literal)
+        if initial and link.literal not in facts:
+            return link.literal
     return None
 
 

@@ -44,4 +44,5 @@ def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running
 def controller_arguments(running: Running) -> Array:
     """What the controller takes, shape (k,), from the action's parameters."""
     row = np.asarray([running.parameters], dtype=np.float64)
-    return running.action.arguments(row)[0]
+    arguments: Array = running.action.arguments(row)[0]
+    return arguments

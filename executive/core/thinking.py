@@ -27,7 +27,7 @@ def think(context: Context, state: State, budget: Budget) -> State:
         return _gave_up(context, state, deliberation.reason)
     if deliberation.nothing_to_do():
         task = replace(state.task, active=False, result="achieved", running=None, decision=None)
-        return replace(state, task=task, deliberation=None)
+        return replace(state, task=task)
     decision = deliberation.decision()
     if decision is None:
         return state
@@ -50,9 +50,8 @@ def _with_deliberation(context: Context, state: State) -> State:
 def _gave_up(context: Context, state: State, reason: str) -> State:
     """No decision from here: a running action goes on with what it has, else the task has failed."""
     if state.task.running is not None:
-        return replace(state, deliberation=None)
-    task = replace(state.task, active=False, result=f"failed: {reason}", decision=None)
-    return replace(state, task=task, deliberation=None)
+        return state
+    return replace(state, task=replace(state.task, active=False, result=f"failed: {reason}", decision=None))
 
 
 def _adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:

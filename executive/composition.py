@@ -1,0 +1,59 @@
+"""Puts a context together from names and settings, and writes down what it was made of so that it can be made again."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from executive import domains
+from executive.core.context import Context, Settings, make_context
+from executive.library import Models
+from models.runtime import load_robot
+from schemas.settings import from_table
+
+SCENARIO_STREAM = 0  # of the seed; the simulator draws the same start from the same stream
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What to run: a domain, one of its scenarios, and the settings of the executive."""
+
+    domain: str
+    scenario: str
+    settings: Settings = field(default_factory=Settings)
+    zoo: str = ""  # folder of action models; empty: those that ship
+
+
+def compose(order: Order, sender: str, stamp_offset_ns: int = 0) -> Context:
+    """The context of an order.
+
+    Raises:
+      UsageError: Unknown domain or scenario, a PDDL error, a missing or altered model.
+    """
+    domain = domains.load(order.domain)
+    rng = np.random.default_rng([order.settings.seed, SCENARIO_STREAM])
+    scenario, _ = domains.load_scenario(order.domain, order.scenario, rng)
+    durations, successes = load_robot(domain.robot, Path(order.zoo) if order.zoo else None)
+    return make_context(domain, scenario, Models(durations, successes), order.settings, sender, stamp_offset_ns)
+
+
+def provenance(order: Order, context: Context) -> dict[str, Any]:
+    """All that it takes to compose the same context again, and the cards of the models it used."""
+    models: Mapping[str, Any] = {**context.models.durations, **context.models.successes}
+    return {
+        "order": dataclasses.asdict(order),
+        "sender": context.sender,
+        "stamp_offset_ns": context.stamp_offset_ns,
+        "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
+    }
+
+
+def recompose(recorded: Mapping[str, Any]) -> Context:
+    """The context that a recording's provenance describes; raises UsageError if its models are not here."""
+    order = from_table(Order, recorded["order"], "recording's provenance")
+    return compose(order, recorded["sender"], recorded["stamp_offset_ns"])

@@ -1,0 +1,29 @@
+"""The replay shell: recorded inputs and granted checks through the core; no clock and no bus."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from executive.budget import CheckBudget
+from executive.core.context import Context
+from executive.core.state import Inputs, Output, initial_state
+from executive.core.step import step
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedTick:
+    """What one tick was given."""
+
+    tick: int
+    now_ns: int
+    inputs: Inputs
+    checks: int
+
+
+def replay(context: Context, ticks: Iterable[RecordedTick]) -> Iterator[tuple[int, tuple[Output, ...]]]:
+    """The number and the outputs of every recorded tick, as today's core makes them."""
+    state = initial_state(context)
+    for tick in ticks:
+        state, outputs = step(context, state, tick.now_ns, tick.inputs, CheckBudget(tick.checks))
+        yield tick.tick, outputs

@@ -1,0 +1,66 @@
+"""The `tailor` command: a table of commands, each in a module of its own that is loaded when it is called."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+from schemas.errors import UsageError
+
+# command -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
+COMMANDS: dict[str, tuple[str, str]] = {
+    "up": ("tools.up", "start a whole system: bus, simulator, executive, recorder"),
+    "demo": ("tools.demo", "greedy against refined from the same seed, with a picture"),
+    "bus": ("tools.bus", "run the bus router alone"),
+    "sim": ("tools.sim", "run a simulated robot on the bus"),
+    "executive": ("tools.executive", "run the executive on the bus"),
+    "goal": ("tools.goal", "send a PDDL goal to a running executive"),
+    "arm": ("tools.arm", "let a driver obey the running executive"),
+    "estop": ("tools.estop", "stop every driver until it is reset"),
+    "record": ("tools.record", "record the bus into an MCAP file"),
+    "info": ("tools.info", "what a recording holds"),
+    "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
+    "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
+    "plan": ("tools.plan", "plan with PDDL files, in VHPOP's manner"),
+    "gather": ("tools.gather", "run actions in simulation and keep the episodes"),
+    "train": ("tools.train", "make action models from episodes"),
+    "models": ("tools.models", "list, show, plot and check action models"),
+    "evaluate": ("tools.evaluate", "reproduce the paper's tables and figures"),
+    "bench": ("tools.bench", "measure speed and memory"),
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns its exit code: 0 done, 1 a negative answer, 2 bad input."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(_overview())
+        return 0
+    name, *rest = arguments
+    if name not in COMMANDS:
+        print(f"tailor: unknown command '{name}' (expected one of: {', '.join(COMMANDS)})", file=sys.stderr)
+        return 2
+    module = importlib.import_module(COMMANDS[name][0])
+    parser = argparse.ArgumentParser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
+    module.configure(parser)
+    try:
+        return int(module.run(parser.parse_args(rest)))
+    except UsageError as error:
+        print(f"tailor {name}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        return 1
+
+
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    rows = [f"  {name:<{width}}  {text}" for name, (_, text) in COMMANDS.items()]
+    return "\n".join(["usage: tailor COMMAND [...]   (tailor COMMAND --help tells more)", "", "commands:", *rows])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
