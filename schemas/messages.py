@@ -216,6 +216,7 @@ class TickReport:
     skipped: int  # whole periods lost before this tick
     checks_granted: int
     goal: str  # a goal accepted for this tick, empty if none
+    stopping: bool  # the executive was asked to end
     input_keys: tuple[str, ...] = ()
     input_senders: tuple[str, ...] = ()
     input_sequences: tuple[int, ...] = ()

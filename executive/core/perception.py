@@ -32,6 +32,8 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
     )
     if inputs.goal:
         state = _with_goal(context, state, inputs.goal)
+    if inputs.stopping:
+        state = replace(state, task=replace(state.task, active=False, running=None, decision=None), deliberation=None)
     return _with_mode(context, state, "the clock went backward" if backward else "")
 
 

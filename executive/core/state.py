@@ -21,6 +21,7 @@ class Inputs:
     samples: tuple[Sample, ...] = ()
     goal: str = ""  # a PDDL goal that was accepted by `check_goal`
     skipped: int = 0  # whole periods lost before this tick
+    stopping: bool = False  # the last tick: come to rest and let the driver go
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     if not disarmed(context, state):
         command = context.domain.message(state.command, context.stamp(state.now_ns))
         outputs.append(Output(context.domain.command_topic, command))
-    state, request = _arm_request(context, state)
+    state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
         outputs.append(Output("arm_request", request))
     if acted.finished is not None:
@@ -76,3 +76,11 @@ def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | No
     arming = replace(arming, asked_epoch=driver.epoch, asked_ns=state.now_ns)
     request = ArmRequest(arm=True, reset=False, sender=context.sender, epoch=driver.epoch)
     return replace(state, arming=arming), request
+
+
+def _disarm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:
+    """Let the driver go, if it is ours to let go."""
+    driver = state.arming.driver
+    if driver is None or disarmed(context, state):
+        return state, None
+    return state, ArmRequest(arm=False, reset=False, sender=context.sender, epoch=driver.epoch)

@@ -1,0 +1,114 @@
+"""The live shell: waits for the deadline, drains the inbox, calls the core, publishes. Decides nothing itself."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from executive.core.context import PERIOD_NS, Context, check_goal
+from executive.core.state import Inputs, Output, State, initial_state
+from executive.core.step import control, deliberate
+from runtime.budget import ClockBudget
+from runtime.clock import Clock
+from runtime.loop import Loop, Turn
+from runtime.session import Session
+from schemas.messages import Provenance, Sample, TickReport
+
+DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
+TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
+PROVENANCE_TICKS = 10  # once a second, so that a recorder that comes late gets it too
+TOPICS = ("arm_request", "finished", "plan", "subgoals", "refinement", "status", "tick", "provenance")
+
+
+class Shell:
+    """One executive on the bus, until `stop` is set."""
+
+    def __init__(self, context: Context, session: Session, clock: Clock, provenance: Mapping[str, Any]) -> None:
+        """Subscribe and declare; nothing is published before `run`."""
+        domain = context.domain
+        self.stop = threading.Event()
+        self._context = context
+        self._clock = clock
+        self._provenance = json.dumps(provenance, sort_keys=True)
+        self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
+        self._goals = session.questions("exec/goal")
+        topics = (domain.command_topic, *TOPICS)
+        self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
+        self._state = initial_state(context)
+
+    def run(self, goal: str, until: Callable[[State], bool] = lambda _: False) -> State:
+        """Tick until stopped or until `until` says so; the last tick brings the robot to rest.
+
+        Args:
+          goal: A checked PDDL goal for the first tick; empty: wait for one.
+          until: Looked at after every tick.
+        """
+        loop = Loop(PERIOD_NS, self._clock)
+        while True:
+            turn = loop.next_turn()
+            stopping = self.stop.is_set() or until(self._state)
+            self._tick(turn, goal, stopping)
+            goal = ""
+            if stopping:
+                return self._state
+
+    def _tick(self, turn: Turn, goal: str, stopping: bool) -> None:
+        samples = self._inbox.drain(turn.now_ns)
+        inputs = Inputs(samples, self._asked_goal() or goal, turn.skipped, stopping)
+        self._state, outputs = control(self._context, self._state, turn.now_ns, inputs)
+        self._publish(outputs)
+        control_ns = self._clock.now_ns() - turn.now_ns
+        deadline_ns = min(turn.now_ns + DELIBERATION_NS, turn.deadline_ns + TICK_END_NS)
+        budget = ClockBudget(deadline_ns, self._clock.now_ns)
+        self._state, outputs = deliberate(self._context, self._state, budget)
+        self._publish(outputs)
+        self._report(turn, inputs, control_ns, budget.granted)
+
+    def _asked_goal(self) -> str:
+        """A goal that somebody asked for and that can be accepted; the others are told why not."""
+        question = self._goals.poll()
+        if question is None:
+            return ""
+        goal = question.text.strip() or self._context.problem.goal_text
+        why_not = check_goal(self._context, goal)
+        if why_not:
+            question.refuse(why_not)
+            return ""
+        question.accept()
+        return goal
+
+    def _publish(self, outputs: tuple[Output, ...]) -> None:
+        for output in outputs:
+            self._publishers[output.topic].publish(output.message)
+
+    def _report(self, turn: Turn, inputs: Inputs, control_ns: int, checks: int) -> None:
+        tick = self._state.tick
+        stamp_ns = self._context.stamp(turn.now_ns)
+        if tick % PROVENANCE_TICKS == 1:
+            self._publishers["provenance"].publish(Provenance(stamp_ns, self._provenance))
+        work_ns = self._clock.now_ns() - turn.now_ns
+        self._publishers["tick"].publish(tick_report(stamp_ns, tick, turn, inputs, (control_ns, work_ns, checks)))
+
+
+def tick_report(stamp_ns: int, tick: int, turn: Turn, inputs: Inputs, spent: tuple[int, int, int]) -> TickReport:
+    """Timing of a tick and what it was given; `spent` is control time, work time (ns) and checks granted."""
+    control_ns, work_ns, checks = spent
+    samples: tuple[Sample, ...] = inputs.samples
+    return TickReport(
+        stamp_ns=stamp_ns,
+        tick=tick,
+        now_ns=turn.now_ns,
+        lateness_ns=turn.lateness_ns,
+        control_ns=control_ns,
+        work_ns=work_ns,
+        skipped=turn.skipped,
+        checks_granted=checks,
+        goal=inputs.goal,
+        stopping=inputs.stopping,
+        input_keys=tuple(s.key for s in samples),
+        input_senders=tuple(s.sender for s in samples),
+        input_sequences=tuple(s.sequence for s in samples),
+        input_arrivals_ns=tuple(s.arrival_ns for s in samples),
+    )

@@ -1,0 +1,95 @@
+"""One TOML file per deployment, into frozen settings; flags on the command line win over it."""
+
+from __future__ import annotations
+
+import argparse
+import tomllib
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from executive.composition import Order
+from executive.core.context import Settings
+from runtime.bus_config import DEFAULT_ENDPOINT
+from schemas.errors import UsageError
+from schemas.settings import from_table
+
+
+@dataclass(frozen=True, slots=True)
+class Bus:
+    """Where the router listens and everyone else connects."""
+
+    endpoint: str = DEFAULT_ENDPOINT
+
+
+@dataclass(frozen=True, slots=True)
+class Deployment:
+    """Everything that a deployment file may say."""
+
+    bus: Bus = field(default_factory=Bus)
+    executive: Settings = field(default_factory=Settings)
+    scenario: str = ""
+    zoo: str = ""
+
+
+def configure_system(parser: argparse.ArgumentParser) -> None:
+    """The flags that `up`, `demo` and `executive` share."""
+    parser.add_argument("domain", help="what to run: a folder of executive/domains, e.g. soccer")
+    parser.add_argument("--scenario", help="one of the domain's scenarios (default: its first)")
+    parser.add_argument("--seed", type=int, help="of every random draw (default 0)")
+    parser.add_argument("--horizon", type=int, help="actions that refinement looks ahead; 1 is greedy (default 2)")
+    parser.add_argument("--zoo", help="folder of action models (default: those that ship)")
+    configure_bus(parser)
+
+
+def configure_bus(parser: argparse.ArgumentParser) -> None:
+    """The flags of everyone who goes on the bus."""
+    parser.add_argument("--connect", metavar="ENDPOINT", help=f"bus endpoint (default {DEFAULT_ENDPOINT})")
+    parser.add_argument("--config", metavar="FILE", help="deployment file (TOML)")
+
+
+def deployment(arguments: argparse.Namespace) -> Deployment:
+    """The deployment file with the flags put over it.
+
+    Raises:
+      UsageError: The file is missing, is not TOML, or says something unknown; all of it in one line.
+    """
+    read = _read(arguments.config) if arguments.config else Deployment()
+    if arguments.connect:
+        read = replace(read, bus=replace(read.bus, endpoint=arguments.connect))
+    given = vars(arguments)
+    settings = read.executive
+    if given.get("seed") is not None:
+        settings = replace(settings, seed=_at_least(given["seed"], 0, "--seed"))
+    if given.get("horizon") is not None:
+        horizon = _at_least(given["horizon"], 1, "--horizon")
+        settings = replace(settings, refinement=replace(settings.refinement, horizon=horizon))
+    return replace(
+        read,
+        executive=settings,
+        scenario=given.get("scenario") or read.scenario,
+        zoo=given.get("zoo") or read.zoo,
+    )
+
+
+def order_of(domain: str, read: Deployment) -> Order:
+    """What the executive is to run; the scenario's name is checked when it is composed."""
+    from executive import domains
+
+    scenario = read.scenario or domains.scenarios(domain)[0]
+    return Order(domain, scenario, read.executive, read.zoo)
+
+
+def _at_least(value: int, least: int, flag: str) -> int:
+    if value < least:
+        raise UsageError(f"{flag} is {value}, expected at least {least}")
+    return value
+
+
+def _read(path: str) -> Deployment:
+    try:
+        table = tomllib.loads(Path(path).read_text())
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected a deployment file") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: not TOML: {error}") from error
+    return from_table(Deployment, table, path)

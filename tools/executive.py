@@ -1,0 +1,61 @@
+"""Run the executive on the bus: it connects, arms the robot's driver, and pursues the scenario's goal at 10 Hz."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import time
+
+from executive.composition import compose, provenance
+from executive.core.context import Context, check_goal
+from executive.core.state import State
+from executive.shell import Shell
+from runtime import realtime
+from runtime.clock import MonotonicClock, wall_ns
+from runtime.session import open_client
+from schemas import codec
+from schemas.errors import UsageError
+from tools.deployment import configure_system, deployment, order_of
+
+EXIT_FAULT = 70  # a broken invariant
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor executive`."""
+    configure_system(parser)
+    parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
+    parser.add_argument("--wait", action="store_true", help="start without a goal and wait for `tailor goal`")
+    parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compose, check everything, then tick until stopped."""
+    read = deployment(arguments)
+    order = order_of(arguments.domain, read)
+    probe = compose(order, sender="")  # every mistake of ours is told before the bus is touched
+    goal = _goal(probe, arguments)
+    with open_client(read.bus.endpoint) as session:
+        offset_ns = wall_ns() - time.monotonic_ns()
+        context = compose(order, session.sender, offset_ns)
+        codec.prime()
+        obtained = realtime.prepare()
+        made_of = {**provenance(order, context), "realtime": obtained}
+        shell = Shell(context, session, MonotonicClock(), made_of)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: shell.stop.set())
+        state = shell.run(goal, until=_over if arguments.once else lambda _: False)
+    return 1 if arguments.once and state.task.result != "achieved" else 0
+
+
+def _goal(context: Context, arguments: argparse.Namespace) -> str:
+    if arguments.wait:
+        return ""
+    goal: str = arguments.goal or context.problem.goal_text
+    why_not = check_goal(context, goal)
+    if why_not:
+        raise UsageError(f"--goal {goal}: {why_not}")
+    return goal
+
+
+def _over(state: State) -> bool:
+    return bool(state.task.result)
