@@ -1,0 +1,46 @@
+"""Settings of assertion and refinement, with the reasons for their defaults."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from schemas.errors import UsageError
+
+SolverName = Literal["auto", "chain", "genetic", "differential"]
+
+
+@dataclass(frozen=True, slots=True)
+class RefinementSettings:
+    """How subgoals are asserted and refined.
+
+    `arrival_spread` gives, by quantity, the standard deviation of where the robot really is when it has arrived at a
+    subgoal (learned from episodes); empty: it arrives exactly. `risk_cost_s` is what a failed action costs: the
+    objective grows by it times the predicted probability of failure.
+    """
+
+    horizon: int = 2  # actions looked ahead; more than two pays little (paper Table 4)
+    solver: SolverName = "auto"
+    k_std: float = 1.0  # durations count as mean + k standard deviations: guards against the optimiser's curse
+    p_fail_max: float = 0.05  # above it an action is INVALID (Algorithm 4)
+    risk_cost_s: float = 0.0
+    arrival_spread: tuple[tuple[str, float], ...] = ()  # (("x", 0.03), ("phi", 0.1))
+    energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
+    batch: int = 512  # rows of one check of the chain solver, about 0.3 ms with ten bagged trees
+    patience: int = 50  # checks without improvement until the search ends (the paper's 50 generations)
+    checks_max: int = 500  # the paper's 500 generations
+    greedy_checks: int = 6  # batches spent on the first, greedy answer
+    assertion_depth: int = 2  # detours in a row before one action
+    assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
+
+    def __post_init__(self) -> None:
+        for name in ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples"):
+            if getattr(self, name) < 1:
+                raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
+        for name in ("k_std", "risk_cost_s", "energy_weight", "assertion_depth"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise UsageError(f"refinement.{name} is {value}, expected a finite number >= 0")
+        if not 0 <= self.p_fail_max <= 1:
+            raise UsageError(f"refinement.p_fail_max is {self.p_fail_max}, expected a probability")

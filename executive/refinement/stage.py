@@ -1,0 +1,142 @@
+"""One action of a sequence as a function of the free parameters: predicted duration, spread and failure.
+
+INVALID (Algorithm 4) is decided here: too likely to fail, or a model that gives no number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.library import Action, Array, DurationModel, Models, SuccessModel
+from executive.refinement.arrivals import displacements
+from executive.refinement.sequence import InstantiatedAction, Variable
+from executive.refinement.settings import RefinementSettings
+from schemas.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """What the models say of one action for n candidates; every field has shape (n,)."""
+
+    duration_s: Array  # mean over the displaced arrivals
+    spread_s: Array  # the model's standard deviation, likewise
+    failure: Array  # mean probability of failure
+    worst_failure: Array  # the largest over the displaced arrivals
+    energy_j: Array
+
+
+@dataclass(frozen=True, slots=True)
+class StageModels:
+    """The models of one action; None where the action has none."""
+
+    duration: DurationModel
+    success: SuccessModel | None
+    energy: DurationModel | None
+
+
+class Stage:
+    """The cost of one action. `columns` are the free parameters that it depends on, by place in the free vector.
+
+    Args:
+      instance: The action and its variables.
+      variables: The sequence's table of variables.
+      places: Place in the free vector by variable id.
+      arrived: Variables that the action before ends at: only they are displaced.
+      models: The loaded models.
+      settings: Weights and limits.
+    """
+
+    def __init__(
+        self,
+        instance: InstantiatedAction,
+        variables: tuple[Variable, ...],
+        places: Mapping[int, int],
+        arrived: frozenset[int],
+        models: Models,
+        settings: RefinementSettings,
+    ) -> None:
+        ids = instance.variables
+        self.columns: NDArray[np.intp] = np.unique([places[i] for i in ids if i in places]).astype(np.intp)
+        self.rows = 0  # rows predicted so far
+        self._action = instance.action
+        self._models = models_of(instance.action, models, settings)
+        self._settings = settings
+        self._p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
+        self._template = np.array([variables[i].value or 0.0 for i in ids])
+        self._slots = np.array([j for j, i in enumerate(ids) if i in places], dtype=np.intp)
+        self._sources = np.searchsorted(self.columns, [places[i] for i in ids if i in places])
+        self._displaced = np.array([j for j, i in enumerate(ids) if i in arrived], dtype=np.intp)
+        quantities = [instance.action.parameters[j].quantity for j in self._displaced]
+        self._displacements = displacements(quantities, dict(settings.arrival_spread))
+
+    def predict(self, rows: Array) -> Prediction:
+        """What the models say for rows of shape (n, len(columns))."""
+        count, ways = len(rows), len(self._displacements)
+        arguments = self._action.arguments(self._parameters(rows))
+        self.rows += count * ways
+        mean, std = self._models.duration.predict(arguments)
+        failure = np.zeros((ways, count))
+        if self._models.success is not None:
+            failure = 1 - self._models.success.probability(arguments).reshape(ways, count)
+        energy = np.zeros(count)
+        if self._models.energy is not None:
+            energy = self._models.energy.predict(arguments)[0].reshape(ways, count).mean(axis=0)
+        return Prediction(
+            mean.reshape(ways, count).mean(axis=0),
+            std.reshape(ways, count).mean(axis=0),
+            failure.mean(axis=0),
+            failure.max(axis=0),
+            energy,
+        )
+
+    def cost(self, rows: Array) -> Array:
+        """Seconds, shape (n,), for rows of shape (n, len(columns)); +inf is INVALID."""
+        said, settings = self.predict(rows), self._settings
+        cost = said.duration_s + settings.k_std * said.spread_s + settings.risk_cost_s * said.failure
+        cost += settings.energy_weight * said.energy_j
+        valid = np.isfinite(cost) & (said.worst_failure <= self._p_fail_max)
+        return np.where(valid, cost, np.inf)
+
+    def _parameters(self, rows: Array) -> Array:
+        """Action parameters, shape (ways * n, p), all candidates for the first displacement first."""
+        count, ways = len(rows), len(self._displacements)
+        parameters = np.empty((ways, count, len(self._template)))
+        parameters[:] = self._template
+        parameters[:, :, self._slots] = rows[:, self._sources]
+        if ways > 1:
+            exact = parameters[:, :, self._displaced]
+            parameters[:, :, self._displaced] = self._bounded(exact + self._displacements[:, None, :], exact)
+        return parameters.reshape(ways * count, -1)
+
+    def _bounded(self, displaced: Array, exact: Array) -> Array:
+        """Displaced values kept to the parameters' ranges, where models know something; angles go free."""
+        bounded = displaced
+        for k, j in enumerate(self._displaced):
+            parameter = self._action.parameters[j]
+            if not parameter.periodic:
+                lower = np.minimum(exact[:, :, k], parameter.lower)
+                upper = np.maximum(exact[:, :, k], parameter.upper)
+                bounded[:, :, k] = np.clip(displaced[:, :, k], lower, upper)
+        return bounded
+
+
+def models_of(action: Action, models: Models, settings: RefinementSettings) -> StageModels:
+    """The models that an action names.
+
+    Raises:
+      UsageError: A named model is not loaded.
+    """
+    energy_path = action.duration_model.rpartition("/")[0] + "/energy" if settings.energy_weight > 0 else ""
+    wanted = [(action.duration_model, models.durations), (energy_path, models.durations)]
+    for path, loaded in [*wanted, (action.success_model, models.successes)]:
+        if path and path not in loaded:
+            raise UsageError(f"action {action.name} needs the model {path}; loaded are {sorted(loaded)}")
+    return StageModels(
+        models.durations[action.duration_model],
+        models.successes[action.success_model] if action.success_model else None,
+        models.durations[energy_path] if energy_path else None,
+    )
