@@ -1,4 +1,4 @@
-"""Send a PDDL goal to the running executive, e.g. tailor goal "(atball pos3)"; without one, the scenario's own again."""
+"""Send a PDDL goal to the running executive, e.g. "(atball pos3)"; without one, the scenario's own again."""
 
 from __future__ import annotations
 

@@ -1,0 +1,1 @@
+"""Pictures of runs: what they are drawn from (tracks) and how."""

@@ -1,0 +1,103 @@
+"""Paths in the manner of the paper's Figure 1: lines across the robot's heading whose width is its speed, at 10 Hz."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import collections as mc
+from matplotlib.figure import Figure
+
+from schemas.messages import InstantiatedAction
+from tools.figures.track import Point, Track
+
+COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
+HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
+BALL_RADIUS_M = 0.11
+
+
+def draw_paths(tracks: list[Track], path: Path) -> None:
+    """Draw the runs side by side, to the same scale, into a PNG."""
+    figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained")
+    axes = figure.subplots(1, len(tracks), squeeze=False)[0]
+    limits = _limits(tracks)
+    for axis, track in zip(axes, tracks, strict=True):
+        _draw(axis, track)
+        axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x (m)", ylabel="y (m)")
+        axis.grid(alpha=0.25)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=130)
+
+
+def _draw(axis: Any, track: Track) -> None:
+    names = []
+    for number in sorted({point.action for point in track.points}):
+        points = [point for point in track.points if point.action == number]
+        colour = COLOURS[len(names) % len(COLOURS)]
+        axis.add_collection(mc.LineCollection([_across(p) for p in points], colors=colour, linewidths=1.4))
+        axis.plot([], [], color=colour, label=_label(track, number, points[0].name))
+        names.append(points[0].name)
+    _draw_ball(axis, track)
+    _draw_goals(axis, track)
+    axis.set_title(f"{track.title}: {track.actual_s:.1f} s")
+    axis.legend(loc="best", fontsize="small")
+
+
+def _across(point: Point) -> list[tuple[float, float]]:
+    """The line across the heading, its length the speed."""
+    half = HALF_WIDTH_PER_SPEED_S * abs(point.v) + 0.005
+    dx, dy = -math.sin(point.phi) * half, math.cos(point.phi) * half
+    return [(point.x - dx, point.y - dy), (point.x + dx, point.y + dy)]
+
+
+def _label(track: Track, number: int, name: str) -> str:
+    for action in track.finished:
+        if action.action_index == number:
+            return f"{name} {action.actual_s:.1f} s (predicted {action.predicted_s:.1f})"
+    return name
+
+
+def _draw_ball(axis: Any, track: Track) -> None:
+    xs, ys = [p.ball_x for p in track.points], [p.ball_y for p in track.points]
+    if not xs or not np.isfinite(xs).all() or abs(xs[0]) > 20:  # far away: a scenario without a ball
+        return
+    axis.plot(xs, ys, color="orangered", linewidth=0.8, alpha=0.5, zorder=0)
+    from matplotlib.patches import Circle
+
+    axis.add_patch(Circle((xs[0], ys[0]), BALL_RADIUS_M, color="orangered", zorder=3))
+    axis.add_patch(Circle((xs[-1], ys[-1]), BALL_RADIUS_M, fill=False, color="orangered", zorder=3))
+
+
+def _draw_goals(axis: Any, track: Track) -> None:
+    """An arrow at every subgoal, as last chosen for the action that led to it; grey where it was free."""
+    for action in _executed(track):
+        values = {p.name: p for p in action.parameters}
+        if not {"xg", "yg", "phig"} <= values.keys():
+            continue
+        free = not values["phig"].bound
+        x, y, phi = (values[name].value for name in ("xg", "yg", "phig"))
+        style = {"color": "dimgrey" if free else "black", "width": 0.012, "head_width": 0.09, "zorder": 4}
+        axis.arrow(x, y, 0.3 * math.cos(phi), 0.3 * math.sin(phi), length_includes_head=True, **style)
+        axis.plot([x], [y], marker="+" if free else "*", color=style["color"], zorder=4)
+
+
+def _executed(track: Track) -> list[InstantiatedAction]:
+    """The actions that were really started: first of every announced sequence, the last word for each."""
+    latest: dict[tuple[int, bool, str], InstantiatedAction] = {}
+    for subgoals in track.subgoals:
+        if subgoals.actions:
+            action = subgoals.actions[0]
+            latest[(action.step, action.asserted, action.action)] = action
+    return list(latest.values())
+
+
+def _limits(tracks: list[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Common limits with a margin, metres; a unit square when nothing moved."""
+    points = [point for track in tracks for point in track.points]
+    goals = [{p.name: p.value for p in action.parameters} for track in tracks for action in _executed(track)]
+    xs = [p.x for p in points] + [g["xg"] for g in goals if "xg" in g] or [0.0, 1.0]
+    ys = [p.y for p in points] + [g["yg"] for g in goals if "yg" in g] or [0.0, 1.0]
+    margin = 0.5
+    return (min(xs) - margin, max(xs) + margin), (min(ys) - margin, max(ys) + margin)
