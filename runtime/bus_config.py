@@ -1,0 +1,64 @@
+"""zenoh's configuration of a router and of a client: everything explicit, nothing discovered, loopback by default.
+
+Plain data that a deployed zenohd or rmw_zenohd can take as well; this module does not import zenoh.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from schemas.errors import UsageError
+
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+LEASE_MS = 1000  # a partner that is silent for so long is gone
+QUEUE_SIZE = 16  # zenoh's 2 loses the tail of a burst under load
+CONNECT_MS = 3000
+PRIORITIES = (
+    "control",
+    "real_time",
+    "interactive_high",
+    "interactive_low",
+    "data_high",
+    "data",
+    "data_low",
+    "background",
+)
+_ENDPOINT = re.compile(r"(tcp|tls|quic|udp|ws)/(\[[0-9a-fA-F:]+\]|[A-Za-z0-9.-]+):([0-9]{1,5})")
+
+
+def check_endpoint(endpoint: str) -> str:
+    """The endpoint itself.
+
+    Raises:
+      UsageError: It is not of the form tcp/127.0.0.1:7447.
+    """
+    match = _ENDPOINT.fullmatch(endpoint)
+    if not match or not 0 < int(match[3]) < 65536:
+        raise UsageError(f"bus endpoint {endpoint!r}: expected PROTOCOL/HOST:PORT, e.g. {DEFAULT_ENDPOINT}")
+    return endpoint
+
+
+def _base(mode: str) -> dict[str, Any]:
+    return {
+        "mode": mode,
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "transport": {
+            # Shared memory goes round the limits on message size.
+            "shared_memory": {"enabled": False},
+            "link": {"tx": {"lease": LEASE_MS, "queue": {"size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}}},
+        },
+    }
+
+
+def router(listen: str) -> str:
+    """JSON of a router that listens at one endpoint and connects to nobody; a port in use is an error at once."""
+    listening = {"endpoints": [check_endpoint(listen)], "timeout_ms": 0, "exit_on_failure": True}
+    return json.dumps(_base("router") | {"listen": listening, "connect": {"endpoints": []}})
+
+
+def client(connect: str, timeout_ms: int = CONNECT_MS) -> str:
+    """JSON of a client of the router at `connect`; it listens nowhere and reconnects when the router comes back."""
+    connecting = {"endpoints": [check_endpoint(connect)], "timeout_ms": timeout_ms, "exit_on_failure": True}
+    return json.dumps(_base("client") | {"connect": connecting, "listen": {"endpoints": []}})

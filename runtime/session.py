@@ -1,0 +1,185 @@
+"""The only module that knows zenoh: opens sessions and makes publishers, inboxes, questions and taps of them."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import zenoh
+
+from runtime import bus_config
+from runtime.attachment import SENDER_BYTES
+from runtime.inbox import Inbox, Raw, depth
+from runtime.publisher import Publisher
+from runtime.questions import Question, Questions
+from schemas.errors import UsageError
+from schemas.topics import TOPICS, Topic, key_of
+from schemas.typesystem import ros_type
+
+_PRIORITIES = {
+    "real_time": zenoh.Priority.REAL_TIME,
+    "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
+    "data": zenoh.Priority.DATA,
+}
+
+
+def encoding_of(kind: type) -> str:
+    """The encoding string of a message type, e.g. application/cdr;std_msgs/msg/Bool."""
+    return f"application/cdr;{ros_type(kind)}"
+
+
+@contextmanager
+def open_router(listen: str = bus_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
+    """A session that routes for everyone who connects to `listen`, and can publish and subscribe itself.
+
+    Raises:
+      UsageError: The port is in use, or the endpoint cannot be listened at.
+    """
+    config = zenoh.Config.from_json5(bus_config.router(listen))
+    try:
+        opened = zenoh.open(config)
+    except zenoh.ZError as error:
+        why = "the port is in use" if "in use" in str(error) else "cannot listen there"
+        raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --listen") from error
+    with opened:
+        yield Session(opened)
+
+
+@contextmanager
+def open_client(connect: str = bus_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0) -> Iterator[Session]:
+    """A session with the router at `connect`.
+
+    Raises:
+      UsageError: Nobody answers there within `timeout_s`.
+    """
+    config = zenoh.Config.from_json5(bus_config.client(connect, int(timeout_s * 1000)))
+    try:
+        opened = zenoh.open(config)
+    except zenoh.ZError as error:
+        raise UsageError(f"bus endpoint {connect}: no router answers; start one with `tailor bus`") from error
+    with opened:
+        yield Session(opened)
+
+
+class Session:
+    """One process on the bus. `sender` is its name there: 32 hex digits, new with every start."""
+
+    def __init__(self, opened: zenoh.Session) -> None:
+        self.sender = secrets.token_hex(SENDER_BYTES)
+        self._zenoh = opened
+
+    def publisher(self, name: str, robot: str) -> Publisher:
+        """An outlet for a topic of schemas.topics."""
+        return self.raw_publisher(key_of(name, robot), TOPICS[name])
+
+    def raw_publisher(self, key: str, topic: Topic) -> Publisher:
+        """An outlet for a topic under another key; for replay with remapped topics."""
+        declared = self._zenoh.declare_publisher(
+            key,
+            encoding=encoding_of(topic.type),
+            priority=_PRIORITIES[topic.priority],
+            congestion_control=zenoh.CongestionControl.DROP,  # a stalled reader must never stall a tick
+            express=topic.priority != "data",
+        )
+        return Publisher(key, _Wire(declared), self.sender)
+
+    def inbox(self, names: Sequence[str], robot: str) -> Inbox:
+        """The new samples of these topics, to be drained by a loop."""
+        rows = []
+        for name in names:
+            topic, key = TOPICS[name], key_of(name, robot)
+            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(depth(topic)))
+            rows.append((topic, key, _Source(subscriber)))
+        return Inbox(rows, encoding_of, time.monotonic_ns)
+
+    def questions(self, key: str) -> Questions:
+        """Questions that are asked under `key`, to be polled by a loop."""
+        return Questions(_Asked(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
+
+    def ask(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
+        """Ask under `key` and wait: (accepted, answer). Nobody there or no answer in time: (False, why)."""
+        for reply in self._zenoh.get(key, payload=text, timeout=timeout_s):
+            if reply.ok is not None:
+                return True, reply.ok.payload.to_string()
+            said = "" if reply.err is None else reply.err.payload.to_string()
+            return False, f"no answer within {timeout_s:g} s" if said == "Timeout" else said
+        return False, f"nobody answers at {key}"
+
+    def tap(self, pattern: str, callback: Callable[[Raw], Any]) -> Any:
+        """Call back with everything under a key pattern, in zenoh's thread: put it into a queue and return.
+
+        For the recorder only; keep the returned subscription alive.
+        """
+        handler: Any = zenoh.handlers.Callback(lambda sample: callback(_raw(sample)), indirect=False)
+        return self._zenoh.declare_subscriber(pattern, handler)
+
+
+class _Wire:
+    def __init__(self, publisher: zenoh.Publisher) -> None:
+        self._publisher = publisher
+        builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; arrival.py says what it is for
+        self._note_reception = builder.set_receive(True).build()
+
+    def put(self, payload: bytes, attachment: bytes | None) -> None:
+        self._publisher.put(payload, attachment=attachment, timestamp_instrumentation=self._note_reception)
+
+    def matched(self) -> bool:
+        return bool(_status(self._publisher).matching)
+
+
+def _status(publisher: Any) -> Any:
+    return publisher.matching_status  # its type hint says bool, it is a MatchingStatus
+
+
+class _Source:
+    def __init__(self, subscriber: Any) -> None:
+        self._subscriber = subscriber
+
+    def take(self) -> Raw | None:
+        sample = self._subscriber.try_recv()
+        return None if sample is None else _raw(sample)
+
+
+class _Asked:
+    def __init__(self, queryable: Any) -> None:
+        self._queryable = queryable
+
+    def take(self) -> Question | None:
+        query = self._queryable.try_recv()
+        if query is None:
+            return None
+        payload = query.payload
+        text = "" if payload is None else payload.to_bytes().decode(errors="replace")
+
+        def answer(accepted: bool, said: str) -> None:
+            if accepted:
+                query.reply(query.key_expr, said)
+            else:
+                query.reply_err(said)
+            query.drop()
+
+        return Question(text, answer)
+
+
+def _raw(sample: zenoh.Sample) -> Raw:
+    attachment = sample.attachment
+    return Raw(
+        key=str(sample.key_expr),
+        payload=sample.payload.to_bytes(),
+        attachment=None if attachment is None else attachment.to_bytes(),
+        encoding=str(sample.encoding),
+        is_put=sample.kind == zenoh.SampleKind.PUT,
+        received_wall_ns=_received(sample),
+    )
+
+
+def _received(sample: zenoh.Sample) -> int | None:
+    stack = sample.timestamp_stack
+    records = stack.records if stack is not None else []
+    if not records or records[-1].point != zenoh.InterceptionPoint.RECEIVE or records[-1].is_custom:
+        return None
+    fixed_point = int(str(records[-1].timestamp()).split("/", 1)[0])  # NTP64: seconds and a 32-bit fraction
+    return (fixed_point >> 32) * 1_000_000_000 + ((fixed_point & 0xFFFFFFFF) * 1_000_000_000 >> 32)
