@@ -126,7 +126,7 @@ class Deliberation:
             self._fail(f"cannot instantiate: {sequence.reason}")
             return
         settings = self._context.settings.refinement
-        self._assertion = Assertion(sequence, self._context.domain, self._context.models, settings, self._rng)
+        self._assertion = Assertion(sequence, self._context.models, settings, self._rng)
         self.stage = "asserting"
 
     def _assert(self, budget: Budget) -> None:

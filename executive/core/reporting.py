@@ -69,7 +69,7 @@ def _refinement(context: Context, state: State, deliberation: Deliberation) -> t
         stamp_ns=context.stamp(state.now_ns),
         tick=state.tick,
         horizon=settings.horizon,
-        solver=settings.solver,
+        solver=report.solver or settings.solver,
         finished=deliberation.refinement.finished,
         evaluations=report.evaluations,
         checks=report.checks,
