@@ -1,7 +1,7 @@
 """Every message survives its bytes; no bytes whatever raise."""
 
 import math
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from typing import get_args, get_type_hints
 
 import numpy as np
@@ -97,34 +97,32 @@ def test_up_to_seven_trailing_bytes_are_padding(message, count):
     assert (found == Rejected("trailing bytes")) == (count > 7)
 
 
+def put_float(name, value):
+    return lambda message, bad: replace(message, **{name: value(bad)})
+
+
 def float_paths(kind):
-    """Every float of a message type, as a function that puts a value there."""
-    for field in fields(kind):
-        hint = get_type_hints(kind)[field.name]
+    """Every float of a message type, with a function that puts a value there."""
+    for name, hint in get_type_hints(kind).items():
+        item = get_args(hint)[0] if get_args(hint) else None
         if hint is float:
-            yield field.name, lambda message, value, n=field.name: replace(message, **{n: value})
-        elif get_args(hint) and get_args(hint)[0] is float:
-            yield field.name, lambda message, value, n=field.name: replace(message, **{n: (0.0, value)})
-        elif get_args(hint) and is_dataclass(get_args(hint)[0]):
-            item = get_args(hint)[0]
+            yield name, put_float(name, lambda bad: bad)
+        elif item is float:
+            yield name, put_float(name, lambda bad: (0.0, bad))
+        elif is_dataclass(item):
             for path, put in float_paths(item):
-                yield (
-                    f"{field.name}.{path}",
-                    lambda message, value, n=field.name, i=item, p=put: replace(
-                        message, **{n: (p(example(i), value),)}
-                    ),
-                )
+                yield f"{name}.{path}", put_float(name, lambda bad, i=item, p=put: (p(example(i), bad),))
 
 
 FLOAT_FIELDS = [
-    pytest.param(kind, put, id=f"{kind.__name__}.{path}") for kind in MESSAGES for path, put in float_paths(kind)
+    pytest.param(kind, path, put, id=f"{kind.__name__}.{path}") for kind in MESSAGES for path, put in float_paths(kind)
 ]
 
 
-@pytest.mark.parametrize(("kind", "put"), FLOAT_FIELDS)
+@pytest.mark.parametrize(("kind", "path", "put"), FLOAT_FIELDS)
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_a_float_that_is_not_finite_is_refused(kind, put, bad):
-    if (kind, put.__defaults__) in [(m.Odometry, ("phi",)), (m.PoseEstimate, ("phi",))] and math.isinf(bad):
+def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
+    if path == "phi" and kind in STANDARD and math.isinf(bad):
         pytest.skip("an infinite angle has no quaternion to write")
     found = decode(kind, encode(put(example(kind), bad)))
     assert found == Rejected("not finite")
