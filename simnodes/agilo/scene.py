@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import mujoco
@@ -21,7 +22,7 @@ def _rail(p: Physique) -> str:
     points = [f"{centre + radius * math.cos(b):.9f} {radius * math.sin(b):.9f} {height:.9f}" for b in bends]
     return "\n".join(
         f'<geom class="rail" fromto="{a} {b}" size="{p.rail_thickness_m}"/>'
-        for a, b in zip(points[:-1], points[1:], strict=True)
+        for a, b in itertools.pairwise(points)
     )
 
 

@@ -1,0 +1,121 @@
+"""dribbleBall: push the ball in the rail to a pose, on a path that the ball can follow; fetch it when it is lost."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from executive.actions.dubins import shortest
+from executive.actions.fetch_ball import FetchBall, Stage
+from executive.actions.path_follower import Progress, project, pursuit_curvature, speed_limit
+from executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from executive.belief.angles import difference
+from executive.belief.ball_track import BallTrack
+from executive.belief.planar_ekf import Pose
+from executive.library import Array, Control
+
+
+class BallBelief(PlanarBelief, Protocol):
+    """A planar belief with a ball in the robot's frame."""
+
+    @property
+    def ball(self) -> BallTrack | None: ...  # noqa: D102
+
+
+@dataclass(frozen=True, slots=True)
+class Pushing:
+    """Memory while the ball is in the rail."""
+
+    progress: Progress
+
+
+@dataclass(frozen=True, slots=True)
+class Fetching:
+    """Memory while the ball is lost."""
+
+    stage: Stage
+
+
+@dataclass(frozen=True, slots=True)
+class DribbleBall:
+    """Pure pursuit of a Dubins path, gentle enough for the rail, with feedback from the ball's slip in it."""
+
+    fetch: FetchBall
+    in_rail_m: float  # axle to ball
+    radius_m: float = 0.55
+    v_max_mps: float = 0.75
+    omega_max_radps: float = 0.75
+    curve_radps: float = 0.60  # what bends are planned for; the rest is for corrections
+    speeding_up_mps2: float = 0.5
+    braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself
+    lookahead_m: float = 0.35
+    slip_free_m: float = 0.025  # so far the ball may be from the rail's bottom without a reaction
+    slip_gain: float = 8.0  # how fast turning is given up with slip, 1/m
+    chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
+    lost_m: float = 0.17  # from the bottom of the rail: gone
+    caught_m: float = 0.08
+    off_path_m: float = 0.35  # plan a new path
+    near_m: float = 0.15
+    reached_m: float = 0.03
+    heading_rad: float = 0.30
+    speed_mps: float = 0.10
+
+    def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
+        """See executive.library.Controller; arguments are poses of the axle, not of the ball."""
+        goal = tuple(arguments[XG : VG + 1].tolist())
+        ball = belief.ball
+        if ball is None:
+            return Control(memory, (0.0, 0.0), "failed", "the ball was never seen")
+        slip = math.hypot(ball.ahead - self.in_rail_m, ball.left)
+        if isinstance(memory, Fetching) and slip > self.caught_m:
+            return self._retrieve(memory.stage, belief, ball)
+        if slip > self.lost_m:
+            return self._retrieve("chase", belief, ball)
+        progress = memory.progress if isinstance(memory, Pushing) else self._plan(belief.pose, goal)
+        return self._push(progress, belief, ball, slip, goal)
+
+    def _plan(self, pose: Pose, goal: tuple[float, ...]) -> Progress:
+        return Progress(shortest((pose.x, pose.y, pose.phi), (goal[0], goal[1], goal[2]), self.radius_m), 0.0)
+
+    def _push(
+        self, progress: Progress, belief: BallBelief, ball: BallTrack, slip: float, goal: tuple[float, ...]
+    ) -> Control:
+        pose = belief.pose
+        progress, aside = project(progress, pose, 0.3)
+        if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
+            progress = self._plan(pose, goal)
+        if self._arrived(progress, belief, goal):
+            return Control(Pushing(progress), (goal[3], 0.0), "done")
+        limit = speed_limit(progress, self.v_max_mps, goal[3], self.curve_radps, self.braking_mps2)
+        omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.25)
+        slipping = min(1.0, self.slip_gain * max(0.0, slip - self.slip_free_m))
+        omega = (1.0 - slipping) * omega + slipping * self.chase_radps * math.atan2(ball.left, ball.ahead)
+        v = max(self._ramp(belief.v, limit), min(self.v_max_mps, belief.v + 0.1) * (slipping > 0.3))
+        bound = self.omega_max_radps
+        return Control(Pushing(progress), (v, max(-bound, min(bound, omega))))
+
+    def _ramp(self, v: float, limit: float) -> float:
+        """Towards the limit, not faster than the ball allows; 0.2 s ahead of the measured speed."""
+        return max(v - 0.2 * self.braking_mps2, min(limit, v + 0.2 * self.speeding_up_mps2, self.v_max_mps))
+
+    def _missed(self, progress: Progress, pose: Pose, goal: tuple[float, ...]) -> bool:
+        """Past the end without having arrived."""
+        if progress.remaining_m > 0.0:
+            return False
+        aside = math.hypot(goal[0] - pose.x, goal[1] - pose.y)
+        return aside > self.near_m or abs(difference(goal[2], pose.phi)) > self.heading_rad
+
+    def _arrived(self, progress: Progress, belief: BallBelief, goal: tuple[float, ...]) -> bool:
+        pose = belief.pose
+        return (
+            progress.remaining_m < self.reached_m
+            and math.hypot(goal[0] - pose.x, goal[1] - pose.y) < self.near_m
+            and abs(difference(goal[2], pose.phi)) < self.heading_rad
+            and belief.v < goal[3] + self.speed_mps
+        )
+
+    def _retrieve(self, stage: Stage, belief: BallBelief, ball: BallTrack) -> Control:
+        c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)
+        stage, command = self.fetch(stage, ball, c * ball.vx + s * ball.vy)
+        return Control(Fetching(stage), command)

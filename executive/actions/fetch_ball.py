@@ -1,0 +1,43 @@
+"""Getting a lost ball back into the rail: make room, face it, drive at it gently."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from executive.belief.ball_track import BallTrack
+
+Stage = Literal["chase", "clear"]
+
+
+@dataclass(frozen=True, slots=True)
+class FetchBall:
+    """Velocities towards a ball that is not in the rail; the stage keeps making room until there is room."""
+
+    in_rail_m: float  # axle to ball
+    room_m: float = 0.45  # nearer, a ball aside would be knocked away by turning
+    cleared_m: float = 0.60
+    facing_rad: float = 0.5
+    turn_gain: float = 2.5  # rad/s per rad
+    omega_max_radps: float = 1.2
+    clear_mps: float = 0.25
+    touch_mps: float = 0.20  # faster than the ball when it reaches the rail
+    v_max_mps: float = 0.7
+
+    def __call__(self, stage: Stage, ball: BallTrack, ball_speed: float) -> tuple[Stage, tuple[float, float]]:
+        """The next stage and the command (v m/s, omega rad/s).
+
+        Args:
+          stage: "chase" at first, then what the last call returned.
+          ball: Where the ball is, robot's frame.
+          ball_speed: How fast it rolls away, m/s.
+        """
+        distance, bearing = math.hypot(ball.ahead, ball.left), math.atan2(ball.left, ball.ahead)
+        aside = abs(bearing) > self.facing_rad
+        if aside and distance < (self.cleared_m if stage == "clear" else self.room_m):
+            return "clear", (-math.copysign(self.clear_mps, ball.ahead), 0.0)
+        omega = max(-self.omega_max_radps, min(self.omega_max_radps, self.turn_gain * bearing))
+        gap = max(0.0, distance - self.in_rail_m)
+        v = min(self.v_max_mps, self.touch_mps + max(0.0, ball_speed) + 0.6 * gap)
+        return "chase", (v * max(0.0, math.cos(bearing)) ** 3, omega)

@@ -1,0 +1,70 @@
+"""goToPose: drive to a pose and arrive there with a given speed. Knows nothing of balls or obstacles."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from executive.belief.angles import difference
+from executive.library import Array, Control
+
+Phase = Literal["drive", "align"]
+
+
+@dataclass(frozen=True, slots=True)
+class GoToPose:
+    """Steers to a point behind the goal pose that wanders into it; turns on the spot where that is not enough.
+
+    The memory is the phase: with its hysteresis noise cannot toggle driving and turning.
+    """
+
+    v_max_mps: float
+    omega_max_radps: float
+    lead: float = 0.25  # the point to steer to lies this share of the distance behind the goal
+    steer_gain: float = 2.8  # rad/s per rad of heading error
+    slow_in_turns: float = 1.5  # exponent of the cosine of the heading error
+    braking_mps2: float = 0.55  # what the motor board does, with a reserve
+    near_m: float = 0.15  # so close to the goal only the heading is left to correct
+    reached_m: float = 0.03  # along the goal's heading
+    heading_rad: float = 0.20
+    aligned_rad: float = 0.10  # turning on the spot goes on until here
+    speed_mps: float = 0.10  # by which the arrival may be too fast
+
+    def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
+        """See executive.library.Controller; the command is (v m/s, omega rad/s)."""
+        xg, yg, phig, vg = arguments[XG : VG + 1].tolist()
+        pose = belief.pose
+        dx, dy = xg - pose.x, yg - pose.y
+        distance = math.hypot(dx, dy)
+        off = difference(phig, pose.phi)
+        if self._arrived(belief, distance, dx * math.cos(phig) + dy * math.sin(phig), off, vg, memory):
+            return Control(memory, (vg, 0.0), "done")
+        if self._phase(memory, distance, off) == "align":
+            return Control("align", (0.0, self._steer(off)))
+        ahead = self.lead * distance
+        error = difference(math.atan2(dy - ahead * math.sin(phig), dx - ahead * math.cos(phig)), pose.phi)
+        return Control("drive", (self._speed(distance, error, vg), self._steer(error)))
+
+    def _phase(self, phase: Phase | None, distance: float, off: float) -> Phase:
+        if phase == "align":
+            return "align" if distance < 2 * self.near_m else "drive"
+        return "align" if distance < self.near_m and abs(off) > self.heading_rad else "drive"
+
+    def _arrived(
+        self, belief: PlanarBelief, distance: float, along: float, off: float, vg: float, phase: Phase | None
+    ) -> bool:
+        """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
+        if distance > self.near_m or belief.v > vg + self.speed_mps:
+            return False
+        if phase == "align":
+            return abs(off) < self.aligned_rad
+        return along < self.reached_m and abs(off) < self.heading_rad
+
+    def _steer(self, error: float) -> float:
+        return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))
+
+    def _speed(self, distance: float, error: float, vg: float) -> float:
+        facing = max(0.0, math.cos(error)) ** self.slow_in_turns
+        return min(self.v_max_mps * facing, math.sqrt(vg * vg + 2 * self.braking_mps2 * distance))

@@ -1,0 +1,23 @@
+"""What controllers of driving robots ask of a belief, and the order of their arguments."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from executive.belief.planar_ekf import Pose
+
+# arguments of goToPose and dribbleBall: robot's pose and speed now and at the goal (paper Table 6)
+X, Y, PHI, V, XG, YG, PHIG, VG = range(8)
+
+
+class PlanarBelief(Protocol):
+    """A belief with a pose in the map frame and velocities (m/s, rad/s)."""
+
+    @property
+    def pose(self) -> Pose: ...  # noqa: D102
+
+    @property
+    def v(self) -> float: ...  # noqa: D102
+
+    @property
+    def omega(self) -> float: ...  # noqa: D102

@@ -1,0 +1,1 @@
+"""State estimation: pure filters from samples to beliefs. Knows no robot and no clock."""
