@@ -72,7 +72,9 @@ class Refinement:
         self._settings = settings
         self._rng = rng
         self._start = start
-        self._objective = SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
+        stretch = (sequence.within(settings.horizon), sequence.variables, models, settings)
+        self._objective = SequenceObjective(*stretch)
+        self._judge = SequenceObjective(*stretch)  # its rows are not the search's
         self._greedy: Greedy | None = None
         self._greedy_s = np.inf
         self._solver: Solver | None = None
@@ -130,12 +132,12 @@ class Refinement:
 
     def _adopt(self, candidate: Array) -> None:
         """Make a candidate the answer, unless the one so far is better."""
-        total = float(self._objective(candidate[None])[0])
+        total = float(self._judge(candidate[None])[0])
         if self._choice is not None and total >= self._choice.total_s:
             return
-        predictions = self._objective.predict(candidate)
+        predictions = self._judge.predict(candidate)
         self._choice = Choice(
-            self._objective.values(candidate),
+            self._judge.values(candidate),
             tuple(float(said.duration_s[0]) for said in predictions),
             tuple(float(said.spread_s[0]) for said in predictions),
             tuple(float(said.failure[0]) for said in predictions),

@@ -1,0 +1,162 @@
+"""Refinement is anytime: never worse with more budget, the same in slices, always within ranges and constraints."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from executive.budget import CheckBudget
+from executive.refinement.assertion import Assertion
+from executive.refinement.ranges import Ranges
+from executive.refinement.refinement import Refinement
+from executive.refinement.sequence import ActionSequence
+from executive.refinement.settings import RefinementSettings
+from tests.synthetic_models import MODELS, approach_dribble, sequence, waypoints
+
+SOLVERS = ("chain", "genetic", "differential")
+SPREAD = (("x", 0.03), ("y", 0.03), ("phi", 0.1))
+seeds = st.integers(0, 2**32 - 1)
+
+
+def task(kind: str, seed: int) -> ActionSequence:
+    rng = np.random.default_rng([1, seed])
+    if kind == "waypoints":
+        return waypoints(3, rng)
+    if kind == "approach":
+        return approach_dribble(tuple(rng.uniform((-3, -2, -3), (3, 2, 3))))
+    fixed = approach_dribble((3.0, 0.0, 0.0))
+    narrow = {"x": 1.0, "y": 0.0, "phi": (-0.3, 0.3), "v": (0.0, 0.3)}
+    start = {v.quantity: v.value for v in fixed.variables[:4]}
+    target = {v.quantity: v.value for v in fixed.variables[8:]}
+    asserted = Assertion(
+        sequence([a.action for a in fixed.actions], [start, narrow, target]), MODELS, RefinementSettings(), rng
+    ).advance(CheckBudget(100))
+    assert isinstance(asserted, ActionSequence)
+    return asserted
+
+
+def refinement(kind: str, seed: int, solver: str, horizon: int = 3) -> Refinement:
+    chosen = RefinementSettings(solver=solver, horizon=horizon, arrival_spread=SPREAD, batch=128)
+    return Refinement(task(kind, seed), MODELS, chosen, np.random.default_rng(seed))
+
+
+kinds = st.sampled_from(["waypoints", "approach", "detour"])
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS))
+def test_more_budget_is_never_worse(kind, seed, solver):
+    search = refinement(kind, seed, solver)
+    totals = []
+    for _ in range(15):
+        search.advance(CheckBudget(1))
+        totals.append(search.choice.total_s)
+    assert all(later <= earlier for earlier, later in pairwise(totals))
+    assert search.report().best_s == totals[-1]
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS), st.lists(st.integers(1, 5), min_size=1, max_size=6))
+def test_slices_equal_one_run_with_the_same_checks(kind, seed, solver, slices):
+    whole, sliced = refinement(kind, seed, solver), refinement(kind, seed, solver)
+    whole.advance(CheckBudget(sum(slices)))
+    for checks in slices:
+        sliced.advance(CheckBudget(checks))
+    assert whole.choice == sliced.choice
+    assert whole.report() == sliced.report()
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS), st.integers(1, 12))
+def test_choice_is_always_within_ranges_and_constraints(kind, seed, solver, checks):
+    given_sequence = task(kind, seed)
+    search = refinement(kind, seed, solver)
+    search.advance(CheckBudget(checks))
+    choice = search.choice
+    for identifier, value in choice.values.items():
+        variable = given_sequence.variables[identifier]
+        assert variable.free
+        assert variable.lower <= value <= variable.upper
+    if choice.valid:
+        assert max(choice.failure) <= 0.05
+        assert np.isfinite(choice.total_s)
+
+
+@settings(max_examples=15, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS))
+def test_first_check_answers_for_every_free_parameter_in_the_horizon(kind, seed, solver):
+    search = refinement(kind, seed, solver, horizon=2)
+    assert search.choice is None
+    search.advance(CheckBudget(1))
+    within = task(kind, seed).within(2)
+    variables = task(kind, seed).variables
+    assert set(search.choice.values) == {i for action in within for i in action.variables if variables[i].free}
+    assert len(search.choice.predicted_s) == len(within)
+    assert search.report().checks == 1
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_spent_budget_does_nothing(solver):
+    search = refinement("approach", 0, solver)
+    search.advance(CheckBudget(0))
+    assert search.choice is None
+    assert not search.finished
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_finished_search_spends_no_more_checks(solver):
+    search = refinement("approach", 0, solver)
+    search.advance(CheckBudget(10_000))
+    assert search.finished
+    budget = CheckBudget(5)
+    search.advance(budget)
+    assert budget.granted == 0
+
+
+def test_start_is_never_lost():
+    """An earlier answer given as a start is matched or beaten at once after the greedy one."""
+    best = refinement("waypoints", 4, "chain")
+    best.advance(CheckBudget(10_000))
+    again = Refinement(
+        task("waypoints", 4),
+        MODELS,
+        RefinementSettings(horizon=3, arrival_spread=SPREAD),
+        np.random.default_rng(99),
+        start=best.choice.values,
+    )
+    again.advance(CheckBudget(2))
+    assert again.choice.total_s <= best.choice.total_s + 1e-9
+
+
+def test_sequence_without_free_parameters_is_finished_after_one_check():
+    known = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+    fixed = sequence([approach_dribble().actions[1].action], [known, known | {"x": 1.0}])
+    search = Refinement(fixed, MODELS, RefinementSettings(), np.random.default_rng(0))
+    search.advance(CheckBudget(3))
+    assert search.finished
+    assert search.choice.valid
+    assert search.choice.values == {}
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=2), st.booleans())
+def test_confined_values_lie_in_the_ranges(values, periodic):
+    ranges = Ranges(np.array([-np.pi, 0.0]), np.array([np.pi, 0.3]), np.array([periodic, False]))
+    confined = ranges.confine(np.array([values]))
+    assert ranges.contain(confined)
+    if periodic:
+        turns = (confined[0, 0] - values[0]) / (2 * np.pi)
+        assert turns == pytest.approx(round(turns), abs=1e-6)
+
+
+@given(st.integers(1, 40), seeds)
+def test_draws_lie_in_the_ranges_and_cover_every_layer(count, seed):
+    ranges = Ranges(np.array([-1.0, 0.0]), np.array([1.0, 0.3]), np.array([False, False]))
+    drawn = ranges.draw(count, np.random.default_rng(seed))
+    assert drawn.shape == (count, 2)
+    assert ranges.contain(drawn)
+    layers = np.floor((drawn - ranges.lower) / ranges.width * count)
+    assert all(len(set(column)) == count for column in layers.T)
