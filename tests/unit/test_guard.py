@@ -1,0 +1,242 @@
+"""The guard, with exact values: each test fails when the protection that it names is taken out."""
+
+import math
+
+import pytest
+
+from simnodes.guard import TIMEOUT_NS, Guard, Limit, Mode, Refusal
+
+A, B = "a" * 32, "b" * 32
+MS = 1_000_000
+LIMITS = (Limit(-0.5, 1.0), Limit(-2.0, 2.0))
+ZERO = (0.0, 0.0)
+
+
+def fresh():
+    return Guard(LIMITS, epoch=7)
+
+
+def armed(at_ns=0):
+    guard = fresh()
+    assert guard.arm(at_ns, A) == ""
+    return guard
+
+
+def moving(at_ns=0):
+    guard = armed(at_ns)
+    assert guard.command(at_ns, A, 1, (0.4, -1.0)) is None
+    assert guard.output(at_ns) == (0.4, -1.0)
+    return guard
+
+
+def test_the_timeout_is_300_ms():
+    assert TIMEOUT_NS == 300 * MS
+
+
+def test_it_comes_up_disarmed_and_refuses_commands():
+    guard = fresh()
+    assert (guard.mode, guard.sender, guard.accepted) == (Mode.DISARMED, "", 0)
+    assert guard.command(0, A, 1, (0.4, 0.0)) is Refusal.NOT_ARMED
+    assert guard.output(0) == ZERO
+    assert guard.refused == {Refusal.NOT_ARMED: 1}
+
+
+def test_armed_it_obeys_and_counts():
+    guard = moving()
+    assert guard.command(100 * MS, A, 2, (0.2, 0.5)) is None
+    assert guard.output(100 * MS) == (0.2, 0.5)
+    assert (guard.accepted, guard.mode, guard.reason, guard.sender) == (2, Mode.ARMED, "", A)
+    assert not guard.refused
+
+
+def test_the_last_command_holds_to_the_very_end_of_the_timeout_and_no_longer():
+    guard = moving()
+    assert guard.output(TIMEOUT_NS) == (0.4, -1.0)
+    assert guard.mode is Mode.ARMED
+    assert guard.output(TIMEOUT_NS + 1) == ZERO
+    assert (guard.mode, guard.reason, guard.sender) == (Mode.STOPPED, "no valid command in time", "")
+
+
+def test_the_timeout_counts_from_the_latest_valid_command():
+    guard = moving()
+    assert guard.command(200 * MS, A, 2, (0.3, 0.0)) is None
+    assert guard.output(500 * MS) == (0.3, 0.0)
+    assert guard.output(500 * MS + 1) == ZERO
+
+
+def test_arming_without_a_command_runs_out_too():
+    guard = armed(50 * MS)
+    guard.output(350 * MS)
+    assert guard.mode is Mode.ARMED
+    guard.output(350 * MS + 1)
+    assert guard.mode is Mode.STOPPED
+
+
+def test_arming_again_does_not_prolong_a_silence():
+    guard = moving()
+    assert guard.arm(250 * MS, A) == ""
+    assert guard.output(300 * MS + 1) == ZERO
+
+
+def test_a_refused_command_does_not_prolong_a_silence():
+    guard = moving()
+    assert guard.command(250 * MS, A, 1, (0.1, 0.0)) is Refusal.OLD_SEQUENCE
+    assert guard.command(250 * MS, A, 2, (math.nan, 0.0)) is Refusal.NOT_FINITE
+    assert guard.output(300 * MS + 1) == ZERO
+
+
+def test_a_command_after_the_timeout_is_refused_until_armed_again():
+    guard = moving()
+    assert guard.command(300 * MS + 1, A, 2, (0.1, 0.0)) is Refusal.NOT_ARMED
+    assert guard.arm(400 * MS, A) == ""
+    assert guard.output(400 * MS) == ZERO, "arming alone does not move"
+    assert guard.command(400 * MS, A, 2, (0.1, 0.0)) is None
+    assert guard.output(400 * MS) == (0.1, 0.0)
+
+
+def test_a_command_stamped_before_the_last_one_does_not_shorten_its_time():
+    guard = moving(100 * MS)
+    assert guard.command(50 * MS, A, 2, (0.2, 0.0)) is None
+    assert guard.output(400 * MS) == (0.2, 0.0)
+    assert guard.output(400 * MS + 1) == ZERO
+
+
+@pytest.mark.parametrize("sequence", [1, 0, -5])
+def test_a_sequence_that_does_not_rise_is_refused_and_the_old_command_stays(sequence):
+    guard = moving()
+    assert guard.command(10 * MS, A, sequence, (0.1, 0.0)) is Refusal.OLD_SEQUENCE
+    assert guard.output(10 * MS) == (0.4, -1.0)
+    assert guard.refused == {Refusal.OLD_SEQUENCE: 1}
+    assert guard.accepted == 1
+
+
+def test_sequence_numbers_may_skip():
+    guard = moving()
+    assert guard.command(10 * MS, A, 90, (0.1, 0.0)) is None
+    assert guard.command(20 * MS, A, 89, (0.2, 0.0)) is Refusal.OLD_SEQUENCE
+
+
+def test_recorded_commands_are_refused_even_after_arming_again():
+    guard = moving()
+    guard.disarm()
+    assert guard.arm(50 * MS, A) == ""
+    assert guard.command(50 * MS, A, 1, (0.4, -1.0)) is Refusal.OLD_SEQUENCE
+    assert guard.output(50 * MS) == ZERO
+
+
+def test_a_refused_command_does_not_use_up_its_sequence_number():
+    guard = moving()
+    assert guard.command(10 * MS, A, 9, (5.0, 0.0)) is Refusal.BEYOND_LIMIT
+    assert guard.command(20 * MS, A, 2, (0.1, 0.0)) is None
+
+
+def test_another_sender_is_refused_and_has_a_sequence_of_its_own():
+    guard = moving()
+    assert guard.command(10 * MS, B, 99, (0.9, 0.0)) is Refusal.OTHER_SENDER
+    assert guard.output(10 * MS) == (0.4, -1.0)
+    assert guard.command(20 * MS, A, 2, (0.3, 0.0)) is None
+    guard.disarm()
+    assert guard.arm(30 * MS, B) == ""
+    assert guard.command(30 * MS, B, 0, (0.9, 0.0)) is None
+
+
+def test_another_sender_cannot_arm_over_the_first():
+    guard = moving()
+    assert guard.arm(10 * MS, B) == "another sender is armed"
+    assert guard.sender == A
+    assert guard.arm(300 * MS + 1, B) == "", "after the stop the robot is anyone's"
+    assert guard.sender == B
+    assert guard.output(300 * MS + 1) == ZERO
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_what_is_not_finite_is_refused_on_every_axis(bad, axis):
+    guard = moving()
+    values = [0.1, 0.1]
+    values[axis] = bad
+    assert guard.command(10 * MS, A, 2, values) is Refusal.NOT_FINITE
+    assert guard.output(10 * MS) == (0.4, -1.0)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_the_limit_itself_is_legal_and_the_next_float_is_refused_not_clamped(axis, side):
+    guard = moving()
+    bound = getattr(LIMITS[axis], side)
+    values = [0.0, 0.0]
+    values[axis] = bound
+    assert guard.command(10 * MS, A, 2, values) is None
+    assert guard.output(10 * MS) == tuple(values)
+    values[axis] = math.nextafter(bound, math.inf if side == "upper" else -math.inf)
+    assert guard.command(20 * MS, A, 3, values) is Refusal.BEYOND_LIMIT
+    assert guard.output(20 * MS)[axis] == bound
+
+
+@pytest.mark.parametrize("values", [(), (0.1,), (0.1, 0.1, 0.1)])
+def test_a_command_with_another_number_of_axes_is_refused(values):
+    assert moving().command(10 * MS, A, 2, values) is Refusal.WRONG_COUNT
+
+
+def test_estop_is_zero_at_once_and_latched():
+    guard = moving()
+    guard.estop()
+    assert guard.output(10 * MS) == ZERO
+    assert (guard.mode, guard.reason, guard.sender) == (Mode.ESTOPPED, "e-stop", "")
+    assert guard.command(20 * MS, A, 2, (0.1, 0.0)) is Refusal.NOT_ARMED
+    assert guard.arm(30 * MS, A) == "e-stop is latched"
+    guard.disarm()
+    guard.stop("motor fault")
+    assert guard.mode is Mode.ESTOPPED
+    assert guard.arm(40 * MS, A, reset=True) == ""
+    assert guard.mode is Mode.ARMED
+    assert guard.output(40 * MS) == ZERO
+
+
+def test_estop_works_while_disarmed():
+    guard = fresh()
+    guard.estop()
+    assert guard.arm(0, A) == "e-stop is latched"
+
+
+def test_reset_for_another_epoch_does_not_unlatch():
+    guard = moving()
+    guard.estop()
+    assert guard.arm(0, A, epoch=8, reset=True) == "other epoch"
+    assert guard.mode is Mode.ESTOPPED
+
+
+def test_disarming_is_zero_at_once():
+    guard = moving()
+    guard.disarm("told so")
+    assert guard.output(10 * MS) == ZERO
+    assert (guard.mode, guard.reason, guard.sender) == (Mode.DISARMED, "told so", "")
+
+
+def test_a_driver_may_stop_for_its_own_reasons():
+    guard = moving()
+    guard.stop("motor fault")
+    assert guard.output(10 * MS) == ZERO
+    assert (guard.mode, guard.reason) == (Mode.STOPPED, "motor fault")
+
+
+def test_arming_for_another_epoch_or_for_nobody_is_refused():
+    guard = fresh()
+    assert guard.arm(0, A, epoch=8) == "other epoch"
+    assert guard.arm(0, "") == "no sender"
+    assert guard.mode is Mode.DISARMED
+    assert guard.arm(0, A, epoch=7) == ""
+
+
+def test_time_that_goes_back_does_not_stop_or_prolong():
+    guard = moving(1000 * MS)
+    assert guard.output(500 * MS) == (0.4, -1.0)
+    assert guard.output(1300 * MS + 1) == ZERO
+
+
+def test_the_timeout_can_be_configured():
+    guard = Guard(LIMITS, epoch=1, timeout_ns=100 * MS)
+    guard.arm(0, A)
+    guard.command(0, A, 1, (0.1, 0.0))
+    assert guard.output(100 * MS) == (0.1, 0.0)
+    assert guard.output(100 * MS + 1) == ZERO
