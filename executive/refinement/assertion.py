@@ -13,6 +13,7 @@ from executive.refinement.detour import with_detour
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.sequence import ActionSequence, Failure
 from executive.refinement.settings import RefinementSettings
+from executive.refinement.weighing import Weighing, accepting
 
 SAMPLES_PER_CHECK = 256
 
@@ -37,6 +38,7 @@ class Assertion:
         self._position = 0
         self._tried = 0
         self._best_success = 0.0
+        self._weighing: Weighing | None = None
 
     def advance(self, budget: Budget) -> ActionSequence | Failure | None:
         """Go on until the budget is spent (None) or every action in the horizon is predicted to succeed.
@@ -47,6 +49,9 @@ class Assertion:
         while self._position < len(self._sequence.within(self._settings.horizon)):
             if not self._sequence.actions[self._position].action.success_model:
                 self._look_at(self._position + 1)
+            elif self._weighing is not None:
+                if not self._weighed(self._weighing, budget):
+                    return None
             elif budget.spent():
                 return None
             elif self._succeeds():
@@ -91,9 +96,27 @@ class Assertion:
             return Failure(f"{said} and names no detour")
         if self._depth() >= self._settings.assertion_depth:
             return Failure(f"{said} even after {self._depth()} detours")
-        self._sequence = with_detour(self._sequence, self._position)
-        self._look_at(self._position)  # now the detour
+        detoured = with_detour(self._sequence, self._position)
+        if self._settings.weigh_detours and not self._depth():
+            self._weighing = Weighing(self._sequence, detoured, self._position, self._models, self._settings, self._rng)
+        else:
+            self._sequence = detoured
+            self._look_at(self._position)  # now the detour
         return None
+
+    def _weighed(self, weighing: Weighing, budget: Budget) -> bool:
+        """Whether it has been decided which way is cheaper; then that way is taken."""
+        pays = weighing.advance(budget)
+        if pays is None:
+            return False
+        self._weighing = None
+        if pays:
+            self._sequence = with_detour(self._sequence, self._position)
+            self._look_at(self._position)
+        else:
+            self._sequence = accepting(self._sequence, self._position, 1.0)
+            self._look_at(self._position + 1)
+        return True
 
     def _depth(self) -> int:
         """The detours already asserted for the current action, or for the one that it is a detour to."""

@@ -13,7 +13,7 @@ CROSSOVER = 0.65  # individuals made by two-point crossover
 GENERATIONS_IDLE = 50
 GENERATIONS_MAX = 500
 # The paper does not say what a mutation is: here one gene of a child moves by a normal step whose scale is drawn anew,
-# from 10**-4 to all of its range, so that early steps explore and late ones settle. Of four variants tried this one came
+# from 10**-4 to all of its range, so that early steps explore and late ones settle. Of four variants tried it came
 # closest to the minima of De Jong, Schwefel and Ackley (median of 10 seeds: 2e-7, 1e-4, 2e-3 in three dimensions).
 MUTATION_DECADES = 4.0
 

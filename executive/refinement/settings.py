@@ -8,6 +8,7 @@ from typing import Literal
 
 from schemas.errors import UsageError
 
+COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "weighing_checks")
 SolverName = Literal["auto", "chain", "genetic", "differential"]
 
 
@@ -33,9 +34,11 @@ class RefinementSettings:
     greedy_checks: int = 6  # batches spent on the first, greedy answer
     assertion_depth: int = 2  # detours in a row before one action
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
+    weigh_detours: bool = False  # a detour must pay: compare expected costs, failure priced at risk_cost_s
+    weighing_checks: int = 12  # batches spent on each side of that comparison
 
     def __post_init__(self) -> None:
-        for name in ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples"):
+        for name in COUNTS:
             if getattr(self, name) < 1:
                 raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
         for name in ("k_std", "risk_cost_s", "energy_weight", "assertion_depth"):

@@ -67,7 +67,7 @@ class Solver:
         self.checks = 0
         self._objective = objective
         self._rng = rng
-        self._seeds = objective.ranges.confine(seeds.reshape(-1, objective.ranges.count))
+        self._seeds = objective.ranges.confine(seeds.reshape(len(seeds), objective.ranges.count))
         self._patience = patience
         self._checks_max = checks_max
         self._idle = 0
