@@ -34,14 +34,14 @@ class LineBelief:
 
 
 def slide(memory, now_ns, belief, arguments):
-    """Go to arguments[1] at up to arguments[2] m/s; a nan goal makes a nan command, a goal beyond 90 fails."""
+    """Go to arguments[1] at up to arguments[2] m/s; a goal beyond 90 fails."""
     goal, speed = arguments[1], arguments[2]
     error = goal - belief.x
     if goal > 90:
         return Control(memory, (0.0,), "failed", "too far")
     if abs(error) < TOLERANCE_M:
         return Control(memory, (0.0,), "done")
-    return Control(memory, (float(np.sign(error) * min(speed, abs(error) * 5)) if speed == speed else float("nan"),))
+    return Control(memory, (float(np.sign(error) * min(speed, abs(error) * 5)),))
 
 
 class LineModel:

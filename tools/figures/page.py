@@ -1,0 +1,59 @@
+"""A self-contained HTML page about runs: the picture inside it, and the figures as tables."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Sequence
+from pathlib import Path
+
+from tools.figures.track import Track
+
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
+img { max-width: 100% } table { border-collapse: collapse; margin: 1rem 0 }
+td, th { padding: .25rem .9rem; border-bottom: 1px solid #ddd; text-align: right }
+td:first-child, th:first-child { text-align: left } caption { text-align: left; font-weight: 600; padding: .4rem 0 }
+"""
+
+
+def table(caption: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """An HTML table; every cell is escaped."""
+    cells = "".join(f"<th>{html.escape(name)}</th>" for name in head)
+    lines = "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in row) + "</tr>" for row in rows)
+    return f"<table><caption>{html.escape(caption)}</caption><tr>{cells}</tr>{lines}</table>"
+
+
+def image(path: Path, description: str) -> str:
+    """An image that travels inside the page."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    return f'<img alt="{html.escape(description)}" src="data:image/png;base64,{data}">'
+
+
+def page(title: str, body: Sequence[str]) -> str:
+    """A whole page; `body` is HTML."""
+    head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{STYLE}</style>'
+    content = f"<h1>{html.escape(title)}</h1>{''.join(body)}"
+    return f"<!doctype html><html lang=en><head>{head}</head><body>{content}</body></html>\n"
+
+
+def action_rows(track: Track) -> list[list[str]]:
+    """One row an action: name, how it ended, predicted and actual duration."""
+    return [
+        [a.action, a.outcome, f"{a.predicted_s:.2f} s", f"{a.actual_s:.2f} s", f"{a.actual_s - a.predicted_s:+.2f} s"]
+        for a in track.finished
+    ]
+
+
+ACTION_HEAD = ["action", "outcome", "predicted", "actual", "difference"]
+
+
+def write_paths_page(tracks: Sequence[Track], picture: Path, path: Path) -> None:
+    """The page beside the demo's picture."""
+    body = [
+        "<p>Lines stand across the robot's heading, ten a second; their length is its speed. "
+        "A full disc is the ball at the start, a star the target, a cross a subgoal that was free to choose.</p>",
+        image(picture, "paths of the robot"),
+        *(table(f"{t.title}: {t.actual_s:.2f} s, {t.result}", ACTION_HEAD, action_rows(t)) for t in tracks),
+    ]
+    path.write_text(page("Tailor: the same plan, executed twice", body))
