@@ -145,7 +145,7 @@ def test_slices_give_what_one_run_gives(slice_checks):
 @pytest.mark.parametrize(("price_s", "expected"), [(0.5, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
 def test_detour_must_pay_when_it_is_weighed(price_s, expected):
     """An approach that fails in four of ten tries: a cheap failure is risked, a dear one is driven around."""
-    start, ball = {"x": 1.0, "y": -2.0, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
+    start, ball = {"x": 1.0, "y": -0.9, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
     settings = RefinementSettings(weigh_detours=True, risk_cost_s=price_s)
     result = asserted(sequence([APPROACH], [start, ball]), settings)
     assert names(result) == expected
@@ -155,7 +155,7 @@ def test_detour_must_pay_when_it_is_weighed(price_s, expected):
 
 
 def test_weighing_goes_on_where_the_budget_stopped_it():
-    start, ball = {"x": 1.0, "y": -2.0, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
+    start, ball = {"x": 1.0, "y": -0.9, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
     settings = RefinementSettings(weigh_detours=True, risk_cost_s=100.0)
     given = sequence([APPROACH], [start, ball])
     sliced = Assertion(given, MODELS, settings, np.random.default_rng(0))
