@@ -142,23 +142,35 @@ def test_slices_give_what_one_run_gives(slice_checks):
     assert results[-1] == asserted(given)
 
 
-@pytest.mark.parametrize(("price_s", "expected"), [(0.5, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
+class TwoSecondsAndTheWay:
+    """Every action takes 2 s and 1 s a metre, so a detour always costs something."""
+
+    def predict(self, arguments):
+        distance = np.hypot(*(arguments[:, 4:6] - arguments[:, :2]).T)
+        return 2 + distance, np.zeros(len(arguments))
+
+
+PLAIN = Models({"goToPose/duration": TwoSecondsAndTheWay()}, MODELS.successes)
+FROM_THE_SIDE = sequence(
+    [APPROACH],
+    [{"x": 1.0, "y": -2.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}],
+)
+
+
+@pytest.mark.parametrize(("price_s", "expected"), [(1.0, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
 def test_detour_must_pay_when_it_is_weighed(price_s, expected):
-    """An approach that fails in four of ten tries: a cheap failure is risked, a dear one is driven around."""
-    start, ball = {"x": 1.0, "y": -0.9, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
+    """An approach that fails in three of ten tries: a cheap failure is risked, a dear one is driven around."""
     settings = RefinementSettings(weigh_detours=True, risk_cost_s=price_s)
-    result = asserted(sequence([APPROACH], [start, ball]), settings)
+    result = asserted(FROM_THE_SIDE, settings, PLAIN)
     assert names(result) == expected
-    refinement = Refinement(result, MODELS, settings, np.random.default_rng(0))
+    refinement = Refinement(result, PLAIN, settings, np.random.default_rng(0))
     refinement.advance(CheckBudget(50))
     assert refinement.choice.valid
 
 
 def test_weighing_goes_on_where_the_budget_stopped_it():
-    start, ball = {"x": 1.0, "y": -0.9, "phi": 1.57, "v": 0.7}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
     settings = RefinementSettings(weigh_detours=True, risk_cost_s=100.0)
-    given = sequence([APPROACH], [start, ball])
-    sliced = Assertion(given, MODELS, settings, np.random.default_rng(0))
+    sliced = Assertion(FROM_THE_SIDE, PLAIN, settings, np.random.default_rng(0))
     results = [sliced.advance(CheckBudget(3)) for _ in range(20)]
     assert results[0] is None
-    assert results[-1] == asserted(given, settings)
+    assert results[-1] == asserted(FROM_THE_SIDE, settings, PLAIN)
