@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from executive.actions.dubins import shortest
 from executive.actions.fetch_ball import FetchBall, Stage
-from executive.actions.path_follower import Progress, project, pursuit_curvature, speed_limit
+from executive.actions.path_follower import Pace, Progress, project, pursuit_curvature, speed_limit
 from executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
 from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
@@ -45,20 +45,23 @@ class DribbleBall:
     in_rail_m: float  # axle to ball
     radius_m: float = 0.55
     v_max_mps: float = 0.75
-    omega_max_radps: float = 0.75
-    curve_radps: float = 0.60  # what bends are planned for; the rest is for corrections
+    bend_radps: float = 0.60  # what bends are planned for
+    omega_max_radps: float = 0.68  # the rest is for corrections
+    tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself
-    lookahead_m: float = 0.35
+    bend_braking_mps2: float = 0.12  # in a bend most of that force is needed to turn the ball
+    lookahead_m: float = 0.28
+    run_out_m: float = 0.15  # straight end of every path
     slip_free_m: float = 0.025  # so far the ball may be from the rail's bottom without a reaction
-    slip_gain: float = 8.0  # how fast turning is given up with slip, 1/m
+    slip_gain: float = 12.0  # how fast turning is given up with slip, 1/m
     chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
     lost_m: float = 0.17  # from the bottom of the rail: gone
     caught_m: float = 0.08
     off_path_m: float = 0.35  # plan a new path
-    near_m: float = 0.15
+    near_m: float = 0.20
     reached_m: float = 0.03
-    heading_rad: float = 0.30
+    heading_rad: float = 0.35
     speed_mps: float = 0.10
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
@@ -76,24 +79,33 @@ class DribbleBall:
         return self._push(progress, belief, ball, slip, goal)
 
     def _plan(self, pose: Pose, goal: tuple[float, ...]) -> Progress:
-        return Progress(shortest((pose.x, pose.y, pose.phi), (goal[0], goal[1], goal[2]), self.radius_m), 0.0)
+        """A new path; its end lies before the goal and is run out straight."""
+        x, y, phi = goal[0], goal[1], goal[2]
+        end = (x - self.run_out_m * math.cos(phi), y - self.run_out_m * math.sin(phi), phi)
+        return Progress(shortest((pose.x, pose.y, pose.phi), end, self.radius_m).extended(self.run_out_m), 0.0)
 
     def _push(
         self, progress: Progress, belief: BallBelief, ball: BallTrack, slip: float, goal: tuple[float, ...]
     ) -> Control:
         pose = belief.pose
         progress, aside = project(progress, pose, 0.3)
-        if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
-            progress = self._plan(pose, goal)
         if self._arrived(progress, belief, goal):
             return Control(Pushing(progress), (goal[3], 0.0), "done")
-        limit = speed_limit(progress, self.v_max_mps, goal[3], self.curve_radps, self.braking_mps2)
-        omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.25)
+        if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
+            progress = self._plan(pose, goal)
+        limit = speed_limit(progress, goal[3], self._pace)
+        omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.1)
         slipping = min(1.0, self.slip_gain * max(0.0, slip - self.slip_free_m))
         omega = (1.0 - slipping) * omega + slipping * self.chase_radps * math.atan2(ball.left, ball.ahead)
-        v = max(self._ramp(belief.v, limit), min(self.v_max_mps, belief.v + 0.1) * (slipping > 0.3))
-        bound = self.omega_max_radps
+        v = self._ramp(belief.v, limit)
+        if slipping > 0.0:
+            v = max(v, min(self.v_max_mps, belief.v + 0.1 * slipping))
+        bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
         return Control(Pushing(progress), (v, max(-bound, min(bound, omega))))
+
+    @property
+    def _pace(self) -> Pace:
+        return Pace(self.v_max_mps, self.bend_radps * self.radius_m, self.braking_mps2, self.bend_braking_mps2)
 
     def _ramp(self, v: float, limit: float) -> float:
         """Towards the limit, not faster than the ball allows; 0.2 s ahead of the measured speed."""

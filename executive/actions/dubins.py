@@ -18,12 +18,16 @@ class DubinsPath:
 
     start: Pose2
     radius: float
-    pieces: tuple[Piece, Piece, Piece]
+    pieces: tuple[Piece, ...]
 
     @property
     def length(self) -> float:
         """Of all pieces, m."""
-        return self.pieces[0][1] + self.pieces[1][1] + self.pieces[2][1]
+        return sum(length for _, length in self.pieces)
+
+    def extended(self, straight_m: float) -> DubinsPath:
+        """The same path, run out straight."""
+        return DubinsPath(self.start, self.radius, (*self.pieces, (0, straight_m)))
 
     def at(self, s: float) -> tuple[float, float, float, float]:
         """Pose and curvature (1/m, left positive) after `s` metres; beyond the end it goes straight on."""

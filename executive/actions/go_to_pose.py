@@ -27,6 +27,8 @@ class GoToPose:
     slow_in_turns: float = 1.5  # exponent of the cosine of the heading error
     braking_mps2: float = 0.55  # what the motor board does, with a reserve
     near_m: float = 0.15  # so close to the goal only the heading is left to correct
+    settle_m: float = 0.08  # the goal's speed is reached so far before it
+    stay_m: float = 0.30  # turning on the spot may have carried it so far
     reached_m: float = 0.03  # along the goal's heading
     heading_rad: float = 0.20
     aligned_rad: float = 0.10  # turning on the spot goes on until here
@@ -45,26 +47,29 @@ class GoToPose:
             return Control("align", (0.0, self._steer(off)))
         ahead = self.lead * distance
         error = difference(math.atan2(dy - ahead * math.sin(phig), dx - ahead * math.cos(phig)), pose.phi)
-        return Control("drive", (self._speed(distance, error, vg), self._steer(error)))
+        v_end = vg * max(0.0, math.cos(off)) ** 2  # headed wrongly, it will have to stop and turn
+        return Control("drive", (self._speed(distance, error, v_end), self._steer(error)))
 
     def _phase(self, phase: Phase | None, distance: float, off: float) -> Phase:
         if phase == "align":
-            return "align" if distance < 2 * self.near_m else "drive"
+            return "align" if distance < self.stay_m else "drive"
         return "align" if distance < self.near_m and abs(off) > self.heading_rad else "drive"
 
     def _arrived(
         self, belief: PlanarBelief, distance: float, along: float, off: float, vg: float, phase: Phase | None
     ) -> bool:
         """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
-        if distance > self.near_m or belief.v > vg + self.speed_mps:
+        if belief.v > vg + self.speed_mps:
             return False
         if phase == "align":
-            return abs(off) < self.aligned_rad
-        return along < self.reached_m and abs(off) < self.heading_rad
+            return abs(off) < self.aligned_rad and distance < self.stay_m
+        return distance < self.near_m and along < self.reached_m and abs(off) < self.heading_rad
 
     def _steer(self, error: float) -> float:
         return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))
 
-    def _speed(self, distance: float, error: float, vg: float) -> float:
+    def _speed(self, distance: float, error: float, v_end: float) -> float:
         facing = max(0.0, math.cos(error)) ** self.slow_in_turns
-        return min(self.v_max_mps * facing, math.sqrt(vg * vg + 2 * self.braking_mps2 * distance))
+        rest = max(0.0, distance - self.settle_m)
+        # never slower than a crawl, or it would not arrive
+        return min(self.v_max_mps * facing, max(0.1, math.sqrt(v_end * v_end + 2 * self.braking_mps2 * rest)))

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from executive.actions.dubins import DubinsPath
 from executive.belief.planar_ekf import Pose
 
-PREVIEW_STEP_M = 0.1  # the speed limit looks along the path in such steps
-PREVIEW_STEPS = 10
+BEND_RESERVE_M = 0.10  # braking ends so far before a bend
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,14 +45,30 @@ def pursuit_curvature(progress: Progress, pose: Pose, lookahead_m: float) -> flo
     return 2.0 * left / max(dx * dx + dy * dy, 0.25 * lookahead_m * lookahead_m)
 
 
-def speed_limit(progress: Progress, v_max: float, v_end: float, omega_max: float, braking: float) -> float:
-    """The highest speed (m/s) from which every bend ahead, and the end, can be met braking gently."""
-    limit = math.sqrt(v_end * v_end + 2.0 * braking * max(0.0, progress.remaining_m))
-    for step in range(PREVIEW_STEPS):
-        ahead = step * PREVIEW_STEP_M
-        curvature = abs(progress.path.at(progress.s + ahead)[3])
-        if curvature > 0.0:
-            bend = omega_max / curvature
-            limit = min(limit, math.sqrt(bend * bend + 2.0 * braking * ahead))
-            break
-    return min(v_max, limit)
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How fast a path may be driven: m/s, and m/s² of braking on straights and in bends."""
+
+    v_max: float
+    v_bend: float
+    straight_braking: float
+    bend_braking: float
+
+
+def speed_limit(progress: Progress, v_end: float, pace: Pace) -> float:
+    """The highest speed (m/s) from which the next bend and the end can be met braking no harder than the pace's."""
+    energy_end = v_end * v_end
+    to_bend: float | None = None
+    begin = 0.0
+    for turn, length in progress.path.pieces:
+        ahead = min(length, begin + length - progress.s)
+        if ahead > 0.0:
+            energy_end += 2.0 * ahead * (pace.bend_braking if turn else pace.straight_braking)
+            if turn and to_bend is None:
+                to_bend = max(0.0, begin - progress.s)
+        begin += length
+    limit = min(pace.v_max, math.sqrt(energy_end))
+    if to_bend is not None:
+        room = max(0.0, to_bend - BEND_RESERVE_M)
+        limit = min(limit, math.sqrt(pace.v_bend**2 + 2.0 * room * pace.straight_braking))
+    return limit

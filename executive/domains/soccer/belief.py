@@ -143,9 +143,7 @@ def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
 
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
-    return SoccerBelief(
-        belief.time_ns, pose, belief.v, belief.omega, belief.moved_ns, belief.ball, seen, doubted
-    )
+    return SoccerBelief(belief.time_ns, pose, belief.v, belief.omega, belief.moved_ns, belief.ball, seen, doubted)
 
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
