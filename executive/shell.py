@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from executive.core.context import PERIOD_NS, Context, check_goal
 from executive.core.state import Inputs, Output, State, initial_state
 from executive.core.step import control, deliberate
+from runtime import realtime
 from runtime.budget import ClockBudget
 from runtime.clock import Clock
 from runtime.loop import Loop, Turn
@@ -23,12 +23,11 @@ TOPICS = ("arm_request", "finished", "plan", "subgoals", "refinement", "status",
 
 
 class Shell:
-    """One executive on the bus, until `stop` is set."""
+    """One executive on the bus."""
 
     def __init__(self, context: Context, session: Session, clock: Clock, provenance: Mapping[str, Any]) -> None:
         """Subscribe and declare; nothing is published before `run`."""
         domain = context.domain
-        self.stop = threading.Event()
         self._context = context
         self._clock = clock
         self._provenance = json.dumps(provenance, sort_keys=True)
@@ -38,21 +37,22 @@ class Shell:
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         self._state = initial_state(context)
 
-    def run(self, goal: str, until: Callable[[State], bool] = lambda _: False) -> State:
-        """Tick until stopped or until `until` says so; the last tick brings the robot to rest.
+    def run(self, goal: str, until: Callable[[State], bool]) -> State:
+        """Tick until `until` says so; the last tick brings the robot to rest.
 
         Args:
           goal: A checked PDDL goal for the first tick; empty: wait for one.
-          until: Looked at after every tick.
+          until: Looked at before every tick.
         """
         loop = Loop(PERIOD_NS, self._clock)
         while True:
             turn = loop.next_turn()
-            stopping = self.stop.is_set() or until(self._state)
+            stopping = until(self._state)
             self._tick(turn, goal, stopping)
             goal = ""
             if stopping:
                 return self._state
+            realtime.collect_young()
 
     def _tick(self, turn: Turn, goal: str, stopping: bool) -> None:
         samples = self._inbox.drain(turn.now_ns)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import time
 
 from executive.composition import compose, provenance
 from executive.core.context import Context, check_goal
-from executive.core.state import State
 from executive.shell import Shell
 from runtime import realtime
 from runtime.clock import MonotonicClock, wall_ns
 from runtime.session import open_client
+from runtime.stopping import stop_on_signals
 from schemas import codec
 from schemas.errors import UsageError
 from tools.deployment import configure_system, deployment, order_of
-
-EXIT_FAULT = 70  # a broken invariant
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -30,6 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compose, check everything, then tick until stopped."""
+    stop = stop_on_signals()
     read = deployment(arguments)
     order = order_of(arguments.domain, read)
     probe = compose(order, sender="")  # every mistake of ours is told before the bus is touched
@@ -41,9 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
         obtained = realtime.prepare()
         made_of = {**provenance(order, context), "realtime": obtained}
         shell = Shell(context, session, MonotonicClock(), made_of)
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: shell.stop.set())
-        state = shell.run(goal, until=_over if arguments.once else lambda _: False)
+        state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
     return 1 if arguments.once and state.task.result != "achieved" else 0
 
 
@@ -55,7 +51,3 @@ def _goal(context: Context, arguments: argparse.Namespace) -> str:
     if why_not:
         raise UsageError(f"--goal {goal}: {why_not}")
     return goal
-
-
-def _over(state: State) -> bool:
-    return bool(state.task.result)

@@ -1,0 +1,111 @@
+"""What people see while a system runs: a panel in a terminal, a line on every change elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+from rich.console import Console
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+
+from schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
+
+
+class Screen(Protocol):
+    """Where news goes."""
+
+    def tell(self, line: str) -> None:
+        """One line that stays."""
+        ...
+
+    def show(self, message: Message) -> None:
+        """A message of the executive."""
+        ...
+
+
+class _Lines:
+    """For logs and pipes."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._last = ""
+
+    def tell(self, line: str) -> None:
+        self._console.print(line, highlight=False)
+
+    def show(self, message: Message) -> None:
+        line = _news(message)
+        if line and line != self._last:
+            self._last = line
+            self.tell(line)
+
+
+class _Panel:
+    """For terminals: a live table below the lines that stay."""
+
+    def __init__(self, live: Live) -> None:
+        self._live = live
+        self._status: ExecStatus | None = None
+        self._tick: TickReport | None = None
+
+    def tell(self, line: str) -> None:
+        self._live.console.print(line, highlight=False)
+
+    def show(self, message: Message) -> None:
+        if isinstance(message, ExecStatus):
+            self._status = message
+        elif isinstance(message, TickReport):
+            self._tick = message
+        elif isinstance(message, ActionFinished):
+            self.tell(_news(message))
+        self._live.update(self._table())
+
+    def _table(self) -> Table:
+        grid = Table.grid(padding=(0, 2))
+        status, tick = self._status, self._tick
+        if status is None:
+            grid.add_row("waiting for the executive")
+            return grid
+        grid.add_row("mode", f"{status.mode} {status.reason}".strip())
+        predicted = max(status.action_predicted_s, 0.1)
+        if status.action:
+            bar = ProgressBar(total=predicted, completed=min(status.action_elapsed_s, predicted), width=30)
+            grid.add_row("action", f"{status.action}  {status.action_elapsed_s:.1f} of {predicted:.1f} s predicted")
+            grid.add_row("", bar)
+        grid.add_row("belief", "  ".join(f"{value:6.2f}" for value in status.belief[:6]))
+        if tick is not None:
+            work, late = tick.work_ns / 1e6, tick.lateness_ns / 1e6
+            grid.add_row("tick", f"{tick.tick}  work {work:.1f} ms  late {late:.2f} ms  checks {tick.checks_granted}")
+        return grid
+
+
+@contextmanager
+def screen() -> Iterator[Screen]:
+    """The screen that fits where stdout goes."""
+    console = Console()
+    if not console.is_terminal:
+        yield _Lines(console)
+        return
+    with Live(console=console, refresh_per_second=10, transient=True) as live:
+        yield _Panel(live)
+
+
+def _news(message: Message) -> str:
+    if isinstance(message, ActionFinished):
+        took = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
+        reason = f" ({message.reason})" if message.reason else ""
+        return f"  {message.action} {message.outcome}{reason}: {took}"
+    if isinstance(message, ExecStatus):
+        said = f"{message.mode} {message.reason}".strip()
+        return (
+            f"  {said}: {message.action}"
+            if message.action
+            else f"  {said}{': ' * bool(message.result)}{message.result}"
+        )
+    if isinstance(message, Subgoals) and message.actions:
+        chosen = [f"{p.name} {p.value:.2f}" for p in message.actions[0].parameters if not p.bound]
+        return f"  {message.actions[0].action} with {', '.join(chosen)}" if chosen else ""
+    return ""

@@ -1,0 +1,125 @@
+"""Runs a whole system: the bus's router in this process; simulator, recorder and executive as its children."""
+
+from __future__ import annotations
+
+import socket
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from executive.composition import Order, compose
+from runtime.clock import MonotonicClock
+from runtime.inbox import Inbox
+from runtime.loop import Loop
+from runtime.processes import Child, tailor
+from runtime.session import Session, open_router
+from runtime.stopping import Stop
+from runtime.supervisor import Charge, Supervisor
+from schemas.messages import ExecStatus
+from tools.live_status import Screen
+
+LOOK_NS = 50_000_000
+SILENCE_NS = 1_000_000_000  # faults.md, row 2
+START_S = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What to start."""
+
+    order: Order
+    endpoint: str
+    record: Path | None = None
+    once: bool = False  # end when the goal is achieved or has failed
+    config: str = ""
+
+
+def run_system(plan: Plan, screen: Screen, stop: Stop) -> str:
+    """Start everything in order, watch it, stop everything in the opposite order.
+
+    Returns:
+      The executive's result: "achieved", "failed: why", or "" when it was stopped.
+
+    Raises:
+      UsageError: Before anything is started.
+    """
+    robot = compose(plan.order, sender="").domain.robot
+    with open_router(plan.endpoint) as session, tempfile.TemporaryFile("w+") as log:
+        supervisor = Supervisor(screen.tell, lambda name, argv: Child(name, argv, log))
+        try:
+            return _run(plan, robot, session, supervisor, screen, stop)
+        finally:
+            supervisor.stop()
+            log.seek(0)
+            for line in log.read().splitlines():
+                screen.tell(line)
+
+
+def free_endpoint() -> str:
+    """A loopback endpoint that nobody listens at, for systems that are not to be found."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
+    inbox = session.inbox(("driver", "status", "tick", "finished", "subgoals"), robot)
+    if plan.record is not None:
+        listened = session.publisher("plan", robot)
+        supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())
+        _wait(supervisor, ("record",), listened.matched, stop)
+    supervisor.begin(Charge("sim", _sim(plan, robot)), time.monotonic_ns())
+    _wait(supervisor, ("sim",), lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop)
+    supervisor.begin(Charge("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
+    return _watch(plan, inbox, supervisor, screen, stop)
+
+
+def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
+    loop = Loop(LOOK_NS, MonotonicClock())
+    result = ""
+    while not stop.requested:
+        turn = loop.next_turn()
+        for sample in inbox.drain():
+            screen.show(sample.message)
+            if isinstance(sample.message, ExecStatus):
+                supervisor.heard("executive", turn.now_ns)
+                result = sample.message.result
+        supervisor.look(turn.now_ns)
+        dead = [name for name in ("sim", "executive") if supervisor.ended(name) is not None]
+        if dead:
+            return f"failed: {dead[0]} ended"
+        if plan.once and result:
+            return result
+    return result
+
+
+def _wait(supervisor: Supervisor, names: Sequence[str], ready: object, stop: Stop) -> None:
+    """Wait until a process shows that it is there."""
+    assert callable(ready)
+    deadline = time.monotonic() + START_S
+    while not (stop.requested or ready()):
+        supervisor.look(time.monotonic_ns())
+        if time.monotonic() > deadline or any(supervisor.ended(name) is not None for name in names):
+            raise RuntimeError(f"{', '.join(names)} did not start")
+        time.sleep(0.02)
+
+
+def _sim(plan: Plan, robot: str) -> list[str]:
+    order = plan.order
+    scene = ("--domain", order.domain, "--scenario", order.scenario, "--seed", str(order.settings.seed))
+    return tailor("sim", robot, *scene, "--connect", plan.endpoint)
+
+
+def _record(plan: Plan) -> list[str]:
+    return tailor("record", "--output", str(plan.record), "--connect", plan.endpoint)
+
+
+def _executive(plan: Plan) -> list[str]:
+    order = plan.order
+    flags = ["--scenario", order.scenario, "--seed", str(order.settings.seed), "--connect", plan.endpoint]
+    flags += ["--horizon", str(order.settings.refinement.horizon)]
+    flags += ["--config", plan.config] if plan.config else []
+    flags += ["--zoo", order.zoo] if order.zoo else []
+    return tailor("executive", order.domain, *flags)

@@ -1,0 +1,31 @@
+"""Start a whole system and watch it: bus router, simulator, recorder, executive. Ctrl-C stops it in order."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from runtime.stopping import stop_on_signals
+from tools.deployment import configure_system, deployment, order_of
+from tools.live_status import screen
+from tools.system import Plan, run_system
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor up`."""
+    configure_system(parser)
+    parser.add_argument("--record", metavar="FILE", type=Path, help="record everything into an MCAP file")
+    parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run until Ctrl-C, or with --once until the goal is achieved or has failed."""
+    stop = stop_on_signals()
+    read = deployment(arguments)
+    plan = Plan(
+        order_of(arguments.domain, read), read.bus.endpoint, arguments.record, arguments.once, arguments.config or ""
+    )
+    with screen() as shown:
+        result = run_system(plan, shown, stop)
+    print(result or "stopped")
+    return 0 if not arguments.once or result == "achieved" else 1
