@@ -1,0 +1,104 @@
+"""A simulated robot on the bus: steps its world in real time behind the driver's guard, and publishes its sensors."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from runtime.clock import Clock, wall_ns
+from runtime.loop import Loop, Turn
+from runtime.session import Session
+from simnodes.body import Reading
+from simnodes.driver import TOPICS, Driver
+from simnodes.guard import Limit
+from simnodes.services import NAMES, Services
+from simnodes.world import World
+
+PERIOD_NS = 10_000_000  # of world time a turn; the guard's stop is late by at most as much
+MOST_AT_ONCE = 10  # periods to catch up with after a stall; what is beyond is lost to the world
+SENSORS = ("odom", "pose", "ball", "truth")
+
+
+class Node:
+    """One robot's driver with a world behind it, until told to stop."""
+
+    def __init__(
+        self,
+        world: World,
+        limits: Sequence[Limit],
+        session: Session,
+        clock: Clock,
+        epoch: int,
+        command_topic: str = "cmd_vel",
+        speed: float = 1.0,
+    ) -> None:
+        """Subscribe and declare.
+
+        Args:
+          world: Reset already.
+          limits: Of the command's axes.
+          session: The bus.
+          clock: Monotonic.
+          epoch: Another one at every start, not 0.
+          command_topic: Name in schemas.topics.
+          speed: World seconds per real second; the guard's time-out stays real.
+        """
+        robot = world.body.robot
+        self.driver = Driver(limits, epoch)
+        self._world, self._clock = world, clock
+        self._loop = Loop(round(PERIOD_NS / speed), clock)
+        self._inbox = session.inbox((command_topic, *TOPICS), robot)
+        self._out = {name: session.publisher(name, robot) for name in (*SENSORS, "driver")}
+        questions = {name: session.questions(f"{robot}/sim/{name}") for name in NAMES}
+        self._services = Services(world, questions, on_reset=lambda: self.driver.guard.disarm("the world was reset"))
+        self._frozen_ns = 0  # real time that does not count for the guard, because the world stood still
+
+    def run(self, stopped: Callable[[], bool]) -> None:
+        """Turn after turn until `stopped` says so; leaves the robot disarmed."""
+        while not stopped():
+            self._turn(self._loop.next_turn())
+        self.driver.guard.disarm("the driver ends")
+        self._tell(self._clock.now_ns())
+
+    def _turn(self, turn: Turn) -> None:
+        self._services.answer()
+        guard_ns = turn.now_ns - self._frozen_ns
+        self._listen(turn.now_ns, guard_ns)
+        elapsed, periods = 1 + turn.skipped, min(1 + turn.skipped, MOST_AT_ONCE)
+        if self._services.paused:
+            periods, self._services.steps_due = self._services.steps_due, 0
+            self._frozen_ns += (elapsed - periods) * self._loop.period_ns
+        for _ in range(periods):
+            self._world.body.command(self.driver.guard.output(guard_ns))
+            self._publish(self._world.advance(PERIOD_NS))
+            if self._services.paused:  # in lock-step the guard's time is the world's
+                guard_ns += self._loop.period_ns
+        self._tell(turn.now_ns)
+
+    def _listen(self, now_ns: int, guard_ns: int) -> None:
+        samples = (replace(s, arrival_ns=s.arrival_ns - self._frozen_ns) for s in self._inbox.drain(now_ns))
+        accepted = self.driver.guard.accepted
+        self.driver.take(samples, self._rejected(), guard_ns)
+        if self.driver.guard.accepted > accepted:
+            self._world.begin()
+
+    def _publish(self, readings: Sequence[Reading]) -> None:
+        # Wall time is what other ROS nodes expect in a header; the world's time is its distance to now.
+        origin_ns = wall_ns() - self._world.time_ns
+        for reading in readings:
+            sensed: Any = reading.message
+            message = replace(sensed, stamp_ns=origin_ns + reading.time_ns)
+            self._out[reading.topic].publish(message)
+
+    def _tell(self, now_ns: int) -> None:
+        state = self.driver.state(now_ns, wall_ns())
+        if state is not None:
+            self._out["driver"].publish(state)
+
+    def _rejected(self) -> Counter[str]:
+        counts: Counter[str] = Counter()
+        for (_, reason), count in self._inbox.rejected.items():
+            counts[reason] += count
+        return counts
