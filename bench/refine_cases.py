@@ -1,0 +1,75 @@
+"""The tasks of the refinement benchmark: waypoint sequences of AGILO, and an approach that needs a detour."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from executive import domains
+from executive.library import Action, Models
+from executive.refinement.detour import with_detour
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
+from executive.refinement.settings import RefinementSettings
+
+LEGS = {"2 free": 2, "4 free": 3, "8 free": 5, "12 free": 7}  # case -> legs of goToPose, two free parameters between
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str
+    actions: tuple[InstantiatedAction, ...]
+    variables: tuple[Variable, ...]
+
+    def objective(self, models: Models) -> SequenceObjective:
+        return SequenceObjective(self.actions, self.variables, models, RefinementSettings())
+
+
+def cases(count: int) -> dict[str, list[Case]]:
+    """`count` drawn tasks for each case."""
+    library = domains.load("soccer").actions
+    made = {
+        name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
+        for name, legs in LEGS.items()
+    }
+    made["6 free, detour"] = [_detour(library, np.random.default_rng([6, i])) for i in range(count)]
+    return made
+
+
+def _waypoints(action: Action, legs: int, rng: np.random.Generator) -> Case:
+    places = [_place(rng, {"phi": rng.uniform(-3, 3), "v": 0.0})]
+    places += [_place(rng, {}) for _ in range(legs - 1)]
+    places.append(_place(rng, {"phi": rng.uniform(-3, 3), "v": 0.0}))
+    return _chain("waypoints", [action] * legs, places)
+
+
+def _detour(library: Mapping[str, Action], rng: np.random.Generator) -> Case:
+    """An approach of the ball that must go round it, then the dribble."""
+    actions = [library["approachBall"], library["dribbleBall"]]
+    places = [_place(rng, {"phi": rng.uniform(-3, 3), "v": 0.0}), _place(rng, {}), _place(rng, {"phi": 1.0, "v": 0.0})]
+    case = _chain("detour", actions, places)
+    sequence = with_detour(ActionSequence(case.actions, case.variables, library), 0)
+    return replace(case, actions=sequence.actions, variables=sequence.variables)
+
+
+def _place(rng: np.random.Generator, known: dict[str, float]) -> dict[str, float]:
+    return {"x": float(rng.uniform(-2.5, 2.5)), "y": float(rng.uniform(-1.7, 1.7)), **known}
+
+
+def _chain(name: str, actions: list[Action], places: list[dict[str, float]]) -> Case:
+    """Actions from place to place; what a place does not say is free in the parameter's range."""
+    variables: list[Variable] = []
+    ids = []
+    for at, place in enumerate(places):
+        action = actions[min(at, len(actions) - 1)]
+        parameters = [p for p in action.parameters if p.argument == min(q.argument for q in action.parameters)]
+        ids.append(tuple(range(len(variables), len(variables) + len(parameters))))
+        for parameter in parameters:
+            free = parameter.quantity not in place
+            variable = Variable(len(variables), f"pos{at}", parameter.quantity, parameter.unit, parameter.lower,
+                                parameter.upper, parameter.periodic, None)  # fmt: skip
+            variables.append(variable if free else variable.bound_to(place[parameter.quantity]))
+    made = tuple(InstantiatedAction(action, i + 1, ids[i] + ids[i + 1]) for i, action in enumerate(actions))
+    return Case(name, made, tuple(variables))

@@ -1,0 +1,96 @@
+"""The optimisers of the refinement benchmark behind one call: (objective, seed, limit) -> best value over time."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from executive.budget import CheckBudget
+from executive.library import Array
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.selection import solver_for
+from executive.refinement.settings import RefinementSettings
+
+OURS = ("chain", "genetic", "differential")
+
+Found = list[tuple[float, float]]  # (milliseconds, best value so far), in order of time
+Runner = Callable[[SequenceObjective, int, float], Found]
+
+
+def runners() -> Iterator[tuple[str, Runner]]:
+    """Every optimiser by name; CMA-ES where it is installed."""
+    for name in OURS:
+        yield name, ours(name)
+    yield "scipy differential evolution", _scipy
+    try:
+        import cma  # noqa: F401
+    except ImportError:
+        return
+    yield "CMA-ES", _cma
+
+
+def ours(name: str) -> Runner:
+    """One of the executive's own solvers."""
+
+    def run(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+        settings = RefinementSettings(solver=name, patience=10**6, checks_max=10**6)  # type: ignore[arg-type]
+        rng = np.random.default_rng(seed)
+        began, found = time.perf_counter(), []
+        solver = solver_for(objective, settings, rng, np.empty((0, len(objective.ids))))
+        while (elapsed := 1e3 * (time.perf_counter() - began)) < limit_ms and not solver.finished:
+            solver.advance(CheckBudget(1))
+            found.append((1e3 * (time.perf_counter() - began), solver.value))
+        return found or [(elapsed, float("inf"))]
+
+    return run
+
+
+class _OverError(Exception):
+    """The time is over."""
+
+
+class _Timed:
+    """The objective as foreign optimisers call it, with the time at which each best value was known."""
+
+    def __init__(self, objective: SequenceObjective, limit_ms: float) -> None:
+        self.found: Found = []
+        self._objective = objective
+        self._limit_ms = limit_ms
+        self._began = time.perf_counter()
+
+    def __call__(self, candidates: Array) -> Array:
+        """Cost of candidates, shape (n, d); INVALID as a number that foreign code can order."""
+        costs = self._objective(self._objective.ranges.confine(candidates))
+        now = 1e3 * (time.perf_counter() - self._began)
+        self.found.append((now, min(float(costs.min()), self.found[-1][1] if self.found else float("inf"))))
+        if now > self._limit_ms:
+            raise _OverError
+        return np.where(np.isfinite(costs), costs, 1e6)
+
+
+def _scipy(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+    from scipy.optimize import differential_evolution
+
+    timed = _Timed(objective, limit_ms)
+    bounds = list(zip(objective.ranges.lower, objective.ranges.upper, strict=True))
+    options = {"vectorized": True, "updating": "deferred", "polish": False, "maxiter": 10**6, "tol": 0.0}
+    with contextlib.suppress(_OverError):
+        differential_evolution(lambda x: timed(x.T), bounds, rng=seed, **options)
+    return timed.found
+
+
+def _cma(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+    import cma
+
+    timed, ranges = _Timed(objective, limit_ms), objective.ranges
+    options = {"bounds": [0, 1], "seed": seed + 1, "verbose": -9}
+    search = cma.CMAEvolutionStrategy(np.full(ranges.count, 0.5), 0.3, options)
+    try:
+        while True:
+            asked = search.ask()
+            search.tell(asked, list(timed(ranges.lower + ranges.width * np.array(asked))))
+    except _OverError:
+        return timed.found
