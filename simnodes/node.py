@@ -11,8 +11,8 @@ from runtime.clock import Clock, wall_ns
 from runtime.loop import Loop, Turn
 from runtime.session import Session
 from simnodes.body import Reading
+from simnodes.declaration import Declaration
 from simnodes.driver import TOPICS, Driver
-from simnodes.guard import Limit
 from simnodes.services import NAMES, Services
 from simnodes.world import World
 
@@ -27,29 +27,27 @@ class Node:
     def __init__(
         self,
         world: World,
-        limits: Sequence[Limit],
+        declared: Declaration,
         session: Session,
         clock: Clock,
         epoch: int,
-        command_topic: str = "cmd_vel",
         speed: float = 1.0,
     ) -> None:
         """Subscribe and declare.
 
         Args:
           world: Reset already.
-          limits: Of the command's axes.
+          declared: What the driver takes, and within which limits.
           session: The bus.
           clock: Monotonic.
           epoch: Another one at every start, not 0.
-          command_topic: Name in schemas.topics.
           speed: World seconds per real second; the guard's time-out stays real.
         """
         robot = world.body.robot
-        self.driver = Driver(limits, epoch)
+        self.driver = Driver(declared.limits, epoch)
         self._world, self._clock = world, clock
         self._loop = Loop(round(PERIOD_NS / speed), clock)
-        self._inbox = session.inbox((command_topic, *TOPICS), robot)
+        self._inbox = session.inbox((declared.command_topic, *TOPICS), robot)
         self._out = {name: session.publisher(name, robot) for name in (*SENSORS, "driver")}
         questions = {name: session.questions(f"{robot}/sim/{name}") for name in NAMES}
         self._services = Services(world, questions, on_reset=lambda: self.driver.guard.disarm("the world was reset"))
