@@ -1,0 +1,34 @@
+"""Planning: PDDL in, a partial-order plan with causal links out; a VHPOP of our own (Younes & Simmons, JAIR 20, 2003).
+
+Everything that other parts of the executive use is named here.
+"""
+
+from executive.planning.domain_reader import parse_domain
+from executive.planning.errors import PddlError, Unsupported
+from executive.planning.language import Domain, Literal
+from executive.planning.plan import GOAL, Link, Plan, Result, Step
+from executive.planning.problem import Problem
+from executive.planning.problem_reader import parse_problem
+from executive.planning.search import GroundCache, Search
+from executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
+
+__all__ = [
+    "DEFAULT",
+    "GOAL",
+    "MATCHING",
+    "Domain",
+    "FlawOrder",
+    "GroundCache",
+    "Link",
+    "Literal",
+    "PddlError",
+    "Plan",
+    "Problem",
+    "Result",
+    "Search",
+    "Settings",
+    "Step",
+    "Unsupported",
+    "parse_domain",
+    "parse_problem",
+]

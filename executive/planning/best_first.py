@@ -1,0 +1,88 @@
+"""A* through plan space, with several flaw orders that take turns, each with a queue of its own.
+
+Source: Younes & Simmons, JAIR 20 (2003), section 4.4. No closed list: two ways to one plan count twice.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Generic
+
+from executive.planning.plan import Result
+from executive.planning.plan_space import P, PlanSpace
+from executive.planning.ranking import Rank
+from executive.planning.settings import FlawOrder, Settings
+
+FIRST_TURN = 1000  # plans that a flaw order generates before the next one's turn; doubles with every round
+
+
+@dataclass(slots=True)
+class _Queue(Generic[P]):
+    """The plans that wait for one flaw order."""
+
+    order: int
+    limit: int | None
+    plans: list[tuple[Rank, P]] = field(default_factory=list)
+    generated: int = 1  # the initial plan
+
+    def exhausted(self) -> bool:
+        """Whether the order has generated all that it may."""
+        return self.limit is not None and self.generated >= self.limit
+
+
+class BestFirst(Generic[P]):
+    """The state of one search; `generated` and `visited` count plans as VHPOP does."""
+
+    def __init__(self, space: PlanSpace[P], settings: Settings) -> None:
+        self._space = space
+        self._limit = settings.node_limit
+        self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
+        self.generated = 1
+        self.visited = 0
+
+    def run(self) -> Iterator[Result | None]:
+        """Works on one plan per iteration; yields None until the result."""
+        start = self._space.initial()
+        rank = self._space.rank(start, 0)
+        if rank is None:
+            yield self._result("unsolvable", "the goal cannot be reached, not even without delete effects")
+            return
+        queues = [_Queue(n, order.limit, [(rank, start)]) for n, order in enumerate(self._orders)]
+        turn = FIRST_TURN
+        while queues:
+            for queue in list(queues):
+                yield from self._work(queue, turn if len(queues) > 1 else None)
+                if queue.exhausted():
+                    queues.remove(queue)
+            turn *= 2
+        yield self._result("limit", "every flaw order has reached its limit of generated plans")
+
+    def _work(self, queue: _Queue[P], turn: int | None) -> Iterator[Result | None]:
+        """Works with one flaw order until its turn is over."""
+        space, plans = self._space, queue.plans
+        end = None if turn is None else queue.generated + turn
+        while not queue.exhausted() and (end is None or queue.generated < end):
+            if not plans:
+                yield self._result("unsolvable", "every partial plan has been refined to a dead end")
+                return
+            if self.generated >= self._limit:
+                yield self._result("limit", f"{self._limit} plans generated")
+                return
+            _, plan = heapq.heappop(plans)
+            if space.solved(plan):
+                yield Result("solved", space.extract(plan), "", self.generated, self.visited)
+                return
+            self.visited += 1
+            for child in space.refine(plan, queue.order):
+                rank = space.rank(child, self.generated)
+                if rank is not None:
+                    heapq.heappush(plans, (rank, child))
+                    self.generated += 1
+                    queue.generated += 1
+            yield None
+
+    def _result(self, status: str, reason: str) -> Result:
+        assert status in ("unsolvable", "limit")
+        return Result("unsolvable" if status == "unsolvable" else "limit", None, reason, self.generated, self.visited)

@@ -1,0 +1,48 @@
+"""Evaluates the durations of ground actions."""
+
+from __future__ import annotations
+
+import math
+
+from executive.library import Fact
+from executive.planning.ground_formula import Binding, World
+from executive.planning.language import DurationBound, Function, Number, Numeric, Operation
+
+
+def evaluate(number: Numeric, binding: Binding, world: World) -> float | None:
+    """The value in seconds; None where a static function has no value or a division is by zero."""
+    match number:
+        case Number(value):
+            return value
+        case Function(name, terms):
+            fact: Fact = (name, *(binding.get(term, term) for term in terms))
+            return world.values.get(fact)
+        case Operation(operator, left, right):
+            a, b = evaluate(left, binding, world), evaluate(right, binding, world)
+            return None if a is None or b is None else _operate(operator, a, b)
+
+
+def _operate(operator: str, a: float, b: float) -> float | None:
+    match operator:
+        case "+":
+            return a + b
+        case "-":
+            return a - b
+        case "*":
+            return a * b
+        case _:
+            return a / b if b else None
+
+
+def duration_range(bounds: tuple[DurationBound, ...], binding: Binding, world: World) -> tuple[float, float] | None:
+    """Shortest and longest duration in seconds (infinite without an upper limit); None when there is none."""
+    shortest, longest = 0.0, math.inf
+    for bound in bounds:
+        value = evaluate(bound.value, binding, world)
+        if value is None:
+            return None
+        if bound.operator != "<=":
+            shortest = max(shortest, value)
+        if bound.operator != ">=":
+            longest = min(longest, value)
+    return (shortest, longest) if shortest <= longest else None

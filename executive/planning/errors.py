@@ -1,0 +1,18 @@
+"""The one error of PDDL text: what is wrong, and where."""
+
+from __future__ import annotations
+
+from schemas.errors import UsageError
+
+
+class PddlError(UsageError):
+    """PDDL text that cannot be used; the message begins with "source:line:column: "."""
+
+
+class Unsupported(PddlError):
+    """PDDL that is sound but outside this planner's language; the message names the feature."""
+
+
+def error_at(source: str, line: int, column: int, what: str) -> PddlError:
+    """An error that points at one place of a text (line and column count from 1)."""
+    return PddlError(f"{source}:{line}:{column}: {what}")

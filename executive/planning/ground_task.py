@@ -1,0 +1,75 @@
+"""The ground task that one search plans with: reachable ground actions, initial literals, goal, estimates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from executive.planning.additive_heuristic import Estimates, action_costs, estimate
+from executive.planning.ground_action import GroundAction, GroundEffect
+from executive.planning.ground_formula import Facts, GroundCondition, conjuncts, ground
+from executive.planning.grounding import GroundActions
+from executive.planning.language import Literal
+from executive.planning.problem import Problem
+
+CostOf = OneOf["unit", "duration", "relative"]
+Achiever = tuple[GroundAction, GroundEffect]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundTask:
+    """A ground planning problem; literals as in `ground_formula`.
+
+    `achievers` has, by literal, the reachable ground actions with the effect that makes it true, in grounding order.
+    """
+
+    problem: Problem
+    temporal: bool
+    tick_s: float
+    names: tuple[Literal, ...]
+    initial: frozenset[int]
+    timed: tuple[tuple[int, int], ...]  # literal, tick
+    goal: tuple[GroundCondition, ...]
+    achievers: tuple[tuple[Achiever, ...], ...]
+    costs: tuple[float, ...]  # by the action's number
+    estimates: Estimates
+
+    @property
+    def moments(self) -> int:
+        """How many moments a step has: start and end, or only one when actions take no time."""
+        return 2 if self.temporal else 1
+
+
+def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
+    """The task of a problem whose world has been grounded."""
+    facts = Facts(grounded.facts)
+    goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
+    holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
+    timed = tuple(
+        (facts.literal(t.literal.fact, t.literal.positive), round(t.time_s / grounded.tick_s)) for t in problem.timed
+    )
+    initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
+    costs = action_costs(grounded.actions, cost)
+    estimates = estimate(grounded.actions, costs, initial | {literal for literal, _ in timed}, 2 * len(facts))
+    return GroundTask(
+        problem,
+        problem.domain.durative or bool(timed),
+        grounded.tick_s,
+        facts.names(),
+        initial,
+        timed,
+        goal,
+        _achievers(grounded.actions, estimates, 2 * len(facts)),
+        costs,
+        estimates,
+    )
+
+
+def _achievers(actions: tuple[GroundAction, ...], estimates: Estimates, count: int) -> tuple[tuple[Achiever, ...], ...]:
+    achievers: list[list[Achiever]] = [[] for _ in range(count)]
+    for action in actions:
+        if estimates.reaches(action.conditions):
+            for effect in action.effects:
+                if estimates.reaches(effect.conditions):
+                    achievers[effect.literal].append((action, effect))
+    return tuple(tuple(some) for some in achievers)

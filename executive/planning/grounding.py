@@ -1,0 +1,213 @@
+"""Grounding: action schemas x objects -> ground actions, cut early on static facts and inequalities.
+
+Owns the order that every count depends on: actions by name, objects by name (constants first), parameters left
+to right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from executive.planning.durations import duration_range
+from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span
+from executive.planning.ground_formula import (
+    FALSE,
+    Binding,
+    Facts,
+    GroundCondition,
+    World,
+    bindings,
+    conjuncts,
+    ground,
+)
+from executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
+from executive.planning.problem import Problem
+
+CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
+
+
+class TooManyBindings(Exception):
+    """Grounding has tried more bindings than it was allowed to."""
+
+
+@dataclass(frozen=True, slots=True)
+class GroundActions:
+    """The ground actions of a world, with the numbers of the facts they speak of; reusable while the world stands."""
+
+    world: World
+    tick_s: float
+    facts: tuple[tuple[str, ...], ...]
+    actions: tuple[GroundAction, ...]
+
+
+def world_of(problem: Problem) -> World:
+    """The still part of a problem."""
+    domain = problem.domain
+    touched = {effect.atom.predicate for action in domain.actions for effect in action.effects}
+    touched |= {timed.literal.fact[0] for timed in problem.timed}
+    static = frozenset(set(domain.predicates) - touched)
+    ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
+    objects = {
+        kind: tuple(t.name for t in ordered if any(domain.is_a(own, kind) for own in t.types)) for kind in domain.types
+    }
+    facts = frozenset(fact for fact in problem.initial if fact[0] in static)
+    return World(domain, objects, static, facts, dict(problem.values))
+
+
+def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
+    """Grounds step by step: yields None every few bindings, and the ground actions at last.
+
+    Raises:
+      TooManyBindings: More than `limit` bindings of parameters were tried.
+    """
+    facts = Facts()
+    actions: list[GroundAction] = []
+    tried = 0
+    for schema in sorted(world.domain.actions, key=lambda action: action.name):
+        for binding in _schema_bindings(schema, world):
+            tried += 1
+            if tried > limit:
+                raise TooManyBindings(f"grounding tried more than {limit} bindings, the last of '{schema.name}'")
+            if tried % CHECK_EVERY == 0:
+                yield None
+            if binding is not None:
+                action = _instance(len(actions), schema, binding, world, facts, tick_s)
+                actions += [action] if action else []
+    yield GroundActions(world, tick_s, tuple(facts), tuple(actions))
+
+
+# --- bindings ------------------------------------------------------------------------------------
+def _schema_bindings(schema: Action, world: World) -> Iterator[Binding | None]:
+    """Complete bindings that pass the static conditions; None for each partial one that was cut or extended."""
+    names = [parameter.name for parameter in schema.parameters]
+    tests: list[list[Formula]] = [[] for _ in range(len(names) + 1)]
+    for part in _static_parts(schema, world):
+        level = max((names.index(term) + 1 for term in _terms(part) if term in names), default=0)
+        tests[level].append(part)
+    choices = [world.choices(parameter) for parameter in schema.parameters]
+    yield from _extend({}, 0, names, choices, tests, world)
+
+
+def _extend(
+    binding: Binding,
+    level: int,
+    names: list[str],
+    choices: list[tuple[str, ...]],
+    tests: list[list[Formula]],
+    world: World,
+) -> Iterator[Binding | None]:
+    nothing = Facts()
+    if any(ground(test, binding, world, nothing) == FALSE for test in tests[level]):
+        yield None
+    elif level == len(names):
+        yield binding
+    else:
+        yield None
+        for name in choices[level]:
+            yield from _extend({**binding, names[level]: name}, level + 1, names, choices, tests, world)
+
+
+def _static_parts(schema: Action, world: World) -> Iterator[Formula]:
+    """The conjuncts of the conditions that static facts and equality decide alone."""
+    pending = [condition.formula for condition in schema.conditions]
+    while pending:
+        formula = pending.pop()
+        inner = formula.part if isinstance(formula, Not) else formula
+        if isinstance(formula, And):
+            pending += formula.parts
+        elif isinstance(inner, Equal) or (isinstance(inner, Atom) and inner.predicate in world.static):
+            yield formula
+
+
+def _terms(formula: Formula) -> tuple[str, ...]:
+    match formula:
+        case Not(part):
+            return _terms(part)
+        case Equal(left, right):
+            return (left, right)
+        case Atom(_, terms):
+            return terms
+        case _:
+            return ()
+
+
+# --- one ground action ---------------------------------------------------------------------------
+def _instance(
+    number: int, schema: Action, binding: Binding, world: World, facts: Facts, tick_s: float
+) -> GroundAction | None:
+    """The ground action, or None when it can never run or achieves nothing."""
+    bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
+    temporal = world.domain.durative
+    conditions = _conditions(schema.conditions, binding, world, facts, temporal)
+    if bounds is None or conditions is None:
+        return None
+    effects = _useful(conditions, _effects(schema, binding, world, facts, temporal))
+    if not effects:
+        return None
+    bits: dict[int, int] = {}
+    for effect in effects:
+        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
+    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
+    shortest, longest = bounds
+    return GroundAction(
+        number,
+        name,
+        conditions,
+        effects,
+        bits,
+        round(shortest / tick_s),
+        None if math.isinf(longest) else round(longest / tick_s),
+        shortest,
+        not any(effect.conditions for effect in effects),
+    )
+
+
+def _span(when: When, temporal: bool) -> Span:
+    return MOMENTS[when] if temporal else INSTANT
+
+
+def _conditions(
+    conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts, temporal: bool
+) -> tuple[tuple[GroundCondition, Span], ...] | None:
+    """The ground conditions by span, in order; None when one is false."""
+    grounded: dict[tuple[GroundCondition, Span], None] = {}
+    for condition in conditions:
+        result = ground(condition.formula, binding, world, facts)
+        if result == FALSE:
+            return None
+        for part in conjuncts(result):
+            grounded.setdefault((part, _span(condition.when, temporal)))
+    return tuple(grounded)
+
+
+def _effects(schema: Action, binding: Binding, world: World, facts: Facts, temporal: bool) -> list[GroundEffect]:
+    effects: dict[GroundEffect, None] = {}
+    for effect in schema.effects:
+        moment = _span(effect.when, temporal)[0]
+        for inner in bindings(effect.variables, binding, world):
+            conditions = _conditions(effect.condition, inner, world, facts, temporal)
+            if conditions is not None:
+                literal = ground(effect.atom, inner, world, facts, effect.positive)
+                assert isinstance(literal, int)  # an atom that an action touches is no static one
+                effects.setdefault(GroundEffect(literal, moment, conditions))
+    return list(effects)
+
+
+def _useful(
+    conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
+) -> tuple[GroundEffect, ...]:
+    """The no-op rule: without effects that the action itself demands already, or undoes at the same moment.
+
+    A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
+    action's own condition promises to hold up to that very moment changes nothing.
+    """
+    added = {(effect.literal, effect.moment) for effect in effects if effect.literal % 2 == 0 and not effect.conditions}
+    kept = []
+    for effect in effects:
+        demanded = any(part == effect.literal and span[1] == effect.moment for part, span in conditions)
+        undone = effect.literal % 2 == 1 and (effect.literal ^ 1, effect.moment) in added
+        if not demanded and not undone:
+            kept.append(effect)
+    return tuple(kept)

@@ -1,0 +1,184 @@
+"""The values that a PDDL domain is read into: types, formulas, actions.
+
+Owns no reading and no planning. Names are in lower case; a term that begins with "?" is a variable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from executive.library import Fact
+
+When = OneOf["start", "over", "end"]  # an action's moments: at start, over all, at end
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A ground atom or its negation: ("robot", "pos1") holds, or does not."""
+
+    fact: Fact
+    positive: bool = True
+
+    def __str__(self) -> str:
+        atom = f"({' '.join(self.fact)})"
+        return atom if self.positive else f"(not {atom})"
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """A variable or object with the types that it may have; more than one is PDDL's `either`."""
+
+    name: str
+    types: tuple[str, ...] = ("object",)
+
+
+# --- formulas ------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A predicate over terms."""
+
+    predicate: str
+    terms: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Equal:
+    """Two terms name the same object."""
+
+    left: str
+    right: str
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """The part does not hold."""
+
+    part: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """Every part holds; no parts: true."""
+
+    parts: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Some part holds; no parts: false."""
+
+    parts: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified:
+    """The part holds for every, or for some, choice of the variables."""
+
+    every: bool
+    variables: tuple[Typed, ...]
+    part: Formula
+
+
+Formula = Atom | Equal | Not | And | Or | Quantified
+
+
+# --- numbers -------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A constant of a duration."""
+
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A static numeric function over terms."""
+
+    name: str
+    terms: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """Arithmetic on two numbers; a sign is written as 0 - x."""
+
+    operator: OneOf["+", "-", "*", "/"]
+    left: Numeric
+    right: Numeric
+
+
+Numeric = Number | Function | Operation
+
+
+@dataclass(frozen=True, slots=True)
+class DurationBound:
+    """One constraint (operator ?duration value) of a durative action."""
+
+    operator: OneOf["=", "<=", ">="]
+    value: Numeric
+
+
+# --- actions -------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A formula that must hold at one moment of an action."""
+
+    formula: Formula
+    when: When = "start"
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One literal that an action makes true, for all choices of `variables` for which `condition` holds."""
+
+    atom: Atom
+    positive: bool
+    when: When = "end"
+    variables: tuple[Typed, ...] = ()
+    condition: tuple[Condition, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """An action schema; `duration` is None for an instantaneous one."""
+
+    name: str
+    parameters: tuple[Typed, ...]
+    conditions: tuple[Condition, ...]
+    effects: tuple[Effect, ...]
+    duration: tuple[DurationBound, ...] | None = None
+
+
+# --- domains -------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Domain:
+    """A planning domain.
+
+    `types` maps each type to its parents ("object" has none); `predicates` and `functions` to parameters.
+    """
+
+    name: str
+    types: Mapping[str, tuple[str, ...]]
+    constants: tuple[Typed, ...]
+    predicates: Mapping[str, tuple[Typed, ...]]
+    functions: Mapping[str, tuple[Typed, ...]]
+    actions: tuple[Action, ...]
+
+    @property
+    def durative(self) -> bool:
+        """Whether any action takes time."""
+        return any(action.duration is not None for action in self.actions)
+
+    def is_a(self, kind: str, ancestor: str) -> bool:
+        """Whether every object of type `kind` is one of type `ancestor`."""
+        pending, seen = [kind], set[str]()
+        while pending:
+            current = pending.pop()
+            if current == ancestor:
+                return True
+            if current not in seen:
+                seen.add(current)
+                pending += self.types.get(current, ())
+        return ancestor == "object"

@@ -1,0 +1,174 @@
+"""Refining an open condition: a new step, an old step, or the initial state achieves it.
+
+Owns the order of the children, which every count depends on, and the threats that a new link or step brings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from executive.planning.ground_action import GroundAction, GroundEffect, Span
+from executive.planning.ground_formula import Every, GroundCondition, Some
+from executive.planning.ground_task import GroundTask
+from executive.planning.orderings import INITIAL, Orderings
+from executive.planning.partial_plan import (
+    Link,
+    OpenCondition,
+    PartialPlan,
+    Threat,
+    first_node,
+    step_of,
+    without_condition,
+)
+
+Spanned = tuple[tuple[GroundCondition, Span], ...]
+
+
+def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:
+    """All plans that mend the flaw: by new steps in grounding order, then old ones, newest first, then the start."""
+    condition = flaw.condition
+    rest = plan._replace(open=without_condition(plan.open, flaw), open_count=plan.open_count - 1)
+    if isinstance(condition, Some):
+        return [_opened(rest, part, flaw) for part in condition.parts]
+    if isinstance(condition, Every):
+        return [_opened(rest, condition, flaw)]
+    new = (_by_new_step(task, rest, flaw, action, effect) for action, effect in task.achievers[condition])
+    children = [child for child in new if child is not None]
+    for node in _nodes(reusable(plan, flaw)):
+        children += _by_old_step(task, rest, flaw, node)
+    if condition in task.initial:
+        children.append(_linked(task, rest, flaw, INITIAL, plan.orderings))
+    return children
+
+
+def reusable(plan: PartialPlan, flaw: OpenCondition) -> int:
+    """The mask of the nodes that make the (literal) condition true and may come before its consumer."""
+    assert isinstance(flaw.condition, int)
+    return plan.effects.masks()[flaw.condition] & ~plan.orderings.late[flaw.first]
+
+
+def _nodes(mask: int) -> Iterator[int]:
+    """The nodes of a mask, newest first."""
+    while mask:
+        node = mask.bit_length() - 1
+        mask ^= 1 << node
+        yield node
+
+
+def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) -> PartialPlan:
+    """The plan with one part of a compound condition as its newest open conditions."""
+    parts = condition.parts if isinstance(condition, Every) else (condition,)
+    return _with_conditions(plan, tuple((part, (flaw.first, flaw.last)) for part in parts), 0)
+
+
+def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> PartialPlan:
+    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
+    cell = plan.open
+    for condition, (first, last) in reversed(conditions):
+        cell = OpenCondition(condition, node + first, node + last, cell)
+    return plan._replace(open=cell, open_count=plan.open_count + len(conditions))
+
+
+# --- the three ways ------------------------------------------------------------------------------
+def _by_new_step(
+    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
+) -> PartialPlan | None:
+    node = len(plan.orderings.late)
+    orderings = plan.orderings.with_step(action).ordered(node + effect.moment, flaw.first)
+    if orderings is None:
+        return None
+    conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
+    cell = plan.open
+    for condition, (first, last) in reversed(conditions):
+        cell = OpenCondition(condition, node + first, node + last, cell)
+    steps = (*plan.steps, action)
+    effects = plan.effects.with_step(action, node)
+    literal = flaw.condition
+    assert isinstance(literal, int)
+    link = Link(node + effect.moment, literal, flaw.first, flaw.last, plan.links)
+    threats, count = _threats_to(task, steps, orderings, plan, link, action.bits.get(literal ^ 1, 0) << node)
+    threats, count = _threats_by(action, node, orderings, plan.links, threats, count)
+    return PartialPlan(
+        steps,
+        orderings,
+        effects,
+        link,
+        cell,
+        threats,
+        plan.open_count + len(conditions),
+        count,
+        plan.cost + task.costs[action.number],
+    )
+
+
+def _by_old_step(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, node: int) -> list[PartialPlan]:
+    orderings = plan.orderings.ordered(node, flaw.first)
+    if orderings is None:
+        return []
+    step = step_of(task, node)
+    if step == 0 or plan.steps[step - 1].simple:
+        return [_linked(task, plan, flaw, node, orderings)]
+    start = first_node(task) + (step - 1) * task.moments
+    return [
+        _linked(task, _with_conditions(plan, effect.conditions, start), flaw, node, orderings)
+        for effect in plan.steps[step - 1].effects
+        if effect.literal == flaw.condition and effect.moment == node - start
+    ]
+
+
+def _linked(
+    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, producer: int, orderings: Orderings
+) -> PartialPlan:
+    literal = flaw.condition
+    assert isinstance(literal, int)
+    link = Link(producer, literal, flaw.first, flaw.last, plan.links)
+    threats, count = _threats_to(task, plan.steps, orderings, plan, link, 0)
+    return PartialPlan(plan.steps, orderings, plan.effects, link, plan.open, threats, plan.open_count, count, plan.cost)
+
+
+# --- threats -------------------------------------------------------------------------------------
+def _threats_to(
+    task: GroundTask, steps: tuple[GroundAction, ...], orderings: Orderings, plan: PartialPlan, link: Link, more: int
+) -> tuple[Threat | None, int]:
+    """The plan's threats and those to a new link: newest node first, so that the oldest ends at the head."""
+    threats, count = plan.threats, plan.threat_count
+    producer, literal, first, last, _ = link
+    late = orderings.late
+    mask = (plan.effects.masks()[literal ^ 1] | more) & ~late[last] & ~(1 << producer | 1 << first)
+    while mask:
+        node = mask.bit_length() - 1
+        mask ^= 1 << node
+        if not late[node] >> producer & 1:
+            step = step_of(task, node)
+            moment = (node - first_node(task)) % task.moments
+            for conditions in _deletions(steps[step - 1], literal ^ 1, moment) if step else ((),):
+                threats = Threat(link, node, conditions, threats)
+                count += 1
+    return threats, count
+
+
+def _threats_by(
+    action: GroundAction, node: int, orderings: Orderings, links: Link | None, threats: Threat | None, count: int
+) -> tuple[Threat | None, int]:
+    """The threats and those by a new step to older links, newest link first."""
+    late, bits = orderings.late, action.bits
+    link = links
+    while link is not None:
+        moments = bits.get(link.literal ^ 1, 0)
+        for moment in (1, 0):
+            if moments >> moment & 1:
+                at = node + moment
+                if not (late[link.last] >> at & 1 or late[at] >> link.producer & 1):
+                    for conditions in _deletions(action, link.literal ^ 1, moment):
+                        threats = Threat(link, at, conditions, threats)
+                        count += 1
+        link = link.rest
+    return threats, count
+
+
+def _deletions(action: GroundAction, literal: int, moment: int) -> tuple[Spanned, ...]:
+    """The conditions under which an action makes a literal true at a moment: one empty set when it always does."""
+    if action.simple:
+        return ((),)
+    found = tuple(e.conditions for e in action.effects if e.literal == literal and e.moment == moment)
+    return ((),) if () in found else found

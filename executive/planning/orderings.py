@@ -1,0 +1,68 @@
+"""Orderings of plan nodes, and their plain kind: the transitive closure of "before", one int per node.
+
+A node is a moment of a step: its only one, or its start and its end when actions take time. `late[n]` is the mask of
+the nodes that cannot come before node n: n itself and all that must come after it. Every test of the planner is one
+AND with such a mask; the temporal network keeps the same masks.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from executive.planning.ground_action import GroundAction
+
+INITIAL = 0  # node of the initial state: before all others
+GOAL = 1  # node of the goal: after all others
+FIRST = 2  # node of the first step, or of the first timed literal
+
+
+class Orderings(Protocol):
+    """Immutable constraints on the order of nodes."""
+
+    @property
+    def late(self) -> tuple[int, ...]:
+        """By node, the mask of the nodes that cannot come before it."""
+        ...
+
+    def with_step(self, action: GroundAction) -> Orderings:
+        """The orderings with the nodes of one more step, after the initial state and before the goal."""
+        ...
+
+    def ordered(self, a: int, b: int) -> Orderings | None:
+        """The orderings with node a before node b; None when that is impossible."""
+        ...
+
+    def earliest(self) -> tuple[float, ...]:
+        """The earliest time of each node: levels 1, 2, ... without durations, else ticks."""
+        ...
+
+
+class Closure(NamedTuple):
+    """Orderings of nodes that take no time."""
+
+    late: tuple[int, ...] = (0b11, 0b10)
+
+    def with_step(self, action: GroundAction) -> Closure:
+        """See `Orderings`; such a step has one node."""
+        late = self.late
+        bit = 1 << len(late)
+        return Closure((late[0] | bit, *late[1:], bit | 1 << GOAL))
+
+    def ordered(self, a: int, b: int) -> Closure | None:
+        """See `Orderings`."""
+        late = self.late
+        after = late[b]
+        bit = 1 << a
+        if after & bit:
+            return None
+        if late[a] >> b & 1:
+            return self
+        return Closure(tuple([mask | after if mask & bit else mask for mask in late]))
+
+    def earliest(self) -> tuple[float, ...]:
+        """The longest chain of steps that ends in each node."""
+        levels: dict[int, int] = {}
+        for node in sorted(range(len(self.late)), key=lambda n: -self.late[n].bit_count()):
+            before = [level for other, level in levels.items() if self.late[other] >> node & 1]
+            levels[node] = 1 + max(before, default=-1)  # the initial state comes first, at 0
+        return tuple(levels[node] for node in range(len(self.late)))

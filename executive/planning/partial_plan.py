@@ -1,0 +1,118 @@
+"""The partial plan: steps, orderings, causal links, and its flaws. Immutable; lists are shared with the parent plan.
+
+Terms as in Younes & Simmons, JAIR 20 (2003), section 2. Flaws stand in singly linked lists, the newest at the head.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from executive.planning.ground_action import GroundAction, Span
+from executive.planning.ground_formula import GroundCondition
+from executive.planning.ground_task import GroundTask
+from executive.planning.orderings import FIRST, GOAL, Closure, Orderings
+from executive.planning.step_effects import StepEffects
+from executive.planning.temporal_network import TemporalNetwork
+
+GOAL_STEP = -1  # what links and orderings call the goal; the initial state is step 0
+
+
+class Link(NamedTuple):
+    """A causal link: `producer` makes `literal` true, and nothing may undo it until `last`.
+
+    The condition belongs to the node `first`; `last` is another one only for a condition over all of an action.
+    """
+
+    producer: int
+    literal: int
+    first: int
+    last: int
+    rest: Link | None
+
+
+class OpenCondition(NamedTuple):
+    """A condition of node `first`, to hold until `last`, that no causal link supports yet."""
+
+    condition: GroundCondition
+    first: int
+    last: int
+    rest: OpenCondition | None
+
+
+class Threat(NamedTuple):
+    """Node `node` may undo `link` between its producer and its consumer, if `conditions` of that effect hold."""
+
+    link: Link
+    node: int
+    conditions: tuple[tuple[GroundCondition, Span], ...]
+    rest: Threat | None
+
+
+Flaw = OpenCondition | Threat
+
+
+class PartialPlan(NamedTuple):
+    """A set of plans: all that keep to these steps, orderings and links. Step i is `steps[i - 1]`."""
+
+    steps: tuple[GroundAction, ...]
+    orderings: Orderings
+    effects: StepEffects
+    links: Link | None
+    open: OpenCondition | None
+    threats: Threat | None
+    open_count: int
+    threat_count: int
+    cost: float
+
+
+def first_node(task: GroundTask) -> int:
+    """The node of the first step: after those of the initial state, the goal and the timed literals."""
+    return FIRST + len(task.timed)
+
+
+def step_of(task: GroundTask, node: int) -> int:
+    """The step that a node belongs to: 0 is the initial state with its timed literals."""
+    if node == GOAL:
+        return GOAL_STEP
+    first = first_node(task)
+    return 0 if node < first else 1 + (node - first) // task.moments
+
+
+def initial_plan(task: GroundTask) -> PartialPlan:
+    """The plan without steps whose open conditions are the goal, the first at the head."""
+    masks = [0] * len(task.names)
+    orderings: Orderings = Closure()
+    if task.temporal:
+        orderings = TemporalNetwork.start(tuple(tick for _, tick in task.timed))
+        for number, (literal, _) in enumerate(task.timed):
+            masks[literal] |= 1 << FIRST + number
+    cell: OpenCondition | None = None
+    for condition in reversed(task.goal):
+        cell = OpenCondition(condition, GOAL, GOAL, cell)
+    return PartialPlan((), orderings, StepEffects(masks), None, cell, None, len(task.goal), 0, 0)
+
+
+def without_condition(conditions: OpenCondition | None, gone: OpenCondition) -> OpenCondition | None:
+    """The list without one of its cells; what stands behind it is shared."""
+    before = []
+    while conditions is not gone:
+        assert conditions is not None
+        before.append(conditions)
+        conditions = conditions.rest
+    rest = gone.rest
+    for cell in reversed(before):
+        rest = cell._replace(rest=rest)
+    return rest
+
+
+def without_threat(threats: Threat | None, gone: Threat) -> Threat | None:
+    """The list without one of its cells; what stands behind it is shared."""
+    before = []
+    while threats is not gone:
+        assert threats is not None
+        before.append(threats)
+        threats = threats.rest
+    rest = gone.rest
+    for cell in reversed(before):
+        rest = cell._replace(rest=rest)
+    return rest

@@ -1,0 +1,83 @@
+"""What a search needs to know of the plans it searches; ground and lifted planning each are one such space."""
+
+from __future__ import annotations
+
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from executive.planning.extraction import extract
+from executive.planning.flaw_orders import parse_flaw_order
+from executive.planning.flaw_selection import FlawSelection
+from executive.planning.ground_formula import World
+from executive.planning.ground_task import GroundTask
+from executive.planning.open_conditions import refine_open
+from executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
+from executive.planning.plan import Plan
+from executive.planning.ranking import DEFAULT_RANKINGS, MAKESPAN_RANKINGS, Rank, Ranking
+from executive.planning.settings import Settings
+from executive.planning.threats import refine_threat
+
+P = TypeVar("P")
+
+
+class PlanSpace(Protocol[P]):
+    """Partial plans of type P and how they are refined."""
+
+    def initial(self) -> P:
+        """The plan that every search starts from."""
+        ...
+
+    def solved(self, plan: P) -> bool:
+        """Whether the plan has no flaws."""
+        ...
+
+    def refine(self, plan: P, order: int) -> list[P]:
+        """All ways to mend the flaw that the order-th flaw order chooses."""
+        ...
+
+    def rank(self, plan: P, number: int) -> Rank | None:
+        """The rank of the `number`-th plan made; None when no solution can come of it."""
+        ...
+
+    def extract(self, plan: P) -> Plan:
+        """The plan in words."""
+        ...
+
+
+def rankings_for(settings: Settings, metric: str) -> tuple[str, ...]:
+    """The rankings that the settings name, or those that go with the problem's metric."""
+    if settings.rankings:
+        return settings.rankings
+    return MAKESPAN_RANKINGS if metric == "makespan" else DEFAULT_RANKINGS
+
+
+class GroundSpace:
+    """The plans of a ground task."""
+
+    def __init__(self, task: GroundTask, world: World, settings: Settings, rng: np.random.Generator) -> None:
+        self._task = task
+        self._world = world
+        self._ranking = Ranking(rankings_for(settings, task.problem.metric), task, settings.weight)
+        self._orders = [FlawSelection(parse_flaw_order(order.text), task, rng) for order in settings.flaw_orders]
+        self._shuffle = rng if settings.random_open_conditions else None
+        self.rank = self._ranking.rank
+
+    def initial(self) -> PartialPlan:
+        """The goal as open conditions."""
+        return initial_plan(self._task)
+
+    def solved(self, plan: PartialPlan) -> bool:
+        """No open condition, no threat."""
+        return plan.open is None and plan.threats is None
+
+    def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
+        """Chooses a flaw and mends it in every way."""
+        flaw = self._orders[order].choose(plan)
+        if isinstance(flaw, OpenCondition):
+            return refine_open(self._task, plan, flaw)
+        return refine_threat(self._task, plan, flaw)
+
+    def extract(self, plan: PartialPlan) -> Plan:
+        """See `extraction`."""
+        return extract(plan, self._task, self._world)

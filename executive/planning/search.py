@@ -1,0 +1,84 @@
+"""One planning problem from grounding to result: resumable, one budget check per plan worked on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from executive.budget import Budget
+from executive.planning.best_first import BestFirst
+from executive.planning.deepening import Deepening
+from executive.planning.ground_task import make_task
+from executive.planning.grounding import GroundActions, TooManyBindings, ground_actions, world_of
+from executive.planning.language import Domain
+from executive.planning.partial_plan import PartialPlan
+from executive.planning.plan import Result
+from executive.planning.plan_space import GroundSpace, PlanSpace
+from executive.planning.problem import Problem
+from executive.planning.settings import DEFAULT, Settings
+
+
+class GroundCache:
+    """Keeps the last grounding, which serves again while domain, objects and static facts stand."""
+
+    def __init__(self) -> None:
+        self.last: GroundActions | None = None
+
+
+class Search:
+    """A search for a plan, advanced by as much as each tick can spare.
+
+    A wrong ranking or flaw order raises `UsageError` from the first `advance`.
+    """
+
+    def __init__(
+        self, domain: Domain, problem: Problem, settings: Settings = DEFAULT, ground: GroundCache | None = None
+    ) -> None:
+        """Prepares; all work is done in `advance`.
+
+        Args:
+          domain: The problem's domain.
+          problem: What to solve.
+          settings: Rankings, flaw orders, limits.
+          ground: Hand in the same one when replanning: grounding is skipped while the world stands.
+        """
+        assert problem.domain == domain, "the problem is of another domain"
+        self._problem = problem
+        self._settings = settings
+        self._cache = ground if ground is not None else GroundCache()
+        self._work = self._run()
+        self._result: Result | None = None
+
+    def advance(self, budget: Budget) -> Result | None:
+        """Goes on until there is a result or the budget is spent (None: call again later)."""
+        while self._result is None and not budget.spent():
+            self._result = next(self._work)
+        return self._result
+
+    def _run(self) -> Iterator[Result | None]:
+        settings = self._settings
+        try:
+            yield from self._ground()
+        except TooManyBindings as reason:
+            yield Result("limit", None, str(reason), 0, 0)
+            return
+        grounded = self._cache.last
+        assert grounded is not None
+        task = make_task(self._problem, grounded, settings.action_cost)
+        rng = np.random.default_rng(settings.seed)
+        space: PlanSpace[PartialPlan] = GroundSpace(task, grounded.world, settings, rng)
+        algorithm = BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
+        yield from algorithm.run()
+
+    def _ground(self) -> Iterator[None]:
+        """Grounds the problem's world unless the cache has it."""
+        world, tick_s = world_of(self._problem), self._settings.tolerance_s
+        last = self._cache.last
+        if last is not None and last.world == world and last.tick_s == tick_s:
+            return
+        for grounded in ground_actions(world, tick_s, self._settings.ground_limit):
+            if grounded is None:
+                yield None
+            else:
+                self._cache.last = grounded

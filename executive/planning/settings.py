@@ -1,0 +1,50 @@
+"""What a user may choose about the search, in VHPOP's words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from schemas.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class FlawOrder:
+    """A flaw selection order by name or notation, and how many plans it may generate (None: no limit of its own)."""
+
+    text: str
+    limit: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """All options of a search; the defaults are those of `tailor plan`.
+
+    An empty `rankings` is ADDR/ADDR_WORK/BUC/LIFO, or ADDR/MAKESPAN/LIFO when the problem's metric is the makespan.
+    Several flaw orders take turns (round robin). `weight` is of the heuristic against the cost of the steps.
+    `ground_limit` bounds the bindings that grounding tries; `tolerance_s` is one tick of a durative plan.
+    """
+
+    rankings: tuple[str, ...] = ()
+    flaw_orders: tuple[FlawOrder, ...] = (FlawOrder("MW-Loc"), FlawOrder("LCFR-Loc-Conf"))
+    search: OneOf["A", "IDA"] = "A"
+    ground: bool = True
+    weight: float = 1.0
+    action_cost: OneOf["unit", "duration", "relative"] = "unit"
+    node_limit: int = 100_000
+    ground_limit: int = 200_000
+    tolerance_s: float = 0.01
+    seed: int = 0
+    random_open_conditions: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.flaw_orders:
+            raise UsageError("planner settings: expected at least one flaw order")
+        if not self.weight >= 0:
+            raise UsageError(f"planner settings: expected a weight of at least 0, found {self.weight}")
+        if not 0 < self.tolerance_s <= 1e3:
+            raise UsageError(f"planner settings: expected a tolerance in (0, 1000] s, found {self.tolerance_s}")
+
+
+DEFAULT = Settings()
+MATCHING = Settings(("ADDR", "ADDR_WORK", "BUC", "LIFO"), (FlawOrder("MW-Loc"),))  # the reference's `g-mwloc`

@@ -1,0 +1,84 @@
+"""Orderings of nodes that take time: a simple temporal network with all-pairs bounds in ticks.
+
+`rows[b][a]` is the greatest t_b - t_a that the constraints allow. Kept minimal by an incremental shortest-path update
+(Dechter, Meiri & Pearl 1991); an order between two nodes costs at least one tick, so that no two needed events meet.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from executive.planning.ground_action import GroundAction
+from executive.planning.orderings import GOAL, INITIAL
+
+UNBOUNDED = 10**12  # ticks; sums of two stay far above any real bound
+Row = tuple[int, ...]
+
+
+class TemporalNetwork(NamedTuple):
+    """Bounds between all nodes; the goal has no time of its own and stays unbounded."""
+
+    rows: tuple[Row, ...]
+    late: tuple[int, ...]
+
+    @classmethod
+    def start(cls, timed: tuple[int, ...]) -> TemporalNetwork:
+        """Initial state at time 0, the goal, and nodes at fixed ticks."""
+        times = [0, None, *timed]
+        rows = tuple(
+            tuple(0 if a == b else UNBOUNDED if s is None or t is None else t - s for a, s in enumerate(times))
+            for b, t in enumerate(times)
+        )
+        return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
+
+    def with_step(self, action: GroundAction) -> TemporalNetwork:
+        """Two more nodes, start and end, as far apart as the action's duration allows."""
+        start = len(self.rows)
+        longest = UNBOUNDED if action.longest is None else action.longest
+        rows = [(*row, UNBOUNDED, UNBOUNDED) for row in self.rows]
+        rows[INITIAL] = (*self.rows[INITIAL], -1, -1 - action.shortest)
+        unbounded = (UNBOUNDED,) * start
+        rows += [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
+        late = list(self.late)
+        late[INITIAL] |= 3 << start
+        late += [_late(rows[start], start), _late(rows[start + 1], start + 1)]
+        return TemporalNetwork(tuple(rows), tuple(late))
+
+    def ordered(self, a: int, b: int) -> TemporalNetwork | None:
+        """See `Orderings`: t_a <= t_b - 1 tick."""
+        if self.late[b] >> a & 1:
+            return None
+        if b == GOAL or self.rows[a][b] <= -1:
+            return self
+        via = self.rows[b]
+        rows, late = list(self.rows), list(self.late)
+        for node, row in enumerate(self.rows):
+            reach = row[a] - 1
+            if reach < row[b]:
+                rows[node] = tuple([min(old, reach + more) for old, more in zip(row, via, strict=True)])
+                late[node] = _late(rows[node], node)
+        return TemporalNetwork(tuple(rows), tuple(late))
+
+    def earliest(self) -> tuple[float, ...]:
+        """Earliest times in ticks; the goal's is the makespan."""
+        times = [-bound for bound in self.rows[INITIAL]]
+        times[GOAL] = max([0, *times[GOAL + 1 :]])
+        return tuple(times)
+
+    def bounds(self) -> tuple[tuple[int | None, ...], ...]:
+        """Rows and columns of VHPOP's print, without the goal: [i][j] is the greatest t_j - t_i, None if unbounded."""
+        nodes = [node for node in range(len(self.rows)) if node != GOAL]
+        return tuple(tuple(_bound(self.rows[j][i]) for j in nodes) for i in nodes)
+
+
+def _bound(value: int) -> int | None:
+    return value if value < UNBOUNDED // 2 else None
+
+
+def _late(row: Row, node: int) -> int:
+    """The nodes that cannot be a tick or more before this one; the goal is after all."""
+    mask = 1 << GOAL
+    for other, bound in enumerate(row):
+        if bound < 1:
+            mask |= 1 << other
+    return mask if node != GOAL else 1 << GOAL

@@ -1,0 +1,57 @@
+"""Refining a threat: separation, promotion, demotion; and how many of these there are."""
+
+from __future__ import annotations
+
+from executive.planning.ground_action import Span
+from executive.planning.ground_formula import GroundCondition, conjunction, negation
+from executive.planning.ground_task import GroundTask
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, first_node, without_threat
+
+
+def is_threat(plan: PartialPlan, threat: Threat) -> bool:
+    """Whether the node may still come between the link's producer and its consumer."""
+    late, link, node = plan.orderings.late, threat.link, threat.node
+    return not (late[link.last] >> node & 1 or late[node] >> link.producer & 1)
+
+
+def choices(plan: PartialPlan, threat: Threat) -> int:
+    """The number of refinements of a threat."""
+    if not is_threat(plan, threat):
+        return 1
+    late, link, node = plan.orderings.late, threat.link, threat.node
+    promotion = not late[node] >> link.last & 1
+    demotion = not late[link.producer] >> node & 1
+    return promotion + demotion + len(_by_span(threat))
+
+
+def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
+    """All plans that mend the threat; only one, that forgets it, when it is none any more."""
+    rest = plan._replace(threats=without_threat(plan.threats, threat), threat_count=plan.threat_count - 1)
+    if not is_threat(plan, threat):
+        return [rest]
+    children = separations(task, rest, threat)
+    promoted = plan.orderings.ordered(threat.link.last, threat.node)
+    if promoted is not None:
+        children.append(rest._replace(orderings=promoted))
+    demoted = plan.orderings.ordered(threat.node, threat.link.producer)
+    if demoted is not None:
+        children.append(rest._replace(orderings=demoted))
+    return children
+
+
+def separations(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
+    """Plans in which the condition of the threatening (conditional) effect is made false."""
+    first = first_node(task)
+    start = first + (threat.node - first) // task.moments * task.moments
+    children = []
+    for (begin, end), condition in _by_span(threat).items():
+        cell = OpenCondition(negation(condition), start + begin, start + end, plan.open)
+        children.append(plan._replace(open=cell, open_count=plan.open_count + 1))
+    return children
+
+
+def _by_span(threat: Threat) -> dict[Span, GroundCondition]:
+    spans: dict[Span, list[GroundCondition]] = {}
+    for condition, span in threat.conditions:
+        spans.setdefault(span, []).append(condition)
+    return {span: conjunction(conditions) for span, conditions in spans.items()}
