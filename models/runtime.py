@@ -1,1 +1,199 @@
-"""Loads, checks and runs ONNX action models. The only place that imports onnxruntime."""
+"""Loads, checks and runs ONNX action models. The only place that imports onnxruntime.
+
+A model is used only if its bytes, its card and what it computes agree: the runtime itself notices no flipped bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnxruntime
+from numpy.typing import NDArray
+
+from models.card import (
+    KINDS,
+    MAX_MODEL_BYTES,
+    Card,
+    card_path,
+    identity,
+    read_bytes,
+    read_card,
+    sha256_of,
+)
+from schemas.errors import UsageError
+
+Array = NDArray[np.float64]
+
+ZOO = Path(__file__).parent / "zoo"
+GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
+COVER_TOLERANCE = 1e-6  # of a range's bounds, for decimals that were rounded
+
+
+@dataclass(frozen=True, slots=True)
+class OnnxDuration:
+    """Predicts how long an action takes."""
+
+    session: Any
+    card: Card
+    shortest_s: float
+    longest_s: float
+
+    def predict(self, arguments: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation in seconds, shapes (n,), of arguments (n, k); NaN where they are invalid."""
+        mean, std = self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
+        valid = (mean >= self.shortest_s) & (mean <= self.longest_s) & (std >= 0)
+        if not valid.all():
+            mean, std = np.where(valid, mean, np.nan), np.where(valid, std, np.nan)
+        return mean.astype(np.float64), std.astype(np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class OnnxSuccess:
+    """Predicts whether an action succeeds."""
+
+    session: Any
+    card: Card
+    threshold: float  # the learner calls it a success above this probability of success
+
+    def probability(self, arguments: Array) -> Array:
+        """Probability of success, shape (n,), of arguments (n, k); NaN where it is invalid."""
+        rows = np.ascontiguousarray(arguments, np.float64)
+        (success,) = self.session.run(None, {"arguments": rows})
+        valid = (success >= 0) & (success <= 1) & np.isfinite(rows.sum(axis=1))  # a tree sends NaN somewhere, too
+        return np.where(valid, success, np.nan).astype(np.float64)
+
+
+OnnxModel = OnnxDuration | OnnxSuccess
+
+
+def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
+    """Load one model by path, or by name in the zoo: "agilo/goToPose/duration".
+
+    Raises:
+      UsageError: The file or its card is missing or damaged, or they do not agree; the message names both sides.
+    """
+    path = model if isinstance(model, Path) else _in_zoo(model, zoo or ZOO)
+    card = read_card(card_path(path))
+    content = read_bytes(path, MAX_MODEL_BYTES)
+    if sha256_of(content) != card["sha256"]:
+        raise UsageError(f"{path}: sha256 is {sha256_of(content)[:12]}…, expected {card['sha256'][:12]}… by its card")
+    session = _session(content, path)
+    _check_identity(session, card, path)
+    loaded = _wrapped(session, card, path)
+    _check_golden(loaded, card, path)
+    return loaded
+
+
+def load_robot(
+    robot: str, zoo: Path | None = None, declared: Mapping[str, Mapping[str, tuple[float, float]]] | None = None
+) -> tuple[dict[str, OnnxDuration], dict[str, OnnxSuccess]]:
+    """Load all models of a robot: durations and successes by "action/kind".
+
+    Args:
+      robot: Folder in the zoo.
+      zoo: Another zoo than the one that ships.
+      declared: Ranges of arguments that the robot's actions will ask for, by action and argument; a model that has
+        seen less is refused.
+
+    Raises:
+      UsageError: No such robot in the zoo, or a model cannot be trusted.
+    """
+    folder = (zoo or ZOO) / robot
+    if not folder.is_dir() or folder.parent != (zoo or ZOO):
+        known = ", ".join(sorted(p.name for p in (zoo or ZOO).glob("*") if p.is_dir())) or "none"
+        raise UsageError(f"no action models for robot '{robot}' in {zoo or ZOO} (robots there: {known})")
+    durations: dict[str, OnnxDuration] = {}
+    successes: dict[str, OnnxSuccess] = {}
+    for name in _names(folder):
+        model = load_model(folder / f"{name}.onnx")
+        _check_place(model.card, f"{robot}/{name}", folder)
+        _check_ranges(model.card, (declared or {}).get(name.split("/", maxsplit=1)[0], {}), folder / name)
+        if isinstance(model, OnnxDuration):
+            durations[name] = model
+        else:
+            successes[name] = model
+    return durations, successes
+
+
+def _names(folder: Path) -> list[str]:
+    """Every "action/kind" of which there is a model or a card: one without the other is an error later."""
+    files = {f"{p.parent.name}/{p.name.split('.')[0]}" for kind in KINDS for p in folder.glob(f"*/{kind}.*")}
+    return sorted(files)
+
+
+def _in_zoo(name: str, zoo: Path) -> Path:
+    parts = name.split("/")
+    if len(parts) != 3 or parts[2] not in KINDS or any(part in ("", ".", "..") for part in parts):
+        raise UsageError(f"'{name}' names no model (expected ROBOT/ACTION/KIND, KIND one of: {', '.join(KINDS)})")
+    return zoo.joinpath(*parts[:2], f"{parts[2]}.onnx")
+
+
+def _session(content: bytes, path: Path) -> Any:
+    """An inference session that never starts a thread of its own."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    options.log_severity_level = 3  # errors come as exceptions, too
+    try:
+        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # the runtime's own family has no common base
+        raise UsageError(f"{path}: not a model that runs here ({str(error).splitlines()[0]})") from None
+
+
+def _check_identity(session: Any, card: Card, path: Path) -> None:
+    inside = session.get_modelmeta().custom_metadata_map
+    for key, value in identity(card).items():
+        if inside.get(key) != value:
+            raise UsageError(f"{path}: the model's {key} is '{inside.get(key)}', expected '{value}' by its card")
+    shape, expected = session.get_inputs()[0].shape, len(card["arguments"])
+    if len(shape) != 2 or shape[1] != expected:
+        raise UsageError(f"{path}: the model takes arguments {shape}, expected (n, {expected}) by its card")
+
+
+def _check_place(card: Card, place: str, folder: Path) -> None:
+    name = f"{card['robot']}/{card['action']}/{card['kind']}"
+    if name != place:
+        raise UsageError(f"{folder}: holds a model of {name}, expected {place} by its place in the zoo")
+
+
+def _check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: Path) -> None:
+    seen = {argument["name"]: argument for argument in card["arguments"]}
+    for name, (lower, upper) in declared.items():
+        if name not in seen:
+            raise UsageError(f"{path}: the model knows no argument '{name}' (its arguments: {', '.join(seen)})")
+        low, high = seen[name]["lower"], seen[name]["upper"]
+        if lower < low - COVER_TOLERANCE or upper > high + COVER_TOLERANCE:
+            raise UsageError(
+                f"{path}: {name} was learned in [{low:g}, {high:g}] {seen[name]['unit']}, "
+                f"expected to cover [{lower:g}, {upper:g}] as the action declares"
+            )
+
+
+def _wrapped(session: Any, card: Card, path: Path) -> OnnxModel:
+    if card["kind"] == "duration":
+        shortest, longest = card["output_range"]
+        return OnnxDuration(session, card, float(shortest), float(longest))
+    if card["kind"] == "success":
+        return OnnxSuccess(session, card, float(card["threshold"]))
+    raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
+
+
+def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
+    """The model must still compute what it computed when its card was written; warms the session, too."""
+    golden = card["golden"]
+    arguments = np.array(golden["arguments"], np.float64)
+    found = model.predict(arguments) if isinstance(model, OnnxDuration) else (model.probability(arguments),)
+    for name, values in zip(card["outputs"], found, strict=True):
+        expected = np.array(golden[name], np.float64)
+        off = np.abs(values - expected)
+        if not (off <= GOLDEN_TOLERANCE).all():
+            worst = int(np.argmax(np.where(np.isnan(off), np.inf, off)))
+            raise UsageError(
+                f"{path}: golden example {worst} gives {name} = {values[worst]:.6g}, "
+                f"expected {expected[worst]:.6g} by its card"
+            )

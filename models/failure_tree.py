@@ -1,0 +1,132 @@
+"""The failure tree: a decision tree that predicts whether an action succeeds, pessimistic on purpose (paper 5.4)."""
+
+from __future__ import annotations
+
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.tree import DecisionTreeClassifier
+from sklearn.utils import Tags
+from sklearn.utils.multiclass import check_classification_targets
+from sklearn.utils.validation import check_is_fitted, validate_data
+
+from models.split_tree import LEAF, SplitTree
+
+Array = NDArray[np.float64]
+
+
+class FailureTree(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+    """A decision tree whose leaves hold calibrated probabilities of success, classes sorted: failure before success.
+
+    Grown and pruned with failures weighted by the cost ratio; what a leaf then says is the plain share of successes
+    among the *held-out* episodes that fall into it, drawn towards the share in its training rows.
+
+    Args:
+      cost_ratio: Cost of a missed failure over that of a false alarm; WEKA's cost matrix in the paper.
+      min_rows: Rows in a leaf at least.
+      held_out: Share of episodes that choose the pruning and calibrate the leaves.
+      random_state: Seed or generator that draws the held-out episodes.
+    """
+
+    def __init__(
+        self,
+        cost_ratio: float = 5.0,
+        min_rows: int = 10,
+        held_out: float = 0.25,
+        random_state: int | np.random.Generator | None = 0,
+    ) -> None:
+        self.cost_ratio = cost_ratio
+        self.min_rows = min_rows
+        self.held_out = held_out
+        self.random_state = random_state
+
+    def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
+        """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
+        X, y = validate_data(self, X, y, dtype=np.float64)
+        check_classification_targets(y)
+        self.classes_, success = np.unique(y, return_inverse=True)
+        if len(self.classes_) > 2:
+            raise ValueError("Only binary classification is supported. The type of the target is multiclass.")
+        labels = np.arange(len(y)) if groups is None else np.asarray(groups)
+        held = self._held_out(np.unique(labels, return_inverse=True)[1])
+        features = X.astype(np.float32)
+        grown = self._pruned(features, success, held)
+        self.splits_ = _splits(grown)
+        self.success_ = self._calibrated(features, success, held)
+        return self
+
+    def __sklearn_tags__(self) -> Tags:
+        tags = super().__sklearn_tags__()
+        tags.classifier_tags.multi_class = False
+        return tags
+
+    def _held_out(self, episodes: NDArray[np.int64]) -> NDArray[np.bool_]:
+        count = int(episodes.max()) + 1
+        chosen = np.random.default_rng(self.random_state or 0).permutation(count)[: int(self.held_out * count)]
+        return np.isin(episodes, chosen)
+
+    def _pruned(
+        self, features: NDArray[np.float32], success: NDArray[np.int64], held: NDArray[np.bool_]
+    ) -> DecisionTreeClassifier:
+        """The tree of the pruning strength with the least cost on held-out rows, grown on the others."""
+        weights = np.where(success == 0, self.cost_ratio, 1.0)
+        kept = ~held
+        settings = {"min_samples_leaf": min(self.min_rows, max(1, int(kept.sum()) // 20)), "random_state": 0}
+        path = DecisionTreeClassifier(**settings).cost_complexity_pruning_path(
+            features[kept], success[kept], weights[kept]
+        )
+        alphas = np.unique(np.quantile(path.ccp_alphas.clip(0), np.linspace(0, 1, 25), method="lower"))
+        best, best_cost = None, np.inf
+        for alpha in alphas:
+            tree = DecisionTreeClassifier(**settings, ccp_alpha=alpha).fit(features[kept], success[kept], weights[kept])
+            cost = float(weights[held][tree.predict(features[held]) != success[held]].sum()) if held.any() else alpha
+            if cost <= best_cost:
+                best, best_cost = tree, cost
+        return best
+
+    def _calibrated(
+        self, features: NDArray[np.float32], success: NDArray[np.int64], held: NDArray[np.bool_]
+    ) -> NDArray[np.float32]:
+        leaf, size = self.splits_.leaf_of(features), self.splits_.leaves
+        kept = np.bincount(leaf[~held], success[~held], size), np.bincount(leaf[~held], minlength=size)
+        fresh = np.bincount(leaf[held], success[held], size), np.bincount(leaf[held], minlength=size)
+        prior = (kept[0] + 0.5) / (kept[1] + 1)  # half a success and half a failure: no leaf is certain
+        return ((fresh[0] + PRIOR_ROWS * prior) / (fresh[1] + PRIOR_ROWS)).astype(np.float32)
+
+    def predict_proba(self, X: Any) -> NDArray[np.float32]:
+        """Probabilities of failure and success, shape (n, 2); one column if training saw one class."""
+        check_is_fitted(self)
+        features = np.asarray(validate_data(self, X, dtype=np.float64, reset=False), np.float32)
+        success = self.success_[self.splits_.leaf_of(features)]
+        both = np.stack([1 - success, success], axis=1)
+        return both if len(self.classes_) == 2 else np.ones((len(both), 1), np.float32)
+
+    @property
+    def threshold_(self) -> float:
+        """Predict success only above this probability of it: where both mistakes cost the same."""
+        return self.cost_ratio / (1 + self.cost_ratio)
+
+    def predict(self, X: Any) -> NDArray[Any]:
+        """The class with the lower expected cost, shape (n,)."""
+        success = self.predict_proba(X)[:, -1] >= self.threshold_
+        return self.classes_[success.astype(np.int64) * (len(self.classes_) - 1)]
+
+
+PRIOR_ROWS = 10.0  # how many held-out rows the training share counts for
+
+
+def _splits(grown: DecisionTreeClassifier) -> SplitTree:
+    """scikit-learn's tree in our form; its double thresholds rounded down are exact on single precision rows."""
+    tree = grown.tree_
+    inner = tree.children_left != LEAF
+    threshold = tree.threshold.astype(np.float32)
+    threshold = np.where(threshold > tree.threshold, np.nextafter(threshold, np.float32(-np.inf)), threshold)
+    return SplitTree(
+        np.where(inner, tree.feature, LEAF),
+        np.where(inner, threshold, np.float32(0)).astype(np.float32),
+        np.where(inner, tree.children_left, 0),
+        np.where(inner, tree.children_right, 0),
+        np.where(inner, -1, np.cumsum(~inner) - 1),
+    )

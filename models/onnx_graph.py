@@ -1,0 +1,87 @@
+"""A small writer of ONNX graphs: nodes and constants get names by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+import onnx
+from numpy.typing import NDArray
+from onnx import TensorProto, helper, numpy_helper
+
+OPSET, ML_OPSET, IR_VERSION = 18, 3, 9  # old enough for every runtime of the last years
+ML = "ai.onnx.ml"
+
+
+class Sink(Protocol):
+    """Where nodes go: our own graph, or skl2onnx's container."""
+
+    def add(self, op: str, *inputs: str, outputs: int = 1, domain: str = "", **attributes: Any) -> Any:
+        """Add a node; returns the name of its output, or a list of names when it has several."""
+        ...
+
+    def constant(self, value: NDArray[Any]) -> str:
+        """Name of a constant tensor."""
+        ...
+
+
+class Graph:
+    """An ONNX graph under construction."""
+
+    def __init__(self) -> None:
+        self._nodes: list[onnx.NodeProto] = []
+        self._constants: dict[tuple[str, tuple[int, ...], bytes], str] = {}
+        self._tensors: list[TensorProto] = []
+
+    def add(self, op: str, *inputs: str, outputs: int = 1, domain: str = "", **attributes: Any) -> Any:
+        """Add a node; returns the name of its output, or a list of names when it has several."""
+        names = [f"{op.lower()}_{len(self._nodes)}_{k}" for k in range(outputs)]
+        self._nodes.append(helper.make_node(op, list(inputs), names, domain=domain, **attributes))
+        return names[0] if outputs == 1 else names
+
+    def constant(self, value: NDArray[Any]) -> str:
+        """Name of a constant tensor; equal constants are stored once."""
+        key = (value.dtype.str, value.shape, value.tobytes())
+        if key not in self._constants:
+            self._constants[key] = f"constant_{len(self._constants)}"
+            self._tensors.append(numpy_helper.from_array(value, self._constants[key]))
+        return self._constants[key]
+
+    def model(self, width: int, outputs: Mapping[str, str], notes: Mapping[str, str]) -> onnx.ModelProto:
+        """The finished model: double `arguments` (n, width) to float vectors (n,).
+
+        Args:
+          width: Number of arguments.
+          outputs: Public name of each output to its name in the graph.
+          notes: Metadata to keep in the file.
+        """
+        nodes = [*self._nodes, *(helper.make_node("Identity", [inner], [name]) for name, inner in outputs.items())]
+        graph = helper.make_graph(
+            _without_identities(nodes, outputs),
+            "action model",
+            [helper.make_tensor_value_info("arguments", TensorProto.DOUBLE, ["n", width])],
+            [helper.make_tensor_value_info(name, TensorProto.FLOAT, ["n"]) for name in outputs],
+            self._tensors,
+        )
+        opsets = [helper.make_opsetid("", OPSET), helper.make_opsetid(ML, ML_OPSET)]
+        model = helper.make_model(graph, opset_imports=opsets, ir_version=IR_VERSION, producer_name="tailor")
+        helper.set_model_props(model, dict(notes))
+        onnx.checker.check_model(model)
+        return model
+
+
+def _without_identities(nodes: Sequence[onnx.NodeProto], outputs: Mapping[str, str]) -> list[onnx.NodeProto]:
+    """Rename the graph's inner results to the public names instead of copying them."""
+    public = {inner: name for name, inner in outputs.items()}
+    kept = [node for node in nodes if not (node.op_type == "Identity" and node.output[0] in outputs)]
+    for node in kept:
+        for names in (node.input, node.output):
+            for k, name in enumerate(names):
+                names[k] = public.get(name, name)
+    return kept
+
+
+def single(value: float) -> NDArray[np.float32]:
+    """A single precision scalar."""
+    return np.asarray(value, np.float32)
