@@ -73,11 +73,10 @@ def _started(context: Context, state: State) -> State:
     return replace(state, task=replace(state.task, running=running_from(decision, state.now_ns)), coasted=0)
 
 
-def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> Fact | None:
+def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> planning.Literal | None:
     """A precondition that the plan took from the initial state and that does not hold any more."""
-    for link in plan.links:
-        initial = link.consumer == step and link.producer == 0 and planning.is_positive(link.literal)
-        if initial and link.literal not in facts:
+    for link in plan.links_to(step):
+        if link.producer == 0 and (link.literal.fact in facts) is not link.literal.positive:
             return link.literal
     return None
 
