@@ -15,6 +15,8 @@ from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 from executive.library import Array, Control
 
+TICK_S = 0.1  # the controller's period
+
 
 class BallBelief(PlanarBelief, Protocol):
     """A planar belief with a ball in the robot's frame."""
@@ -25,9 +27,10 @@ class BallBelief(PlanarBelief, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Pushing:
-    """Memory while the ball is in the rail."""
+    """Memory while the ball is in the rail: where on the path, and the last commanded speed, m/s."""
 
     progress: Progress
+    v: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +53,14 @@ class DribbleBall:
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself
-    bend_braking_mps2: float = 0.12  # in a bend most of that force is needed to turn the ball
+    bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
+    bending_radps: float = 0.15  # turning faster than this counts as a bend
     lookahead_m: float = 0.28
     run_out_m: float = 0.15  # straight end of every path
-    slip_free_m: float = 0.025  # so far the ball may be from the rail's bottom without a reaction
-    slip_gain: float = 12.0  # how fast turning is given up with slip, 1/m
+    slip_aside_m: float = 0.015  # so far the ball may be aside, and ahead, of the rail's bottom without a reaction;
+    slip_ahead_m: float = 0.05  # the camera sees how far aside it is twice as well
+    slip_gain: float = 15.0  # how fast turning is given up with slip, 1/m
+    catch_up_mps: float = 0.1  # faster than the path's limit, at most
     chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
     lost_m: float = 0.17  # from the bottom of the rail: gone
     caught_m: float = 0.08
@@ -75,8 +81,9 @@ class DribbleBall:
             return self._retrieve(memory.stage, belief, ball)
         if slip > self.lost_m:
             return self._retrieve("chase", belief, ball)
-        progress = memory.progress if isinstance(memory, Pushing) else self._plan(belief.pose, goal)
-        return self._push(progress, belief, ball, slip, goal)
+        if not isinstance(memory, Pushing):
+            memory = Pushing(self._plan(belief.pose, goal), max(0.0, belief.v))
+        return self._push(memory, belief, ball, goal)
 
     def _plan(self, pose: Pose, goal: tuple[float, ...]) -> Progress:
         """A new path; its end lies before the goal and is run out straight."""
@@ -84,32 +91,32 @@ class DribbleBall:
         end = (x - self.run_out_m * math.cos(phi), y - self.run_out_m * math.sin(phi), phi)
         return Progress(shortest((pose.x, pose.y, pose.phi), end, self.radius_m).extended(self.run_out_m), 0.0)
 
-    def _push(
-        self, progress: Progress, belief: BallBelief, ball: BallTrack, slip: float, goal: tuple[float, ...]
-    ) -> Control:
+    def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
-        progress, aside = project(progress, pose, 0.3)
+        progress, aside = project(memory.progress, pose, 0.3)
         if self._arrived(progress, belief, goal):
-            return Control(Pushing(progress), (goal[3], 0.0), "done")
+            return Control(memory, (goal[3], 0.0), "done")
         if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
             progress = self._plan(pose, goal)
+        slip = max(abs(ball.left) - self.slip_aside_m, ball.ahead - self.in_rail_m - self.slip_ahead_m)
+        slipping = max(0.0, min(1.0, self.slip_gain * slip))
         limit = speed_limit(progress, goal[3], self._pace)
         omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.1)
-        slipping = min(1.0, self.slip_gain * max(0.0, slip - self.slip_free_m))
         omega = (1.0 - slipping) * omega + slipping * self.chase_radps * math.atan2(ball.left, ball.ahead)
-        v = self._ramp(belief.v, limit)
-        if slipping > 0.0:
-            v = max(v, min(self.v_max_mps, belief.v + 0.1 * slipping))
+        v = self._ramp(memory.v, limit, slipping, abs(belief.omega) > self.bending_radps)
         bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
-        return Control(Pushing(progress), (v, max(-bound, min(bound, omega))))
+        return Control(Pushing(progress, v), (v, max(-bound, min(bound, omega))))
 
     @property
     def _pace(self) -> Pace:
         return Pace(self.v_max_mps, self.bend_radps * self.radius_m, self.braking_mps2, self.bend_braking_mps2)
 
-    def _ramp(self, v: float, limit: float) -> float:
-        """Towards the limit, not faster than the ball allows; 0.2 s ahead of the measured speed."""
-        return max(v - 0.2 * self.braking_mps2, min(limit, v + 0.2 * self.speeding_up_mps2, self.v_max_mps))
+    def _ramp(self, v: float, limit: float, slipping: float, bending: bool) -> float:
+        """The next commanded speed: towards the limit as fast as the ball allows; a slipping ball is caught up with."""
+        if slipping > 0.0:
+            limit = min(self.v_max_mps, limit + self.catch_up_mps * slipping)
+        braking = self.bend_braking_mps2 if bending else self.braking_mps2
+        return max(v - braking * TICK_S, min(limit, v + self.speeding_up_mps2 * TICK_S))
 
     def _missed(self, progress: Progress, pose: Pose, goal: tuple[float, ...]) -> bool:
         """Past the end without having arrived."""

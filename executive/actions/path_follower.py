@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from executive.actions.dubins import DubinsPath
 from executive.belief.planar_ekf import Pose
 
-BEND_RESERVE_M = 0.10  # braking ends so far before a bend
+BEND_RESERVE_M = 0.15  # braking ends so far before a bend
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 VELOCITY_MEMORY = 0.8  # weight of the old velocity at a percept: steps of 80 ms, so about 0.4 s
 GROWTH_M2_PER_S = 4e-4  # a resting ball out of sight: 2 cm after 1 s
+CARRIED_GROWTH_M2_PER_S = 2e-3  # a ball in the grip may slide in it
 MOVING_GROWTH_M2_PER_S = 9e-3  # at 1 m/s; proportional to its speed
 
 
@@ -64,7 +65,7 @@ def carry(track: BallTrack, v: float, omega: float, phi: float, duration_s: floa
         track.left,
         c * forward - s * sideways,
         s * forward + c * sideways,
-        track.variance + GROWTH_M2_PER_S * duration_s,
+        track.variance + CARRIED_GROWTH_M2_PER_S * duration_s,
         track.seen_ns,
     )
 

@@ -15,9 +15,12 @@ from schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
 POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts in a row err alike and count as one
 FIRST_POSES = 5  # percepts before the first one's error has been averaged enough to drive
+LOOKING_POSES = 20  # so long the robot looks for a ball before it sets out without
 LOST_JUMP_M = 0.6  # a pose this far off is not noise: the robot was put elsewhere
 LOST_JUMP_RAD = 0.6
 LOST_POSES = 3  # so many such poses in a row, and they are believed
+CREDIBLE_MPS = 1.5  # a faster odometry has been restarted in between
+CREDIBLE_RADPS = 3.0
 MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity says nothing
 
 
@@ -33,6 +36,7 @@ class SoccerBelief:
     ball: BallTrack | None
     poses_seen: int
     poses_doubted: int = 0
+    odom: Odometry | None = None  # the last one
 
     @property
     def ball_xy(self) -> tuple[float, float] | None:
@@ -55,8 +59,9 @@ def unknown() -> SoccerBelief:
 
 
 def ready(belief: SoccerBelief) -> bool:
-    """Enough to act on: the pose has settled and the ball has been seen."""
-    return belief.poses_seen >= FIRST_POSES and belief.ball is not None
+    """Enough to act on: the pose has settled, and the ball has been seen or is not there to be seen."""
+    needed = FIRST_POSES if belief.ball is not None else LOOKING_POSES
+    return belief.poses_seen >= needed
 
 
 def in_cradle(ball: BallTrack) -> bool:
@@ -85,16 +90,31 @@ def _advance(belief: SoccerBelief, to_ns: int) -> SoccerBelief:
     duration_s = 1e-9 * (to_ns - belief.time_ns) if belief.time_ns else 0.0
     stale = to_ns - belief.moved_ns > MOTION_LIMIT_S * 1e9
     v, omega = (0.0, 0.0) if stale else (belief.v, belief.omega)
-    return _moved(belief, to_ns, duration_s, v, omega, belief.v, belief.omega, belief.moved_ns)
+    return _moved(belief, to_ns, duration_s, v, omega, belief.odom, belief.moved_ns)
 
 
 def _drive(belief: SoccerBelief, to_ns: int, odom: Odometry) -> SoccerBelief:
-    """Odometry tells the mean velocity up to its arrival; before the first one the robot stood still."""
+    """Odometry tells the mean velocity up to its arrival."""
     if to_ns < belief.time_ns:
         return belief
     duration_s = 1e-9 * (to_ns - belief.time_ns) if belief.time_ns else 0.0
-    v, omega = 0.5 * (belief.v + odom.v), 0.5 * (belief.omega + odom.omega)
-    return _moved(belief, to_ns, duration_s, v, omega, odom.v, odom.omega, to_ns)
+    v, omega = _mean_velocity(belief, odom)
+    return _moved(belief, to_ns, duration_s, v, omega, odom, to_ns)
+
+
+def _mean_velocity(belief: SoccerBelief, odom: Odometry) -> tuple[float, float]:
+    """From the dead-reckoned poses, of which none is lost when messages are; else from the velocities."""
+    last = belief.odom
+    if last is None:
+        return 0.5 * odom.v, 0.5 * odom.omega
+    between_s = 1e-9 * (odom.stamp_ns - last.stamp_ns)
+    if 0.0 < between_s < MOTION_LIMIT_S:
+        turn = difference(odom.phi, last.phi)
+        middle = last.phi + 0.5 * turn
+        distance = math.cos(middle) * (odom.x - last.x) + math.sin(middle) * (odom.y - last.y)
+        if abs(distance) < CREDIBLE_MPS * between_s and abs(turn) < CREDIBLE_RADPS * between_s:
+            return distance / between_s, turn / between_s
+    return 0.5 * (last.v + odom.v), 0.5 * (last.omega + odom.omega)
 
 
 def _moved(
@@ -103,8 +123,7 @@ def _moved(
     duration_s: float,
     v: float,
     omega: float,
-    v_now: float,
-    omega_now: float,
+    odom: Odometry | None,
     moved_ns: int,
 ) -> SoccerBelief:
     pose = planar_ekf.predict(belief.pose, v, omega, duration_s, ODOMETRY_NOISE)
@@ -115,7 +134,10 @@ def _moved(
             ball = ball_track.carry(ball, v, omega, middle, duration_s)
         else:
             ball = ball_track.move(ball, v, omega * duration_s, middle, duration_s, robot.BALL_ROLLING_MPS2)
-    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, belief.poses_seen, belief.poses_doubted)
+    v_now, omega_now = (odom.v, odom.omega) if odom is not None else (belief.v, belief.omega)
+    return SoccerBelief(
+        to_ns, pose, v_now, omega_now, moved_ns, ball, belief.poses_seen, belief.poses_doubted, odom
+    )
 
 
 def _pushed(ball: BallTrack, v: float, phi: float) -> bool:
@@ -143,19 +165,12 @@ def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
 
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
-    return SoccerBelief(belief.time_ns, pose, belief.v, belief.omega, belief.moved_ns, belief.ball, seen, doubted)
+    b = belief
+    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom)
 
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
+    b = belief
     variance = 0.5 * (seen.var_x + seen.var_y)
-    ball = ball_track.see(belief.ball, seen.x, seen.y, variance, belief.pose.phi, belief.time_ns)
-    return SoccerBelief(
-        belief.time_ns,
-        belief.pose,
-        belief.v,
-        belief.omega,
-        belief.moved_ns,
-        ball,
-        belief.poses_seen,
-        belief.poses_doubted,
-    )
+    ball = ball_track.see(b.ball, seen.x, seen.y, variance, b.pose.phi, b.time_ns)
+    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, b.poses_seen, b.poses_doubted, b.odom)
