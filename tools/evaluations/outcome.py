@@ -1,0 +1,98 @@
+"""What an evaluation runs and what comes of it: task, variant, outcome."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from executive.library import Domain
+from executive.refinement.settings import RefinementSettings
+from schemas.messages import SimTruth, Subgoals
+from tools.episodes import Episode
+
+PERIOD_NS = 100_000_000  # of the truth in an episode
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """One way to run an episode. `pins` forces choices: (label, quantity, value)."""
+
+    name: str
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
+    pins: tuple[tuple[str, str, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Which world: domain and scenario, with the profile of its body ("", or "degraded")."""
+
+    domain: str
+    scenario: str
+    profile: str = ""
+    zoo: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of an episode; durations in seconds, actions in order of execution."""
+
+    seed: int
+    variant: str
+    achieved: bool
+    duration_s: float
+    result: str
+    actions: tuple[str, ...]
+    outcomes: tuple[str, ...]
+    predicted_s: tuple[float, ...]
+    actual_s: tuple[float, ...]
+    asserted: bool  # whether any detour was made
+    ball_moved_m: float  # how far the ball had moved when the first action that is no detour ended
+
+
+def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
+    """Sum an episode up."""
+    finished = episode.finished
+    free, bound = _situation(episode.subgoals[0], domain) if episode.subgoals else ((), ())
+    return Outcome(
+        seed,
+        variant,
+        episode.achieved,
+        episode.duration_s,
+        episode.result,
+        tuple(action.action for action in finished),
+        tuple(action.outcome for action in finished),
+        tuple(round(action.predicted_s, 4) for action in finished),
+        tuple(round(action.actual_s, 4) for action in finished),
+        any(action.asserted for subgoals in episode.subgoals for action in subgoals.actions),
+        _ball_moved_m(episode),
+        free,
+        bound,
+    )
+
+
+def _situation(
+    subgoals: Subgoals, domain: Domain
+) -> tuple[tuple[tuple[str, str, float, float, float], ...], tuple[tuple[str, str, float], ...]]:
+    """Free and bound variables of the first choice, each once."""
+    free, bound = {}, {}
+    for instance in subgoals.actions:
+        quantities = {parameter.name: parameter.quantity for parameter in domain.actions[instance.action].parameters}
+        for said in instance.parameters:
+            quantity = quantities[said.name]
+            if said.bound:
+                bound[said.id] = (said.label, quantity, said.value)
+            else:
+                free[said.id] = (said.label, quantity, said.lower, said.upper, said.value)
+    return tuple(free.values()), tuple(bound.values())
+
+
+def _ball_moved_m(episode: Episode) -> float:
+    """How far the ball was from its start when the first approach ended; it should have been left alone till then."""
+    ended_ns = [action.stamp_ns for action in episode.finished if action.action == "approachBall"]
+    if not ended_ns or not episode.truth:
+        return 0.0
+    until = episode.truth[: max(1, ended_ns[0] // PERIOD_NS)]
+    return max(_apart_m(episode.truth[0], truth) for truth in until)
+
+
+def _apart_m(first: SimTruth, second: SimTruth) -> float:
+    return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)

@@ -1,0 +1,37 @@
+"""A domain in which some quantities of some labels are given: how an evaluation forces a choice upon the executive."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from executive.library import Belief, Domain, Fact, Interval, Scenario
+
+Pins = Mapping[tuple[str, str], float]  # (label, quantity) -> value
+
+
+class PinnedDomain:
+    """Another domain, but a pinned quantity has its pinned value wherever the predicates leave it free."""
+
+    def __init__(self, inner: Domain, pins: Pins) -> None:
+        self._inner = inner
+        self._pins = pins
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._inner, name)
+
+    def value(
+        self,
+        quantity: str,
+        label: str,
+        holds: tuple[Fact, ...],
+        achieved: tuple[Fact, ...],
+        belief: Belief,
+        scenario: Scenario,
+    ) -> Interval | None:
+        """The inner domain's answer, or the pin where that is no single value."""
+        said = self._inner.value(quantity, label, holds, achieved, belief, scenario)
+        pin = self._pins.get((label, quantity))
+        if pin is None or (said is not None and said.lower == said.upper):
+            return said
+        return Interval(pin, pin)

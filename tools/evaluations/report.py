@@ -1,0 +1,89 @@
+"""How an evaluation is told: a table in the terminal, JSON for scripts, an HTML page with plots."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from tools.figures.page import image, page, table
+
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The result of one evaluation: rows of figures, the paper's figures for comparison, remarks, plots."""
+
+    name: str  # "table3"
+    title: str
+    rows: Sequence[Row]
+    remarks: Sequence[str] = ()
+    plots: Mapping[str, Path] = field(default_factory=dict)  # description -> PNG
+
+
+def configure_report(parser: argparse.ArgumentParser) -> None:
+    """The flags that every evaluation has."""
+    parser.add_argument("--jobs", type=int, default=2, help="processes (default %(default)s)")
+    parser.add_argument("--json", action="store_true", help="print the rows as JSON")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots there")
+    parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),
+                        help="keep finished episodes there, to go on after a break (default %(default)s)")  # fmt: skip
+    parser.add_argument("--zoo", default="", help="folder of action models (default: those that ship)")
+
+
+def tell(report: Report, as_json: bool, folder: Path | None) -> None:
+    """Print the report, and write its page when a folder is given."""
+    if as_json:
+        said = {"name": report.name, "rows": [_plain(row) for row in report.rows], "remarks": list(report.remarks)}
+        print(json.dumps(said, indent=1))
+    else:
+        _print(report)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+        columns = _columns(report.rows)
+        cells = [[shown(row.get(column, "")) for column in columns] for row in report.rows]
+        body = [table(report.title, columns, cells)]
+        body += [f"<p>{remark}</p>" for remark in report.remarks]
+        body += [image(path, description) for description, path in report.plots.items()]
+        (folder / f"{report.name}.html").write_text(page(report.title, body))
+
+
+def shown(value: object) -> str:
+    """A cell: figures with what they need of digits."""
+    if isinstance(value, float):
+        if value != 0 and abs(value) < 0.001:
+            return f"{value:.1e}"
+        return f"{value:.3f}" if abs(value) < 0.1 else f"{value:.2f}"
+    if isinstance(value, tuple | list):
+        return " .. ".join(shown(part) for part in value)
+    return str(value)
+
+
+def _print(report: Report) -> None:
+    console = Console()
+    made = Table(title=report.title)
+    columns = _columns(report.rows)
+    for column in columns:
+        made.add_column(column, justify="left" if column == columns[0] else "right")
+    for row in report.rows:
+        made.add_row(*(shown(row.get(column, "")) for column in columns))
+    console.print(made)
+    for remark in report.remarks:
+        console.print(remark, highlight=False)
+
+
+def _columns(rows: Sequence[Row]) -> list[str]:
+    return list(dict.fromkeys(column for row in rows for column in row))
+
+
+def _plain(row: Row) -> dict[str, Any]:
+    """A row that JSON can hold: what is no number becomes null."""
+    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row.items()}

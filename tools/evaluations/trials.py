@@ -1,0 +1,103 @@
+"""Episodes for evaluations: the same starts under several settings, in parallel, kept on disk as they finish.
+
+An episode is fixed by scenario, seed and variant, so a broken-off evaluation goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from joblib import Parallel, delayed
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from executive import domains
+from executive.core.context import Context, Settings, make_context
+from executive.library import Models
+from models.runtime import load_robot
+from simnodes.body import Body
+from tools.episodes import SENDER, run_episode
+from tools.evaluations.journal import Journal
+from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tools.evaluations.pinned import PinnedDomain
+
+SCENARIO_STREAM = 0  # of the seed; noise is drawn from another
+
+
+def run_all(
+    task: Task,
+    variants: Sequence[Variant],
+    seeds: Iterable[int],
+    jobs: int = 2,
+    store: Path | None = None,
+    title: str = "",
+) -> dict[str, dict[int, Outcome]]:
+    """Every variant at every seed: outcomes by variant name and seed.
+
+    Args:
+      jobs: Processes.
+      store: Folder where finished episodes are kept and found again; None keeps nothing.
+      title: Shown beside the progress bar.
+    """
+    found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
+    hashes = _model_hashes(task)
+    journals = {variant.name: Journal(store, task, variant, hashes) for variant in variants}
+    wanted = []
+    for seed in seeds:
+        for variant in variants:
+            known = journals[variant.name].known.get(seed)
+            if known is None:
+                wanted.append((variant, seed))
+            else:
+                found[variant.name][seed] = known
+    running = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(
+        delayed(run_one)(task, variant, seed) for variant, seed in wanted
+    )
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, transient=True) as progress:
+        for outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
+            found[outcome.variant][outcome.seed] = outcome
+            journals[outcome.variant].note(outcome)
+    return found
+
+
+def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
+    """One episode, in lock-step with the same core as live."""
+    context, start = _context(task, variant, seed)
+    episode = run_episode(context, _body(task), start, seed)
+    return outcome_of(episode, context.domain, variant.name, seed)
+
+
+def paired(first: dict[int, Outcome], second: dict[int, Outcome]) -> tuple[list[float], list[float]]:
+    """Durations of the episodes that reached their goal in both."""
+    seeds = [seed for seed in sorted(first) if seed in second and first[seed].achieved and second[seed].achieved]
+    return [first[seed].duration_s for seed in seeds], [second[seed].duration_s for seed in seeds]
+
+
+def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str, float]]:
+    rng = np.random.default_rng([seed, SCENARIO_STREAM])
+    domain = domains.load(task.domain)
+    scenario, start = domains.load_scenario(task.domain, task.scenario, rng)
+    pinned: Any = PinnedDomain(domain, {(label, quantity): value for label, quantity, value in variant.pins})
+    settings = Settings(seed=seed, refinement=variant.refinement)
+    return make_context(pinned, scenario, _models(domain.robot, task.zoo), settings, SENDER), start
+
+
+@lru_cache(maxsize=4)
+def _models(robot: str, zoo: str) -> Models:
+    """Loaded once a process."""
+    return Models(*load_robot(robot, Path(zoo) if zoo else None))
+
+
+def _body(task: Task) -> Body:
+    from simnodes.agilo.body import AgiloBody
+
+    return AgiloBody()
+
+
+def _model_hashes(task: Task) -> list[str]:
+    models = _models(domains.load(task.domain).robot, task.zoo)
+    return sorted(model.card["sha256"] for model in [*models.durations.values(), *models.successes.values()])  # type: ignore[attr-defined]
