@@ -6,13 +6,10 @@ Causal links say which predicates hold for a label of the plan; the domain turns
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 from executive.library import Belief, Conflict, Domain, Fact, Interval, Parameter, Scenario
+from executive.planning import Plan
 from executive.refinement.sequence import ActionSequence, Failure, InstantiatedAction, Variable
-
-if TYPE_CHECKING:
-    from executive.planning import Plan
 
 __all__ = ["ActionSequence", "Failure", "InstantiatedAction", "Variable", "instantiate"]
 
@@ -53,10 +50,12 @@ class _Linked:
 
 
 def _facts_by_label(plan: Plan) -> dict[str, _Linked]:
-    """`parseCausalLinks` of Algorithm 2: pos2 -> [0ball, 2atball]."""
+    """`parseCausalLinks` of Algorithm 2: pos2 -> [0ball, 2atball]. What must *not* hold says nothing of values."""
     linked: dict[str, _Linked] = {}
     for link in plan.links:
-        fact = link.literal
+        if not link.literal.positive:
+            continue
+        fact = link.literal.fact
         for label in dict.fromkeys(fact[1:]):
             entry = linked.setdefault(label, _Linked())
             facts = entry.holds if link.producer == INITIAL else entry.achieved

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from types import SimpleNamespace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import pytest
 
-from executive.library import Conflict, Fact, Interval
+from executive.budget import CheckBudget
+from executive.library import Conflict, Interval
+from executive.planning import Link, Literal, Plan, Search, parse_domain, parse_problem
 from executive.refinement.instantiation import ActionSequence, Failure, instantiate
 from tests.synthetic_models import LIBRARY, PI
 
+DOMAIN = """
+(define (domain soccer) (:requirements :strips) (:predicates (robot ?p) (ball ?p) (atball ?p) (final ?p))
+  (:action approachball :parameters (?from ?to) :precondition (and (robot ?from) (ball ?to))
+    :effect (and (not (robot ?from)) (robot ?to) (atball ?to)))
+  (:action dribbleball :parameters (?from ?to) :precondition (atball ?from)
+    :effect (and (not (atball ?from)) (not (ball ?from)) (atball ?to) (ball ?to))))
+"""
+PROBLEM = """
+(define (problem figure-10) (:domain soccer) (:objects pos1 pos2 pos3)
+  (:init (robot pos1) (ball pos2) (final pos3)) (:goal (and (final pos3) (atball pos3))))
+"""
 KNOWN = {
     "robot": {"x": 0.0, "y": 1.0, "phi": 0.0, "v": 0.0},
     "ball": {"x": 3.0, "y": 1.0},
     "final": {"x": 1.0, "y": 3.0, "phi": 2.6, "v": 0.0},
 }
-
-
-@dataclass(frozen=True)
-class Link:
-    producer: int
-    literal: Fact
-    consumer: int
 
 
 @dataclass
@@ -48,19 +53,11 @@ class PaperDomain:
         return None
 
 
-def paper_plan(extra: tuple[Link, ...] = ()) -> Any:
-    steps = (
-        SimpleNamespace(id=2, action=("approachball", "pos1", "pos2"), start=0.0, duration=1.0),
-        SimpleNamespace(id=1, action=("dribbleball", "pos2", "pos3"), start=1.0, duration=1.0),
-    )
-    links = (
-        Link(0, ("ball", "pos2"), 2),
-        Link(0, ("robot", "pos1"), 2),
-        Link(2, ("atball", "pos2"), 1),
-        Link(0, ("final", "pos3"), 99),
-        Link(1, ("atball", "pos3"), 99),
-    )
-    return SimpleNamespace(problem="soccer-p1", initial=(), steps=steps, links=links + extra, orderings=())
+def paper_plan(extra: tuple[Link, ...] = ()) -> Plan:
+    """The plan of Figure 10, as our own planner finds it, with `extra` links added."""
+    result = Search(parse_domain(DOMAIN), parse_problem(PROBLEM, parse_domain(DOMAIN))).advance(CheckBudget(100))
+    assert result is not None
+    return replace(result.plan, links=result.plan.links + extra)
 
 
 def instantiated() -> ActionSequence:
@@ -101,7 +98,7 @@ def test_domain_is_asked_with_the_causal_links_of_the_label():
 
 
 def test_contradicting_predicates_fail_with_the_step_and_the_reason():
-    plan = paper_plan((Link(0, ("final", "pos2"), 1),))
+    plan = paper_plan((Link(0, Literal(("final", "pos2")), 1),))
     failure = instantiate(plan, PaperDomain(), None, None)
     assert isinstance(failure, Failure)
     assert "approachball pos1 pos2" in failure.reason
@@ -139,3 +136,9 @@ def test_binding_keeps_bound_variables_and_other_ids():
     bound = sequence.bind({free.id: 0.5, 0: 9.0})
     assert bound.variables[free.id].value == 0.5
     assert bound.variables[0].value == 0.0
+
+
+def test_what_must_not_hold_says_nothing_of_values():
+    domain = PaperDomain()
+    instantiate(paper_plan((Link(0, Literal(("robot", "pos2"), positive=False), 1),)), domain, None, None)
+    assert ("robot", "pos2") not in {fact for _, _, holds, _ in domain.asked for fact in holds}
