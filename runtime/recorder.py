@@ -1,0 +1,158 @@
+"""The recorder: takes what the bus says, and keeps it on tape, whatever the disk does. A plain subscriber.
+
+Nothing that happens here can hold up anyone: the bus is drained at once, and what the disk cannot take is counted.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from runtime.clock import wall_ns
+from runtime.inbox import Raw
+from runtime.intake import Intake
+from runtime.selection import Selection
+from runtime.tape import ENCODING, Tape
+from schemas.codec import decode
+from schemas.messages import Provenance
+from schemas.topics import TOPICS
+
+FLUSH_NS = 700_000_000  # with the turn and the disk's own time, kill -9 loses less than a second
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """When to go on in a new file; 0 means never."""
+
+    most_bytes: int = 0
+    most_ns: int = 0
+
+    @property
+    def splits(self) -> bool:
+        """Whether the recording may take several files."""
+        return bool(self.most_bytes or self.most_ns)
+
+
+@dataclass(slots=True)
+class Health:
+    """How the recording is doing, for people."""
+
+    messages: int = 0
+    bytes: int = 0
+    files: list[Path] = field(default_factory=list)
+    drops: Counter[str] = field(default_factory=Counter)
+    trouble: str = ""  # what the disk said last
+
+
+class Recorder:
+    """Call `turn` a few dozen times a second from one thread, and `close` at the end."""
+
+    def __init__(
+        self,
+        path: Path,
+        intake: Intake,
+        selection: Selection,
+        limits: Limits,
+        facts: Mapping[str, Mapping[str, str]],
+    ) -> None:
+        """Create the (first) file.
+
+        Args:
+          path: Of the file; when the limits split it, of NAME_000.mcap and so on.
+          intake: Where the messages wait.
+          selection: Which of them to keep.
+          limits: When to split.
+          facts: Metadata for every file, name -> entries.
+        """
+        self.health = Health()
+        self._path, self._intake, self._selection, self._limits = path, intake, selection, limits
+        self._facts = {name: dict(entries) for name, entries in facts.items()}
+        self._dropped: Counter[str] = Counter()  # for want of disk
+        self._closed_messages = self._closed_bytes = 0
+        self._flush_at_ns = 0
+        self._tape = self._next_tape()
+
+    def turn(self, now_ns: int) -> None:
+        """Write what has arrived; flush when it is time. `now_ns` is monotonic."""
+        for raw in self._intake.take():
+            self._keep(raw)
+        if now_ns >= self._flush_at_ns:
+            self._flush_at_ns = now_ns + FLUSH_NS
+            self._note_drops()
+            self._tape.flush()
+            self._split_when_full()
+        self._report()
+
+    def close(self) -> Health:
+        """Write what is left, and the footer."""
+        for raw in self._intake.take():
+            self._keep(raw)
+        self._note_drops()
+        self._tape.close()
+        self._report()
+        return self.health
+
+    def _keep(self, raw: Raw) -> None:
+        if not raw.is_put or not self._selection.wants(raw.key, raw.encoding.removeprefix(ENCODING)):
+            return
+        if self._tape.stuck:
+            self._dropped[raw.key] += 1
+            return
+        self._tape.write(raw, raw.received_wall_ns or wall_ns())
+        if raw.key == TOPICS["provenance"].key:
+            self._note_provenance(raw)
+
+    def _note_provenance(self, raw: Raw) -> None:
+        """An executive's configuration goes into the file's metadata too, once, and into every file that follows."""
+        message = decode(Provenance, raw.payload)
+        if isinstance(message, Provenance):
+            sender = raw.attachment[17:].hex() if raw.attachment else ""
+            entries = {"sender": sender, "json": message.json}
+            if self._facts.get("provenance") != entries:
+                self._facts["provenance"] = entries
+                self._tape.note("provenance", entries)
+
+    def _note_drops(self) -> None:
+        drops = self._intake.drops + self._dropped
+        if drops != self.health.drops:
+            self.health.drops = drops
+            self._facts["drops"] = {key: str(count) for key, count in sorted(drops.items())}
+            self._tape.note("drops", self._facts["drops"])
+
+    def _split_when_full(self) -> None:
+        first_ns = self._tape.first_ns
+        too_long = self._limits.most_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.most_ns
+        too_big = self._limits.most_bytes and self._tape.bytes >= self._limits.most_bytes
+        if (too_long or too_big) and not self._tape.trouble:
+            self._tape.close()
+            self._closed_messages += self._tape.messages
+            self._closed_bytes += self._tape.bytes
+            self._tape = self._next_tape()
+
+    def _next_tape(self) -> Tape:
+        part = len(self.health.files)
+        name = f"{self._path.stem}_{part:03d}{self._path.suffix}" if self._limits.splits else self._path.name
+        tape = Tape(self._path.with_name(name), {**self._facts, "part": {"number": str(part)}})
+        self.health.files.append(tape.path)
+        return tape
+
+    def _report(self) -> None:
+        health = self.health
+        health.messages = self._closed_messages + self._tape.messages
+        health.bytes = self._closed_bytes + self._tape.bytes
+        health.trouble = self._tape.trouble
+
+
+def recorder_facts(version: str, started_ns: int) -> dict[str, dict[str, str]]:
+    """What every recording says of how it was made."""
+    clocks = {
+        "log_time": "wall time of reception, Unix nanoseconds",
+        "publish_time": "wall time of sending by the sender's clock, Unix nanoseconds",
+        "arrival": "exec/tick names inputs by key, sender and sequence, with monotonic arrival times",
+    }
+    return {
+        "recorder": {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(clocks)},
+    }

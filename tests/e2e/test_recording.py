@@ -1,0 +1,107 @@
+"""The recorder as a process of its own: what it keeps, and what is left after the worst."""
+
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+from runtime.mcap_scan import Account
+from runtime.processes import Child
+from runtime.recording import open_recording
+from schemas.errors import Rejected
+from schemas.messages import Odometry, Provenance
+from tests.e2e.bus_system import bus_system, wait_until
+
+
+@pytest.fixture
+def robot(tmp_path):
+    """A bus with a stand-in robot that publishes; yields (session, start_recorder)."""
+    with bus_system() as (session, endpoint, start):
+        start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
+        states = session.inbox(["driver"], "agilo")
+        wait_until(states.drain, what="driver state")
+
+        def record(path, *options):
+            return start("tools.main", "record", "-o", path, "--connect", endpoint, *options)
+
+        yield session, record
+
+
+def readable(path):
+    """Messages in a file that may still be growing."""
+    return list(open_recording(path).messages()) if path.exists() and path.stat().st_size else []
+
+
+def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
+    session, record = robot
+    path = tmp_path / "run.mcap"
+    recorder = record(path)
+    wait_until(lambda: readable(path), what="first messages")
+    session.publisher("provenance", "").publish(Provenance(0, '{"seed": 3}'))
+    time.sleep(1.0)
+    os.kill(recorder.pid, signal.SIGINT)
+    assert recorder.wait(5.0) == 0
+    recording = open_recording(path)
+    found = list(recording.decoded())
+    assert recording.account == Account(chunks=recording.account.chunks, complete=True)
+    assert not [value for _, value in found if isinstance(value, Rejected)]
+    odometry = [recorded for recorded, value in found if isinstance(value, Odometry)]
+    assert [r.sequence for r in odometry] == list(range(odometry[0].sequence, odometry[-1].sequence + 1))
+    assert len({r.sender for r in odometry}) == 1
+    assert {"agilo/odom", "agilo/pose", "agilo/ball", "agilo/driver", "agilo/sim/truth"} <= {r.key for r, _ in found}
+    metadata = dict(recording.metadata())
+    assert metadata["provenance"]["json"] == '{"seed": 3}'
+    assert metadata["provenance"]["sender"] == session.sender
+    assert {"recorder", "topics"} <= metadata.keys()
+
+
+def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
+    _, record = robot
+    losses = []
+    for number in range(3):
+        path = tmp_path / f"{number}.mcap"
+        recorder = record(path)
+        wait_until(lambda p=path: readable(p), what="first messages")
+        time.sleep(0.4 + 0.3 * number)
+        recorder.kill()
+        killed_ns = time.time_ns()
+        recording = open_recording(path)
+        losses.append((killed_ns - max(r.log_ns for r in recording.messages())) / 1e9)
+        assert not recording.account.complete
+        assert recording.account.damaged_chunks == 0
+    assert max(losses) <= 1.0, losses
+
+
+def test_a_selection_keeps_only_what_it_names(robot, tmp_path):
+    _, record = robot
+    path = tmp_path / "some.mcap"
+    recorder = record(path, "--topics", "agilo/*", "--exclude", "odom,geometry_msgs/msg/PoseWithCovarianceStamped")
+    wait_until(lambda: readable(path), what="first messages")
+    assert recorder.stop() == 0
+    keys = {r.key for r in readable(path)}
+    assert keys & {"agilo/ball", "agilo/driver"}
+    assert not keys & {"agilo/odom", "agilo/pose"}
+
+
+def test_a_long_recording_goes_on_in_new_files_without_a_gap(robot, tmp_path):
+    _, record = robot
+    recorder = record(tmp_path / "part.mcap", "--max-duration", 0.8)
+    wait_until((tmp_path / "part_002.mcap").exists, what="third file")
+    assert recorder.stop() == 0
+    sequences = [
+        r.sequence for path in sorted(tmp_path.glob("part_*.mcap")) for r in readable(path) if r.key == "agilo/odom"
+    ]
+    assert sequences == list(range(sequences[0], sequences[-1] + 1))
+
+
+def test_a_file_that_exists_is_not_overwritten(tmp_path):
+    path = tmp_path / "old.mcap"
+    path.write_bytes(b"precious")
+    with bus_system() as (_, endpoint, _start):
+        command = [sys.executable, "-m", "tools.main", "record", "-o", str(path), "--connect", endpoint]
+        with (tmp_path / "said").open("w") as said:
+            assert Child("recorder", command, said).wait(10.0) == 2
+    assert "exists already" in (tmp_path / "said").read_text()
+    assert path.read_bytes() == b"precious"
