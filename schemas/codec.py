@@ -45,7 +45,7 @@ def decode(what: Topic | type, data: bytes) -> Message | Rejected:
     """The message in CDR bytes that came over a topic (or of a type), or why it is refused.
 
     The number of different reasons is small, so that they can be counted: "too long", "malformed", "trailing bytes",
-    "not finite", "stamp out of range", "orientation is not a unit quaternion".
+    "not finite", "stamp out of range", "orientation is not a unit quaternion", "a joint lacks a value".
     """
     kind, limit = (what.type, what.max_bytes) if isinstance(what, Topic) else (what, _LIMITS[what])
     if len(data) > limit:

@@ -51,6 +51,17 @@ class EStop:
     stop: bool
 
 
+@dataclass(frozen=True, slots=True)
+class JointState:
+    """sensor_msgs/JointState: rad, rad/s and N·m of each named joint; all tuples have one length."""
+
+    stamp_ns: int
+    names: tuple[str, ...] = ()
+    positions: tuple[float, ...] = ()
+    velocities: tuple[float, ...] = ()
+    efforts: tuple[float, ...] = ()
+
+
 # --- own messages: tailor_msgs ---------------------------------------------------------------------
 @dataclass(frozen=True, slots=True)
 class BallPercept:
@@ -62,6 +73,25 @@ class BallPercept:
     var_x: float
     var_y: float
     cov_xy: float
+
+
+@dataclass(frozen=True, slots=True)
+class JointCommand:
+    """Velocity set-points of named joints, rad/s; the driver closes the current loop (paper Table 5)."""
+
+    stamp_ns: int
+    names: tuple[str, ...] = ()
+    velocities: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class MotorCurrents:
+    """Motor currents in A since the last message of this kind: the one of now, and the largest magnitude."""
+
+    stamp_ns: int
+    names: tuple[str, ...] = ()
+    amperes: tuple[float, ...] = ()
+    peak_amperes: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +266,9 @@ Message = (
     | Odometry
     | PoseEstimate
     | EStop
+    | JointState
+    | JointCommand
+    | MotorCurrents
     | BallPercept
     | DriverState
     | ArmRequest

@@ -113,9 +113,33 @@ def estop_from_ros(ros: Any) -> m.EStop:
     return m.EStop(ros.data)
 
 
+def joints_to_ros(message: m.JointState) -> Any:
+    """sensor_msgs/JointState; it has no frame."""
+    positions, velocities, efforts = map(np.array, (message.positions, message.velocities, message.efforts))
+    kind = ros_class("sensor_msgs/msg/JointState")
+    return kind(
+        header=header(message.stamp_ns, ""),
+        name=list(message.names),
+        position=positions.astype(np.float64),
+        velocity=velocities.astype(np.float64),
+        effort=efforts.astype(np.float64),
+    )
+
+
+def joints_from_ros(ros: Any) -> m.JointState:
+    """All four of a joint's values; a sender that leaves out velocities or efforts is refused."""
+    rows = (ros.position, ros.velocity, ros.effort)
+    for row in rows:
+        _finite_matrix(row)
+    if any(len(row) != len(ros.name) for row in rows):
+        raise Refusal("a joint lacks a value")
+    return m.JointState(stamp_ns(ros.header), tuple(ros.name), *(tuple(row.tolist()) for row in rows))
+
+
 CONVERTERS: dict[type, tuple[Any, Any]] = {
     m.VelocityCommand: (velocity_to_ros, velocity_from_ros),
     m.Odometry: (odometry_to_ros, odometry_from_ros),
     m.PoseEstimate: (pose_to_ros, pose_from_ros),
     m.EStop: (estop_to_ros, estop_from_ros),
+    m.JointState: (joints_to_ros, joints_from_ros),
 }
