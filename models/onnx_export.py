@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 import onnx
 
 from models.failure_tree import FailureTree
@@ -31,5 +32,6 @@ def export_success(learner: FailureTree, space: FeatureSpace, notes: Mapping[str
     """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata."""
     graph = Graph()
     features = add_features(graph, space, "arguments")
-    success = add_steps(graph, features, learner.splits_, learner.success_)
+    column = add_steps(graph, features, learner.splits_, learner.success_)
+    success = graph.add("Reshape", column, graph.constant(np.array([-1])))
     return graph.model(len(space.arguments), {"success": success}, notes)

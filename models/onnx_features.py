@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 from onnx import TensorProto
 
 from models.features import FeatureSpace
@@ -12,7 +13,7 @@ from models.onnx_graph import Sink, single
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A column of the graph under construction, shape (n, 1), single precision."""
+    """A column of the graph under construction, shape (1, n), single precision."""
 
     sink: Sink
     name: str
@@ -67,8 +68,20 @@ class Tracing:
 
 
 def add_features(sink: Sink, space: FeatureSpace, arguments: str) -> str:
-    """Write a feature space into a graph: double arguments (n, k) to single precision features (n, f)."""
+    """Write a feature space into a graph: double arguments (n, k) to float features with a one, (n, f + 1)."""
     values = sink.add("Cast", arguments, to=TensorProto.FLOAT)
-    names = sink.add("Split", values, outputs=len(space.arguments), axis=1, num_outputs=len(space.arguments))
+    rows = sink.add("Transpose", values, perm=[1, 0])  # (1, n) each: the runtime is slow on (n, 1)
+    names = sink.add("Split", rows, outputs=len(space.arguments), axis=0, num_outputs=len(space.arguments))
     columns = space.columns(tuple(Symbol(sink, name) for name in names), Tracing())
-    return sink.add("Concat", *(column.name for column in columns), axis=1)
+    stacked = sink.add("Concat", *(column.name for column in columns), axis=0)
+    return append_one(sink, stacked, len(columns), transpose=True)
+
+
+def append_one(sink: Sink, features: str, count: int, transpose: bool = False) -> str:
+    """Features (n, f), or (f, n) to be transposed, with a column of ones for the intercept: (n, f + 1).
+
+    A product with ones and zeros is exact, and the runtime's optimiser does not push it up through every node.
+    """
+    copy = sink.constant(np.eye(count, count + 1, dtype=np.float32))
+    one = sink.constant(np.eye(count + 1, dtype=np.float32)[-1])
+    return str(sink.add("Gemm", features, copy, one, transA=int(transpose)))

@@ -1,0 +1,151 @@
+"""Data sets of episodes: Parquet parts with one row group per episode, and a manifest that says how they were made.
+
+A part appears whole or not at all, so that gathering may be killed at any time and go on later.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from schemas.errors import UsageError
+
+Array = NDArray[np.float64]
+TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
+MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """One run of an action: what was asked, what was seen at each tick, and how it ended."""
+
+    number: int
+    arguments: Array  # (k,) as asked for: current and goal state
+    ticks: Array  # (t, k) the same at each 10 Hz tick: the believed current state and the goal
+    duration_s: float
+    success: bool
+    failure: str  # kind of failure, empty if none
+    finished: bool = True  # the controller said so; False: the time limit did
+    extra: Mapping[str, Array] | None = None  # further columns, (t,) each: truth, commands
+
+
+def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
+    """Write episodes as one Parquet file, a row group each; `names` are those of the arguments."""
+    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    writer = None
+    try:
+        for episode in episodes:
+            table = _table(episode, names)
+            writer = writer or pq.ParquetWriter(temporary, table.schema, compression="zstd")
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
+    if writer is not None:
+        temporary.replace(path)
+
+
+def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
+    count = len(episode.ticks)
+    columns: dict[str, Any] = {
+        "episode": np.full(count, episode.number, np.int32),
+        "tick": np.arange(count, dtype=np.int32),
+        **{name: episode.ticks[:, k] for k, name in enumerate(names)},
+        **{f"asked_{name}": np.full(count, episode.arguments[k]) for k, name in enumerate(names)},
+        **(episode.extra or {}),
+        "duration_s": np.full(count, episode.duration_s),
+        "success": np.full(count, episode.success),
+        "finished": np.full(count, episode.finished),
+        "failure": [episode.failure] * count,
+    }
+    return pa.table(columns)
+
+
+def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Write the manifest of a data set, whole or not at all."""
+    temporary = folder / f".{MANIFEST}.{os.getpid()}"
+    temporary.write_text(json.dumps(manifest, indent=1) + "\n")
+    temporary.replace(folder / MANIFEST)
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """The manifest of a data set.
+
+    Raises:
+      UsageError: There is none, or it is not one.
+    """
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text())
+        manifest["arguments"], manifest["action"], manifest["robot"]
+    except OSError:
+        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` makes them)") from None
+    except (ValueError, KeyError, TypeError) as error:
+        raise UsageError(
+            f"{folder / MANIFEST}: not a manifest ({error}), expected what `tailor gather` writes"
+        ) from None
+    return dict(manifest)
+
+
+@dataclass(frozen=True, slots=True)
+class DataSet:
+    """Episodes of one action with their manifest and a hash of all parts."""
+
+    manifest: Mapping[str, Any]
+    episodes: tuple[Episode, ...]
+    sha256: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the arguments."""
+        return tuple(argument["name"] for argument in self.manifest["arguments"])
+
+
+def read_data_set(folder: Path) -> DataSet:
+    """Read all parts of a data set, in order.
+
+    Raises:
+      UsageError: The folder holds no data set, or a part cannot be read.
+    """
+    manifest = read_manifest(folder)
+    names = [argument["name"] for argument in manifest["arguments"]]
+    episodes: list[Episode] = []
+    digest = hashlib.sha256()
+    for path in sorted(folder.glob("part-*.parquet")):
+        digest.update(path.read_bytes())
+        try:
+            table = pq.read_table(path)
+        except (pa.ArrowException, OSError) as error:
+            raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
+        episodes.extend(_episodes(table, names))
+    return DataSet(manifest, tuple(episodes), digest.hexdigest())
+
+
+def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:
+    column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
+    failure = table["failure"].to_pylist()
+    ticks = np.column_stack([column[name] for name in names])
+    asked = np.column_stack([column[f"asked_{name}"] for name in names])
+    numbers = column["episode"]
+    starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
+    return [
+        Episode(
+            int(numbers[a]),
+            asked[a],
+            ticks[a:b],
+            float(column["duration_s"][a]),
+            bool(column["success"][a]),
+            failure[a],
+            bool(column["finished"][a]),
+        )
+        for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
+    ]

@@ -1,0 +1,60 @@
+"""Turns episodes into training examples: the first n_i ticks of each, with what remains as the target (paper 5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.episodes import TICK_S, Episode
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Examples:
+    """n rows to learn from; rows of one episode are near copies and must stay together."""
+
+    arguments: Array  # (n, k)
+    targets: Array  # (n,) seconds that remain, or 1 for success and 0 for failure
+    groups: NDArray[np.int64]  # (n,) number of the episode
+
+    def of(self, episodes: NDArray[np.int64]) -> Examples:
+        """The rows of some episodes."""
+        chosen = np.isin(self.groups, episodes)
+        return Examples(self.arguments[chosen], self.targets[chosen], self.groups[chosen])
+
+
+def duration_examples(episodes: Sequence[Episode], n_i: int) -> Examples:
+    """Remaining durations at the first n_i ticks of each episode that its controller finished."""
+    return _examples(episodes, n_i, lambda e: e.duration_s - TICK_S * np.arange(len(e.ticks)))
+
+
+def success_examples(episodes: Sequence[Episode], n_i: int) -> Examples:
+    """Outcomes at the first n_i ticks of each episode."""
+    return _examples(episodes, n_i, lambda e: np.full(len(e.ticks), float(e.success)))
+
+
+def _examples(episodes: Sequence[Episode], n_i: int, target: Callable[[Episode], Array]) -> Examples:
+    rows, targets, groups = [], [], []
+    for episode in episodes:
+        rows.append(episode.ticks[:n_i])
+        targets.append(target(episode)[:n_i])
+        groups.append(np.full(len(rows[-1]), episode.number))
+    return Examples(np.concatenate(rows), np.concatenate(targets), np.concatenate(groups))
+
+
+def split(
+    groups: NDArray[np.int64], share: float, rng: np.random.Generator
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers of the episodes to train on, and of the `share` to test with; never one episode in both."""
+    numbers = rng.permutation(np.unique(groups))
+    cut = round(share * len(numbers))
+    return np.sort(numbers[cut:]), np.sort(numbers[:cut])
+
+
+def folds(groups: NDArray[np.int64], count: int, rng: np.random.Generator) -> list[NDArray[np.int64]]:
+    """Episodes in `count` parts of about equal size."""
+    return [np.sort(part) for part in np.array_split(rng.permutation(np.unique(groups)), count)]

@@ -1,0 +1,55 @@
+"""How good a model is: errors with confidence intervals over episodes, confusion matrices, calibration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+BOOTSTRAPS = 2000
+
+
+def mean_with_ci(values: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
+    """Mean of one value per episode, and its bootstrapped 95 % interval."""
+    draws = rng.integers(0, len(values), (BOOTSTRAPS, len(values)))
+    low, high = np.quantile(values[draws].mean(axis=1), [0.025, 0.975])
+    return float(values.mean()), (float(low), float(high))
+
+
+@dataclass(frozen=True, slots=True)
+class Confusion:
+    """Table 2: shares of episodes in percent, predicted against observed; and how many episodes."""
+
+    fail_fail: float  # predicted fail, observed fail
+    fail_success: float  # false alarm
+    success_fail: float  # missed failure
+    success_success: float
+    n: int
+
+    @property
+    def accuracy(self) -> float:
+        """Percent predicted right."""
+        return self.fail_fail + self.success_success
+
+
+def confusion(predicted: NDArray[np.bool_], observed: NDArray[np.bool_]) -> Confusion:
+    """Confusion matrix of successes predicted and observed, shapes (n,)."""
+    cells = [float(100 * np.mean((predicted == p) & (observed == o))) for p in (False, True) for o in (False, True)]
+    return Confusion(*cells, n=len(observed))
+
+
+def interval_factor(errors: Array, spread: Array, level: float = 0.9) -> float:
+    """Factor on the spread that makes `mean ± factor · spread` hold a share `level` of the errors."""
+    return float(np.quantile(np.abs(errors) / np.maximum(spread, 1e-3), level))
+
+
+def reliability(probability: Array, success: NDArray[np.bool_], bins: int = 10) -> list[tuple[float, float, int]]:
+    """Mean predicted probability, observed share and count, by bins of the prediction; empty bins left out."""
+    place = np.minimum((probability * bins).astype(int), bins - 1)
+    return [
+        (float(probability[place == k].mean()), float(success[place == k].mean()), int((place == k).sum()))
+        for k in range(bins)
+        if (place == k).any()
+    ]
