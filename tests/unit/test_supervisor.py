@@ -1,0 +1,173 @@
+"""Restarting, and children that cannot outlive their parent."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from runtime.processes import Child, stopped_in_order
+from runtime.restart import Restart
+from runtime.stopping import stop_on_signals
+from runtime.supervisor import STARTUP_NS, Charge, Supervisor
+
+S = 1_000_000_000
+MS = 1_000_000
+
+
+def test_the_back_off_doubles_up_to_five_seconds_and_forgets_after_a_minute():
+    restart, delays = Restart(), []
+    for k in range(5):
+        restart.started(k * S)
+        delays.append(restart.delay_ns(k * S) / S)
+    assert delays == [0.2, 0.4, 0.8, 1.6, 3.2]
+    assert restart.delay_ns(100 * S) == 0.2 * S
+
+
+def test_five_starts_within_a_minute_are_a_crash_loop():
+    restart = Restart()
+    for k in range(4):
+        restart.started(k * S)
+    assert not restart.exhausted(5 * S)
+    restart.started(10 * S)
+    assert restart.exhausted(59 * S)
+    assert not restart.exhausted(60 * S)
+
+
+class FakeChild:
+    def __init__(self, name, argv):
+        self.name, self.code, self.killed = name, None, False
+        FakeChild.made.append(self)
+
+    made: list = []
+
+    def exit_code(self):
+        return self.code
+
+    def kill(self):
+        self.killed, self.code = True, -9
+
+    def stop(self):
+        self.code = 0
+
+
+@pytest.fixture
+def supervisor():
+    FakeChild.made, said = [], []
+    watcher = Supervisor(said.append, FakeChild)
+    watcher.said = said
+    return watcher
+
+
+def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
+    supervisor.begin(Charge("executive", ["x"]), 0)
+    FakeChild.made[0].code = -9
+    supervisor.look(1 * S)
+    supervisor.look(1 * S + 199 * MS)
+    assert len(FakeChild.made) == 1
+    supervisor.look(1 * S + 200 * MS)
+    assert len(FakeChild.made) == 2
+    assert supervisor.said == ["executive ended with -9; starting again in 0.2 s"]
+    assert supervisor.ended("executive") is None
+
+
+def test_a_crash_loop_is_given_up(supervisor):
+    supervisor.begin(Charge("executive", ["x"]), 0)
+    for k in range(1, 400):
+        FakeChild.made[-1].code = 1
+        supervisor.look(k * 100 * MS)
+    assert len(FakeChild.made) == 5
+    assert supervisor.ended("executive") == 1
+    assert supervisor.said[-1] == "executive ended with 1; gave up: too many starts within a minute"
+
+
+@pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
+def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, code):
+    supervisor.begin(Charge("sim", ["x"], restarts=restarts), 0)
+    FakeChild.made[0].code = code
+    supervisor.look(1)
+    supervisor.look(10 * S)
+    assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
+
+
+def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    for k in range(30):
+        supervisor.heard("executive", k * S)
+        supervisor.look(k * S + S)
+    assert not FakeChild.made[0].killed
+    supervisor.look(30 * S + 1)
+    assert FakeChild.made[0].killed
+
+
+def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.look(STARTUP_NS)
+    assert not FakeChild.made[0].killed
+    supervisor.look(STARTUP_NS + 1)
+    assert FakeChild.made[0].killed
+
+
+def gone(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    with open(f"/proc/{pid}/stat") as stat:
+        return stat.read().split()[2] == "Z"
+
+
+def wait_gone(pid):
+    ends = time.monotonic() + 5
+    while not gone(pid) and time.monotonic() < ends:
+        time.sleep(0.01)
+    return gone(pid)
+
+
+def test_a_child_ends_when_its_parent_is_killed():
+    parent = (
+        "import sys; from runtime.processes import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
+    )
+    process = subprocess.Popen([sys.executable, "-c", parent], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    child = int(process.stdout.readline())
+    time.sleep(0.2)
+    assert not gone(child)
+    process.kill()
+    process.communicate()
+    assert wait_gone(child)
+
+
+def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path):
+    order = []
+
+    class Noted(Child):
+        def stop(self, timeout_s=0.3):
+            order.append(self.name)
+            return super().stop(timeout_s)
+
+    deaf = (
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('deaf', flush=True); time.sleep(60)"
+    )
+    with stopped_in_order([]) as children:
+        children.append(Noted("meek", ["sleep", "60"]))
+        with (tmp_path / "out").open("w") as out:
+            children.append(Noted("deaf", [sys.executable, "-c", deaf], out))
+        while "deaf" not in (tmp_path / "out").read_text():
+            time.sleep(0.01)
+    assert order == ["deaf", "meek"]
+    assert [child.exit_code() for child in children] == [-signal.SIGTERM, -signal.SIGKILL]
+
+
+def test_a_signal_is_a_question_first():
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        stop = stop_on_signals()
+        assert not stop.requested
+        os.kill(os.getpid(), signal.SIGTERM)
+        assert stop.requested
+        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
