@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from executive.actions.dubins import shortest
 from executive.actions.fetch_ball import FetchBall, Stage
 from executive.actions.path_follower import Pace, Progress, project, pursuit_curvature, speed_limit
-from executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
@@ -48,8 +48,8 @@ class DribbleBall:
     in_rail_m: float  # axle to ball
     radius_m: float = 0.55
     v_max_mps: float = 0.75
-    bend_radps: float = 0.60  # what bends are planned for
-    omega_max_radps: float = 0.68  # the rest is for corrections
+    bend_radps: float = 0.66  # what bends are planned for
+    omega_max_radps: float = 0.72  # the rest is for corrections
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself

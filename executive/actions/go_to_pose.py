@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
 from executive.library import Array, Control
 
@@ -69,7 +69,7 @@ class GoToPose:
         return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))
 
     def _speed(self, distance: float, error: float, v_end: float) -> float:
-        facing = max(0.0, math.cos(error)) ** self.slow_in_turns
+        facing = math.pow(max(0.0, math.cos(error)), self.slow_in_turns)
         rest = max(0.0, distance - self.settle_m)
         # never slower than a crawl, or it would not arrive
         return min(self.v_max_mps * facing, max(0.1, math.sqrt(v_end * v_end + 2 * self.braking_mps2 * rest)))

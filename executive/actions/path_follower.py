@@ -25,7 +25,7 @@ class Progress:
 
 
 def project(progress: Progress, pose: Pose, reach_m: float) -> tuple[Progress, float]:
-    """Move the progress to where the robot is now, at most `reach_m` ahead; and the distance aside, m, left positive."""
+    """Move the progress to where the robot is now, at most `reach_m` on; and how far it is aside, m, left positive."""
     s = progress.s
     aside = 0.0
     for _ in range(2):  # the path is smooth: two tangent steps are within a millimetre

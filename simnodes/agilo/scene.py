@@ -21,8 +21,7 @@ def _rail(p: Physique) -> str:
     bends = [math.pi - p.rail_half_angle + i * step for i in range(p.rail_segments + 1)]
     points = [f"{centre + radius * math.cos(b):.9f} {radius * math.sin(b):.9f} {height:.9f}" for b in bends]
     return "\n".join(
-        f'<geom class="rail" fromto="{a} {b}" size="{p.rail_thickness_m}"/>'
-        for a, b in itertools.pairwise(points)
+        f'<geom class="rail" fromto="{a} {b}" size="{p.rail_thickness_m}"/>' for a, b in itertools.pairwise(points)
     )
 
 

@@ -135,9 +135,7 @@ def _moved(
         else:
             ball = ball_track.move(ball, v, omega * duration_s, middle, duration_s, robot.BALL_ROLLING_MPS2)
     v_now, omega_now = (odom.v, odom.omega) if odom is not None else (belief.v, belief.omega)
-    return SoccerBelief(
-        to_ns, pose, v_now, omega_now, moved_ns, ball, belief.poses_seen, belief.poses_doubted, odom
-    )
+    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, belief.poses_seen, belief.poses_doubted, odom)
 
 
 def _pushed(ball: BallTrack, v: float, phi: float) -> bool:

@@ -1,0 +1,65 @@
+"""The robots and tasks that ship, by name. A new robot is a new folder here."""
+
+from __future__ import annotations
+
+import importlib
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from executive.library import Domain, Scenario
+from schemas.errors import UsageError
+
+DOMAINS = ("soccer",)
+
+
+def load(name: str) -> Domain:
+    """The domain of that name; raises UsageError listing those that there are."""
+    if name not in DOMAINS:
+        raise UsageError(f"no domain {name!r}, expected one of: {', '.join(DOMAINS)}")
+    made: Domain = _package(name).make()
+    return made
+
+
+def scenarios(name: str) -> list[str]:
+    """Names of a domain's scenarios, the default first."""
+    load(name)
+    declared = ((_declaration(name, file), file) for file in _scenario_files(name))
+    return [file for _, file in sorted(declared, key=lambda pair: (pair[0].get("order", 99), pair[1]))]
+
+
+def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
+    """A scenario with its places drawn from `rng`, and the start state of robot and world.
+
+    The settings of the scenario carry its events: what happens to the world by itself, as {"at_s": seconds since the
+    first command, and values for Body.place}.
+
+    Raises:
+      UsageError: Unknown domain or scenario.
+    """
+    known = scenarios(name)
+    if scenario not in known:
+        raise UsageError(f"no scenario {scenario!r} in {name}, expected one of: {', '.join(known)}")
+    declared = _declaration(name, scenario)
+    problem = resources.files(f"executive.domains.{name}.scenarios").joinpath(declared["problem"]).read_text()
+    start, places, events = _package(name).draw(declared, rng)
+    settings = {**declared.get("settings", {}), "events": events}
+    return Scenario(scenario, problem, places, settings), start
+
+
+def _package(name: str) -> Any:
+    """A domain's package; it offers `make()` and `draw(declared, rng) -> (start, places, events)`."""
+    return importlib.import_module(f"executive.domains.{name}")
+
+
+def _scenario_files(name: str) -> list[str]:
+    folder = resources.files(f"executive.domains.{name}.scenarios")
+    return [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
+
+
+def _declaration(name: str, scenario: str) -> Mapping[str, Any]:
+    folder = resources.files(f"executive.domains.{name}.scenarios")
+    return tomllib.loads(folder.joinpath(f"{scenario}.toml").read_text())

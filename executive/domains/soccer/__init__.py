@@ -1,0 +1,15 @@
+"""Robot soccer with the AGILO robot: approach a ball and dribble it somewhere, or drive a route (paper 6.4)."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+from executive.domains.soccer.domain import SoccerDomain
+from executive.domains.soccer.drawing import draw
+
+__all__ = ["draw", "make"]
+
+
+def make() -> SoccerDomain:
+    """The domain as it ships."""
+    return SoccerDomain(pddl=resources.files(__package__).joinpath("domain.pddl").read_text())

@@ -1,0 +1,85 @@
+"""The soccer domain: all that the executive is told about the AGILO robot and its tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from executive.domains.soccer import belief as believing
+from executive.domains.soccer import meaning
+from executive.domains.soccer.belief import SoccerBelief
+from executive.domains.soccer.library import ACTIONS, EXECUTABLES
+from executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
+from executive.library import Action, Axis, Fact, Interval, Scenario
+from schemas.messages import Message, Sample, VelocityCommand
+
+
+@dataclass(frozen=True, slots=True)
+class SoccerDomain:
+    """See executive.library.Domain."""
+
+    pddl: str
+    name: str = "soccer"
+    robot: str = "agilo"
+    actions: Mapping[str, Action] = ACTIONS
+    executables: Mapping[str, str] = EXECUTABLES
+    axes: tuple[Axis, ...] = (
+        Axis("v", "m/s", -V_MAX_MPS, V_MAX_MPS),
+        Axis("omega", "rad/s", -OMEGA_MAX_RADPS, OMEGA_MAX_RADPS),
+    )
+    command_topic: str = "cmd_vel"
+    sensors: tuple[str, ...] = ("odom", "pose", "ball")
+    required: tuple[str, ...] = ("odom", "pose")
+    belief_names: tuple[str, ...] = (
+        "x (m)",
+        "y (m)",
+        "phi (rad)",
+        "v (m/s)",
+        "omega (rad/s)",
+        "ball_x (m)",
+        "ball_y (m)",
+        "pose_sigma (m)",
+        "ball_sigma (m)",
+    )
+
+    def initial_belief(self) -> SoccerBelief:
+        """Nothing is known."""
+        return believing.unknown()
+
+    def update(
+        self, belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
+    ) -> SoccerBelief:
+        """Filter odometry, poses and ball percepts; the command is not needed."""
+        return believing.update(belief, now_ns, samples)
+
+    def ready(self, belief: SoccerBelief) -> bool:
+        """Whether the pose has settled and the ball has been looked for."""
+        return believing.ready(belief)
+
+    def belief_values(self, belief: SoccerBelief) -> tuple[float, ...]:
+        """As named in `belief_names`; a ball never seen is NaN-free: at the origin with a deviation of -1."""
+        pose = belief.pose
+        ball_x, ball_y = belief.ball_xy or (0.0, 0.0)
+        ball_sigma = belief.ball.variance**0.5 if belief.ball is not None else -1.0
+        pose_sigma = max(0.0, 0.5 * (pose.covariance[0] + pose.covariance[3])) ** 0.5
+        return pose.x, pose.y, pose.phi, belief.v, belief.omega, ball_x, ball_y, pose_sigma, ball_sigma
+
+    def anchor(self, belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
+        """See soccer.meaning."""
+        return meaning.anchor(belief, scenario, remembered)
+
+    def value(
+        self,
+        quantity: str,
+        label: str,
+        holds: tuple[Fact, ...],
+        achieved: tuple[Fact, ...],
+        belief: SoccerBelief,
+        scenario: Scenario,
+    ) -> Interval | None:
+        """See soccer.meaning."""
+        return meaning.value(quantity, label, holds, achieved, belief, scenario)
+
+    def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
+        """Translational and rotational velocity."""
+        return VelocityCommand(stamp_ns, command[0], command[1])

@@ -1,0 +1,110 @@
+"""Draws a soccer scenario: where robot, ball, target and waypoints are, and what befalls the ball on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from executive.belief.angles import wrap
+
+Point = tuple[float, float]
+TRIES = 10_000  # a declaration that fails so often contradicts itself
+
+
+def draw(
+    declared: Mapping[str, Any], rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, dict[str, float]], tuple[dict[str, float], ...]]:
+    """Start state, places by label, and events, drawn uniformly from what a scenario file declares.
+
+    Args:
+      declared: The scenario file: see scenarios/*.toml, which explain their own keys.
+      rng: Every draw comes from here.
+    """
+    if "waypoints" in declared:
+        start, places = _waypoints(declared, rng)
+    else:
+        start, places = _ball_and_target(declared, rng)
+    events = tuple(_event(row, start, places, rng) for row in declared.get("events", ()))
+    return start, places, events
+
+
+def _ball_and_target(
+    declared: Mapping[str, Any], rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    field, apart = declared["field"], declared["apart"]
+    for _ in range(TRIES):
+        robot, ball, target = _point(field, rng), _point(field, rng), _point(field, rng)
+        near_enough = _within(robot, ball, apart["robot_ball_m"]) and _within(ball, target, apart["ball_target_m"])
+        if near_enough and math.dist(robot, target) > apart["robot_target_min_m"] and _bent(robot, ball, target, apart):
+            break
+    else:
+        raise ValueError("the ranges of the scenario leave no room")
+    half_view = declared["robot"]["half_view_rad"]
+    heading = _bearing(robot, ball) + rng.uniform(-half_view, half_view)
+    straight = declared["target"].get("straight", False)
+    phi = _bearing(ball, target) if straight else rng.uniform(-math.pi, math.pi)
+    start = {"x": robot[0], "y": robot[1], "phi": wrap(heading), "v": 0.0, "ball_x": ball[0], "ball_y": ball[1]}
+    label = declared["settings"]["target_label"]
+    return start, {label: {"x": target[0], "y": target[1], "phi": wrap(phi), "v": 0.0}}
+
+
+def _bent(robot: Point, ball: Point, target: Point, apart: Mapping[str, Any]) -> bool:
+    """Whether the corner at the ball is within what is declared; a straight line has 0."""
+    corner = abs(wrap(_bearing(ball, target) - _bearing(robot, ball)))
+    return bool(corner <= apart.get("corner_max_rad", math.pi))
+
+
+def _waypoints(
+    declared: Mapping[str, Any], rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    field, labels, leg = declared["field"], declared["waypoints"]["labels"], declared["apart"]["leg_m"]
+    points = [_point(field, rng)]
+    while len(points) <= len(labels):
+        following = _point(field, rng)
+        if _within(points[-1], following, leg):
+            points.append(following)
+    start = {"x": points[0][0], "y": points[0][1], "phi": rng.uniform(-math.pi, math.pi), "v": 0.0}
+    places = {label: {"x": x, "y": y} for label, (x, y) in zip(labels, points[1:], strict=True)}
+    places[labels[-1]] |= {"phi": rng.uniform(-math.pi, math.pi), "v": 0.0}
+    return start, places
+
+
+def _event(
+    row: Mapping[str, Any],
+    start: Mapping[str, float],
+    places: Mapping[str, Mapping[str, float]],
+    rng: np.random.Generator,
+) -> dict[str, float]:
+    """Moves put the ball aside of where it lay; kicks send it off aside of the way to the target."""
+    (target,) = places.values()
+    ball = (start["ball_x"], start["ball_y"])
+    side = rng.choice((-1.0, 1.0))
+    direction = _bearing(ball, (target["x"], target["y"])) + side * rng.uniform(*row["aside_rad"])
+    c, s = math.cos(direction), math.sin(direction)
+    at = {"at_s": rng.uniform(*row["between_s"])}
+    if "move_m" in row:
+        distance = rng.uniform(*row["move_m"])
+        return {
+            **at,
+            "ball_x": ball[0] + distance * c,
+            "ball_y": ball[1] + distance * s,
+            "ball_vx": 0.0,
+            "ball_vy": 0.0,
+        }
+    speed = rng.uniform(*row["kick_mps"])
+    return {**at, "ball_vx": speed * c, "ball_vy": speed * s}
+
+
+def _point(field: Mapping[str, Any], rng: np.random.Generator) -> Point:
+    return rng.uniform(*field["x_m"]), rng.uniform(*field["y_m"])
+
+
+def _bearing(a: Point, b: Point) -> float:
+    return math.atan2(b[1] - a[1], b[0] - a[0])
+
+
+def _within(a: Point, b: Point, limits: tuple[float, float]) -> bool:
+    return bool(limits[0] <= math.dist(a, b) <= limits[1])

@@ -1,0 +1,73 @@
+"""The soccer robot's executable actions: parameters, controllers, models (paper Table 6).
+
+A label of the plan denotes a place. For approachBall's goal and for dribbleBall the place's x, y is the ball's
+position and phi the robot's heading there; controllers and models take poses of the robot's axle.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from executive.actions.dribble_ball import DribbleBall
+from executive.actions.fetch_ball import FetchBall
+from executive.actions.go_to_pose import GoToPose
+from executive.domains.soccer import robot
+from executive.library import Action, Array, Parameter
+
+FIELD_X_M = 3.5
+FIELD_Y_M = 2.25
+PASSING_MPS = 0.6  # fastest arrival that is asked of goToPose
+AT_BALL_MPS = 0.3  # what `atball` allows (paper 6.1)
+BALL_MOVED_M = 0.15  # an approach is thought over when its goal has moved so far; percepts from afar err by less
+
+
+def _places(speed_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
+    """x, y, phi, v of the first label and of the second."""
+    made = []
+    for suffix, argument, tolerance in (("", 0, None), ("g", 1, ball_tolerance)):
+        made += [
+            Parameter(f"x{suffix}", argument, "x", "m", -FIELD_X_M, FIELD_X_M, tolerance=tolerance),
+            Parameter(f"y{suffix}", argument, "y", "m", -FIELD_Y_M, FIELD_Y_M, tolerance=tolerance),
+            Parameter(f"phi{suffix}", argument, "phi", "rad", -math.pi, math.pi, periodic=True),
+            Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, speed_mps),
+        ]
+    return tuple(made)
+
+
+def behind_goal(values: Array) -> Array:
+    """Goal place -> pose of the axle behind the ball, with the clearance in which an approach ends; shape (n, 8)."""
+    return _shifted(values, (4,), robot.BEHIND_BALL_M)
+
+
+def behind_both(values: Array) -> Array:
+    """Both places -> poses of the axle with the ball in the rail; shape (n, 8)."""
+    return _shifted(values, (0, 4), robot.IN_RAIL_M)
+
+
+def _shifted(values: Array, offsets: tuple[int, ...], distance: float) -> Array:
+    moved = np.array(values, dtype=np.float64)
+    for at in offsets:
+        moved[:, at] -= distance * np.cos(moved[:, at + 2])
+        moved[:, at + 1] -= distance * np.sin(moved[:, at + 2])
+    return moved
+
+
+_go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
+_dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), robot.IN_RAIL_M)
+
+GO_TO_POSE = Action("goToPose", _places(PASSING_MPS), _go, "goToPose/duration")
+APPROACH_BALL = Action(
+    "approachBall",
+    _places(PASSING_MPS, BALL_MOVED_M),
+    _go,
+    "goToPose/duration",
+    "goToPose/success",
+    detour="goToPose",
+    arguments=behind_goal,
+)
+DRIBBLE_BALL = Action("dribbleBall", _places(AT_BALL_MPS), _dribble, "dribbleBall/duration", arguments=behind_both)
+
+ACTIONS = {action.name: action for action in (GO_TO_POSE, APPROACH_BALL, DRIBBLE_BALL)}
+EXECUTABLES = {"gotopose": "goToPose", "approachball": "approachBall", "dribbleball": "dribbleBall"}

@@ -1,0 +1,5 @@
+(define (problem approach-dribble)
+  (:domain soccer)
+  (:objects pos1 pos2 pos3)
+  (:init (robot pos1) (ball pos2) (final pos3))
+  (:goal (and (final pos3) (atball pos3))))

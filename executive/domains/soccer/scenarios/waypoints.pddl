@@ -1,0 +1,5 @@
+(define (problem waypoints)
+  (:domain soccer)
+  (:objects home way1 way2 way3 way4)
+  (:init (robot home) (route home way1) (route way1 way2) (route way2 way3) (route way3 way4))
+  (:goal (and (visited way1) (visited way2) (visited way3) (visited way4))))

@@ -1,0 +1,93 @@
+"""Trials of the soccer robot's actions (paper 5.1, 5.4): starts, beliefs, and the ball that gets in the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from executive.actions.planar import PHIG, VG, XG, YG, X, Y
+from executive.belief.ball_track import BallTrack
+from executive.belief.planar_ekf import Pose
+from executive.domains.soccer import robot
+from executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
+from executive.domains.soccer.library import AT_BALL_MPS
+from executive.library import Action, Array
+from schemas.messages import SimTruth
+
+COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
+ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would be inside the robot
+BELIEF_SIGMA_M = 0.02  # of a pose that has been tracked for a while
+BELIEF_SIGMA_RAD = 0.015
+BALL_SIGMA_M = 0.02
+DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
+DRIBBLE_Y_M = 1.8
+DRIBBLE_M = (1.0, 3.0)  # from the ball to its target
+
+
+@dataclass(frozen=True, slots=True)
+class SoccerTrials:
+    """See tools.lockstep.Trials; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
+
+    def sample(self, action: Action, rng: np.random.Generator) -> Array:
+        """Controller arguments, shape (8,), uniform over the action's ranges but for what cannot be."""
+        lower = np.array([p.lower for p in action.parameters])
+        upper = np.array([p.upper for p in action.parameters])
+        dribble = action.name == "dribbleBall"
+        if dribble:
+            for at, limit in ((X, DRIBBLE_X_M), (Y, DRIBBLE_Y_M), (XG, DRIBBLE_X_M), (YG, DRIBBLE_Y_M)):
+                lower[at], upper[at] = -limit, limit
+        elif action.name == "approachBall":
+            upper[VG] = AT_BALL_MPS
+        while True:
+            places = rng.uniform(lower, upper)
+            arguments: Array = action.arguments(places[None, :])[0]
+            apart = math.dist(places[[X, Y]], places[[XG, YG]])
+            if (DRIBBLE_M[0] <= apart <= DRIBBLE_M[1]) if dribble else self._has_room(arguments):
+                return arguments
+
+    def start(self, action: Action, arguments: Array) -> dict[str, float]:
+        """Start state of the body: the ball in the rail for dribbles, else where it would be at the goal."""
+        x, y, phi, v, xg, yg, phig, _ = arguments.tolist()
+        robot_state = {"x": x, "y": y, "phi": phi, "v": v}
+        if action.name == "dribbleBall":
+            c, s = math.cos(phi), math.sin(phi)
+            reach = robot.IN_RAIL_M
+            return {**robot_state, "ball_x": x + reach * c, "ball_y": y + reach * s, "ball_vx": v * c, "ball_vy": v * s}
+        reach = robot.BEHIND_BALL_M
+        return {**robot_state, "ball_x": xg + reach * math.cos(phig), "ball_y": yg + reach * math.sin(phig)}
+
+    def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> SoccerBelief:
+        """What the robot would believe had it been on its way for a while."""
+        off = rng.standard_normal(5)
+        pose = Pose(
+            start["x"] + BELIEF_SIGMA_M * off[0],
+            start["y"] + BELIEF_SIGMA_M * off[1],
+            start["phi"] + BELIEF_SIGMA_RAD * off[2],
+            (BELIEF_SIGMA_M**2, 0.0, 0.0, BELIEF_SIGMA_M**2, 0.0, BELIEF_SIGMA_RAD**2),
+        )
+        c, s = math.cos(start["phi"]), math.sin(start["phi"])
+        dx, dy = start["ball_x"] - start["x"], start["ball_y"] - start["y"]
+        sigma = min(BALL_SIGMA_M, 0.05 * math.hypot(dx, dy))
+        velocity = (start.get("ball_vx", 0.0), start.get("ball_vy", 0.0))
+        ball = BallTrack(c * dx + s * dy + sigma * off[3], c * dy - s * dx + sigma * off[4], *velocity, sigma**2, 0)
+        return replace(unknown(), pose=pose, v=start["v"], ball=ball, poses_seen=FIRST_POSES)
+
+    def arguments_now(self, belief: SoccerBelief, arguments: Array) -> list[float]:
+        """The controller arguments with the believed state in place of the start: an example to learn from."""
+        pose = belief.pose
+        return [pose.x, pose.y, pose.phi, belief.v, *arguments[XG : VG + 1].tolist()]
+
+    def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
+        """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""
+        if action.name == "dribbleBall":
+            return ""
+        moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
+        return "collision" if moved > COLLIDED_M else ""
+
+    def _has_room(self, arguments: Array) -> bool:
+        ball_x = arguments[XG] + robot.BEHIND_BALL_M * math.cos(arguments[PHIG])
+        ball_y = arguments[YG] + robot.BEHIND_BALL_M * math.sin(arguments[PHIG])
+        return math.hypot(ball_x - arguments[X], ball_y - arguments[Y]) > ROOM_M
