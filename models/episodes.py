@@ -90,9 +90,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     except OSError:
         raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` makes them)") from None
     except (ValueError, KeyError, TypeError) as error:
-        raise UsageError(
-            f"{folder / MANIFEST}: not a manifest ({error}), expected what `tailor gather` writes"
-        ) from None
+        raise UsageError(f"{folder / MANIFEST}: not a manifest ({error}), `tailor gather` writes them") from None
     return dict(manifest)
 
 

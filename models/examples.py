@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from models.episodes import TICK_S, Episode
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,9 +20,9 @@ class Examples:
 
     arguments: Array  # (n, k)
     targets: Array  # (n,) seconds that remain, or 1 for success and 0 for failure
-    groups: NDArray[np.int64]  # (n,) number of the episode
+    groups: Numbers  # (n,) number of the episode
 
-    def of(self, episodes: NDArray[np.int64]) -> Examples:
+    def of(self, episodes: Numbers) -> Examples:
         """The rows of some episodes."""
         chosen = np.isin(self.groups, episodes)
         return Examples(self.arguments[chosen], self.targets[chosen], self.groups[chosen])
@@ -46,15 +47,13 @@ def _examples(episodes: Sequence[Episode], n_i: int, target: Callable[[Episode],
     return Examples(np.concatenate(rows), np.concatenate(targets), np.concatenate(groups))
 
 
-def split(
-    groups: NDArray[np.int64], share: float, rng: np.random.Generator
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def split(groups: Numbers, share: float, rng: np.random.Generator) -> tuple[Numbers, Numbers]:
     """Numbers of the episodes to train on, and of the `share` to test with; never one episode in both."""
     numbers = rng.permutation(np.unique(groups))
     cut = round(share * len(numbers))
     return np.sort(numbers[cut:]), np.sort(numbers[:cut])
 
 
-def folds(groups: NDArray[np.int64], count: int, rng: np.random.Generator) -> list[NDArray[np.int64]]:
+def folds(groups: Numbers, count: int, rng: np.random.Generator) -> list[Numbers]:
     """Episodes in `count` parts of about equal size."""
     return [np.sort(part) for part in np.array_split(rng.permutation(np.unique(groups)), count)]

@@ -1,0 +1,111 @@
+"""Writes a trained model into a zoo: the ONNX file, and the card that says what it is."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.card import FORMAT, card_path, identity, sha256_of, write_card
+from models.episodes import DataSet
+from models.features import FeatureSpace
+from models.onnx_export import export_duration, export_success
+from models.training import Trained
+
+Array = NDArray[np.float64]
+GOLDEN = 32
+LONGEST_FACTOR = 3.0  # a prediction beyond three times the longest episode is no prediction
+LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
+
+
+@dataclass(frozen=True, slots=True)
+class Publication:
+    """What a card says beside what the data set and the training know."""
+
+    kind: str  # "duration" or "success"
+    learner: str
+    space: FeatureSpace
+    seed: int
+    command: str  # what makes the model again
+
+
+def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
+    """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
+    card = _card(data, trained, about)
+    export = export_duration if about.kind == "duration" else export_success
+    content = export(trained.learner, about.space, identity(card)).SerializeToString()
+    path = zoo / card["robot"] / card["action"] / f"{about.kind}.onnx"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+    write_card(card_path(path), {**card, "sha256": sha256_of(content)})
+    return path
+
+
+def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]:
+    manifest = data.manifest
+    longest = max(episode.duration_s for episode in data.episodes)
+    outputs = ["mean_s", "std_s"] if about.kind == "duration" else ["success"]
+    return {
+        "format": FORMAT,
+        "robot": manifest["robot"],
+        "action": manifest["action"],
+        "kind": about.kind,
+        "features": about.space.name,
+        "feature_units": {feature.name: feature.unit for feature in about.space.features},
+        "arguments": manifest["arguments"],
+        "outputs": outputs,
+        "output_range": [0.0, LONGEST_FACTOR * longest] if about.kind == "duration" else [0.0, 1.0],
+        **({"threshold": trained.learner.threshold_} if about.kind == "success" else {}),
+        "episodes": {
+            "count": len(data.episodes),
+            "finished": sum(episode.finished for episode in data.episodes),
+            "on_policy": manifest.get("on_policy", 0),
+            "sha256": data.sha256,
+            "seed": manifest.get("seed"),
+            "source": manifest.get("source"),
+            "source_sha256": manifest.get("source_sha256"),
+        },
+        "learner": {
+            "name": about.learner,
+            "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
+            "leaves": leaves(trained.learner),
+            "n_i": trained.n_i,
+            "seed": about.seed,
+        },
+        "test": trained.test,
+        "golden": golden(data, trained.learner, about),
+        "versions": {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}},
+        "command": about.command,
+    }
+
+
+def _plain(value: object) -> bool:
+    return value is None or isinstance(value, bool | int | float | str)
+
+
+def leaves(learner: Any) -> list[int]:
+    """Number of leaves of each of a learner's trees, if it has any."""
+    if hasattr(learner, "splits_"):
+        return [learner.splits_.leaves]
+    return [tree.leaves for tree in getattr(learner, "trees_", [])]
+
+
+def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequence[Any]]:
+    """Arguments spread over the episodes, the last at zero distance, and what the learner itself says of them."""
+    chosen = np.linspace(0, len(data.episodes) - 1, GOLDEN).astype(int)
+    arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
+    half = arguments.shape[1] // 2
+    arguments[-1, half:] = arguments[-1, :half]
+    features = about.space(arguments)
+    if about.kind == "duration":
+        answers: Mapping[str, Array] = dict(zip(("mean_s", "std_s"), learner.predict_spread(features), strict=True))
+    else:
+        answers = {"success": learner.predict_proba(features)[:, 1]}
+    rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in answers.items()}
+    return {"arguments": arguments.tolist(), **rounded}

@@ -1,0 +1,65 @@
+"""Episodes to a model that is published and loaded again, on a kinematic stand-in."""
+
+import numpy as np
+import pytest
+
+from models import features, runtime
+from models.episodes import DataSet, Episode
+from models.publishing import Publication, publish
+from models.training import Trained, train_duration, train_success
+from schemas.errors import UsageError
+from tests import standin
+
+ARGUMENTS = [
+    {"name": q.name, "unit": q.unit, "lower": -4.0, "upper": 4.0} for q in features.SPACES["projective"].arguments
+]
+
+
+def data_set(count: int, seed: int = 1) -> DataSet:
+    made = standin.episodes(count, seed)
+    episodes = tuple(Episode(k, t[0], t, d, ok, "" if ok else "ball") for k, (t, d, ok) in enumerate(made))
+    return DataSet({"robot": "toy", "action": "goToPose", "arguments": ARGUMENTS}, episodes, "0" * 64)
+
+
+@pytest.fixture(scope="module")
+def data() -> DataSet:
+    return data_set(400)
+
+
+@pytest.fixture(scope="module")
+def duration(data: DataSet) -> Trained:
+    return train_duration(data.episodes, features.projective, "bag", seed=3)
+
+
+def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
+    about = Publication("duration", "bag", features.projective, 3, "tailor train toy")
+    model = runtime.load_model(publish(tmp_path, data, duration, about))
+    arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
+    mean, std = model.predict(arguments)
+    expected = duration.learner.predict_spread(features.projective(arguments))
+    assert np.abs(mean - expected[0]).max() <= 1e-4
+    assert np.abs(std - expected[1]).max() <= 1e-4
+    assert model.card["test"]["mae_s"] < 0.25 * model.card["test"]["mean_duration_s"]
+
+
+def test_training_twice_gives_the_same_bits(data, duration) -> None:
+    again = train_duration(data.episodes, features.projective, "bag", seed=3)
+    assert again.test == duration.test
+    rows = features.projective(data.episodes[0].ticks)
+    assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
+
+
+def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
+    trained = train_success(data.episodes, features.projective, "tree", seed=3)
+    about = Publication("success", "tree", features.projective, 3, "tailor train toy")
+    model = runtime.load_model(publish(tmp_path, data, trained, about))
+    fresh = data_set(300, seed=8)
+    probability = model.probability(np.stack([e.ticks[0] for e in fresh.episodes]))
+    observed = np.array([e.success for e in fresh.episodes])
+    missed = (probability >= model.threshold) & ~observed
+    assert missed.sum() < 0.3 * (~observed).sum()
+
+
+def test_too_few_episodes_are_told_not_trained_on(data) -> None:
+    with pytest.raises(UsageError, match="10 finished episodes, expected at least 40"):
+        train_duration(data.episodes[:10], features.projective, "bag", seed=3)
