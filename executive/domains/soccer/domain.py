@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from executive.domains.soccer import belief as believing
 from executive.domains.soccer import meaning
@@ -21,8 +21,8 @@ class SoccerDomain:
     pddl: str
     name: str = "soccer"
     robot: str = "agilo"
-    actions: Mapping[str, Action] = ACTIONS
-    executables: Mapping[str, str] = EXECUTABLES
+    actions: Mapping[str, Action] = field(default_factory=lambda: ACTIONS)
+    executables: Mapping[str, str] = field(default_factory=lambda: EXECUTABLES)
     axes: tuple[Axis, ...] = (
         Axis("v", "m/s", -V_MAX_MPS, V_MAX_MPS),
         Axis("omega", "rad/s", -OMEGA_MAX_RADPS, OMEGA_MAX_RADPS),
