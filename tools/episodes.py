@@ -1,34 +1,28 @@
-"""Whole episodes in lock-step: the executive's core and a simulated body joined in one process, as fast as it goes.
+"""Whole episodes in lock-step: the executive's core and a simulated world joined in one process, as fast as it goes.
 
-The same core as live; the driver's part is played by the same guard as on the bus.
+The same core as live, and on the robot's side the same driver and guard as on the bus.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from executive.budget import CheckBudget
 from executive.core.context import PERIOD_NS, Context
 from executive.core.state import Inputs, Output, State, initial_state
 from executive.core.step import step
-from schemas.messages import ActionFinished, DriverState, ExecStatus, Sample, SimTruth, Subgoals
+from schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, SimTruth, Subgoals
 from schemas.topics import key_of
 from simnodes.body import Body, Reading
+from simnodes.declaration import declaration
+from simnodes.driver import Driver
+from simnodes.world import Event, World
 
-NOISE_STREAM = 1  # of the seed; the scenario is drawn from stream 0
 CHECKS_PER_TICK = 300  # what a quiet machine grants in 60 ms, roughly
 SENDER = "00" * 16
-
-
-@dataclass(frozen=True, slots=True)
-class Event:
-    """Something that happens to the world by itself, e.g. the ball is kicked."""
-
-    at_s: float
-    place: Mapping[str, float]
+EPOCH = 1
 
 
 @dataclass(slots=True)
@@ -36,12 +30,13 @@ class Episode:
     """What happened; times in seconds since the start."""
 
     result: str = "failed: time limit"
-    started_s: float = float("nan")  # first action
-    ended_s: float = float("nan")  # last action
+    started_s: float = math.nan  # first action
+    ended_s: float = math.nan  # last action
     finished: list[ActionFinished] = field(default_factory=list)
     subgoals: list[Subgoals] = field(default_factory=list)
     truth: list[SimTruth] = field(default_factory=list)
     status: list[ExecStatus] = field(default_factory=list)
+    messages: list[Message] = field(default_factory=list)  # all that the core said, and the truth, in order
 
     @property
     def achieved(self) -> bool:
@@ -68,42 +63,70 @@ def run_episode(
       context: Composed with sender `SENDER`.
       body: Reset here; its noise is drawn from stream 1 of `seed`.
       start: Start state, as `Body.reset` takes it.
+      seed: Of the body's noise.
       events: What happens on the way.
+      limit_s: Simulated seconds.
     """
-    body.reset(np.random.default_rng([seed, NOISE_STREAM]), start)
-    episode, state, pending = Episode(), initial_state(context), sorted(events, key=lambda e: e.at_s)
-    goal, readings = context.problem.goal_text, body.advance(PERIOD_NS)
+    link = _Link(context.domain.robot, World(body, start, seed, events))
+    episode, state = Episode(), initial_state(context)
+    goal, samples = context.problem.goal_text, link.advance(0, episode)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        inputs = Inputs(_samples(context.domain.robot, readings, now_ns, tick), goal)
-        state, outputs = step(context, state, now_ns, inputs, CheckBudget(CHECKS_PER_TICK))
+        state, outputs = step(context, state, now_ns, Inputs(samples, goal), CheckBudget(CHECKS_PER_TICK))
         goal = ""
         _note(episode, state, outputs, now_ns / 1e9)
         if not state.task.active:
             episode.result = state.task.result
             break
-        while pending and pending[0].at_s <= now_ns / 1e9:
-            body.place(pending.pop(0).place)
-        body.command(state.command)
-        readings = body.advance(PERIOD_NS)
-        episode.truth.append(body.truth())
+        link.take(outputs, now_ns, tick)
+        samples = link.advance(now_ns, episode)
     return episode
 
 
-def _samples(robot: str, readings: Sequence[Reading], now_ns: int, tick: int) -> tuple[Sample, ...]:
-    """The newest reading of each topic, as a ring of depth one would hand it over, and an armed driver."""
-    newest = {reading.topic: reading for reading in readings if reading.topic != "truth"}
-    samples = [Sample(key_of(r.topic, robot), r.message, r.time_ns, tick) for r in newest.values()]
-    armed = DriverState(now_ns, "armed", "", 1, SENDER, 0)
-    samples.append(Sample(key_of("driver", robot), armed, now_ns, tick))
-    return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
+class _Link:
+    """What the bus is live: carries commands to the driver and readings back, with no delay and nothing lost."""
+
+    def __init__(self, robot: str, world: World) -> None:
+        self._robot, self._world = robot, world
+        self._declared = declaration(robot)
+        self._driver = Driver(self._declared.limits, EPOCH)
+        self._sequence = 0
+
+    def take(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
+        """Hand the tick's commands and requests to the driver."""
+        heard = (self._declared.command_topic, "arm_request")
+        samples = [
+            Sample(key_of(o.topic, self._robot), o.message, now_ns, tick, SENDER) for o in outputs if o.topic in heard
+        ]
+        self._driver.take(samples, {}, now_ns)
+        if any(not isinstance(sample.message, ArmRequest) for sample in samples):
+            self._world.begin()
+
+    def advance(self, now_ns: int, episode: Episode) -> tuple[Sample, ...]:
+        """One period of the world under the guard's output; the newest reading of each topic and the driver's state."""
+        self._world.body.command(self._driver.guard.output(now_ns))
+        newest: dict[str, Reading] = {}
+        for reading in self._world.advance(PERIOD_NS):
+            newest[reading.topic] = reading
+        self._sequence += 1
+        truth = newest.pop("truth", None)
+        if truth is not None and isinstance(truth.message, SimTruth):
+            episode.truth.append(truth.message)
+            episode.messages.append(truth.message)
+        samples = [Sample(key_of(r.topic, self._robot), r.message, r.time_ns, self._sequence) for r in newest.values()]
+        after_ns = now_ns + PERIOD_NS
+        driver = self._driver.state(after_ns, after_ns)
+        if driver is not None:
+            samples.append(Sample(key_of("driver", self._robot), driver, after_ns, self._sequence))
+        return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
 
 
 def _note(episode: Episode, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
-    if state.task.running is not None and np.isnan(episode.started_s):
+    if state.task.running is not None and math.isnan(episode.started_s):
         episode.started_s = now_s
     for output in outputs:
         message = output.message
+        episode.messages.append(message)
         if isinstance(message, ActionFinished):
             episode.finished.append(message)
             episode.ended_s = now_s
