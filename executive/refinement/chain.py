@@ -95,7 +95,7 @@ class ChainSolver(Solver):
         if blocks is None:
             raise ValueError("a parameter occurs in actions that are not neighbours: not a chain")
         self._blocks = blocks
-        self._links = _links(objective.stages, blocks)
+        self._links = links_of(objective.stages, blocks)
         paired = any(len(a) and len(b) for a, b in pairwise(blocks))
         self._width = max(KEPT + 2, int(np.sqrt(batch)) if paired else batch // 2)
         self._kept = [self._seeds[:, block] for block in blocks]
@@ -103,12 +103,12 @@ class ChainSolver(Solver):
     def _check(self) -> None:
         drawn = [self._candidates(index) for index in range(len(self._blocks))]
         costs = [
-            _pairwise(link, before, own)
+            pairwise_costs(link, before, own)
             for link, before, own in zip(self._links, [np.empty((1, 0)), *drawn], drawn, strict=False)
         ]
         forward = _forward(costs)
         candidate = np.empty(self._objective.ranges.count)
-        for block, candidates, chosen in zip(self._blocks, drawn, _traced(costs, forward), strict=True):
+        for block, candidates, chosen in zip(self._blocks, drawn, traced(costs, forward), strict=True):
             candidate[block] = candidates[chosen]
         self._consider(candidate, float(forward[-1].min()))
         for index, through in enumerate(_through(costs, forward)):
@@ -146,7 +146,7 @@ class ChainSolver(Solver):
         return origin + width * np.where(alone & ~single, 0.0, step)
 
 
-def _links(stages: Sequence[StageCost], blocks: tuple[Columns, ...]) -> tuple[Link, ...]:
+def links_of(stages: Sequence[StageCost], blocks: tuple[Columns, ...]) -> tuple[Link, ...]:
     """How each stage finds its columns in the block before and in its own."""
     links = []
     before: Columns = np.empty(0, dtype=np.intp)
@@ -159,7 +159,7 @@ def _links(stages: Sequence[StageCost], blocks: tuple[Columns, ...]) -> tuple[Li
     return tuple(links)
 
 
-def _pairwise(link: Link, before: Array, own: Array) -> Array:
+def pairwise_costs(link: Link, before: Array, own: Array) -> Array:
     """The stage's cost for every pair of values, shape (len(before), len(own)); asks no row twice."""
     first = before[:, link.before] if len(link.before) else np.empty((1, 0))
     second = own[:, link.own] if len(link.own) else np.empty((1, 0))
@@ -188,7 +188,7 @@ def _through(costs: list[Array], forward: list[Array]) -> list[Array]:
     return through[::-1]
 
 
-def _traced(costs: list[Array], forward: list[Array]) -> list[int]:
+def traced(costs: list[Array], forward: list[Array]) -> list[int]:
     """The candidate that the best chain takes at every subgoal, first to last."""
     chain = [int(np.argmin(forward[-1]))]
     for cost, least in zip(costs[:0:-1], forward[-2::-1], strict=True):
