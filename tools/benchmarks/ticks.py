@@ -1,0 +1,110 @@
+"""How punctual a live system is: executive, simulator and recorder as processes, idle and beside CPU burners."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from runtime.processes import Child, stopped_in_order, tailor
+from runtime.recording import open_recording
+from runtime.session import Session, open_client
+from schemas.errors import Rejected
+from schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
+from tools.system import free_endpoint
+
+BURNERS = 4
+BURN = "while True: pass"
+START_S = 30.0
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print one row a case."""
+    seconds = 15 if quick else 60
+    table = Table(title=f"{seconds} s of soccer at 10 Hz, ms", caption="p50 / p99 / max")
+    for column in ("case", "ticks", "missed", "work", "lateness", "percept to command"):
+        table.add_column(column, justify="left" if column == "case" else "right")
+    for case, burners in (("idle", 0), (f"{BURNERS} CPU burners", BURNERS)):
+        with tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder) / "ticks.mcap"
+            _drive(recording, seconds, burners)
+            table.add_row(case, *_row(recording))
+    console.print(table)
+
+
+def _drive(recording: Path, seconds: float, burners: int) -> None:
+    """Let a system play one episode after another for so long."""
+    endpoint = free_endpoint()
+    up = tailor("up", "soccer", "--connect", endpoint, "--record", str(recording))
+    with tempfile.TemporaryFile("w") as log, stopped_in_order([Child("up", up, log)]) as children:
+        _wait_for_router(endpoint)
+        children += [Child("burner", [sys.executable, "-c", BURN]) for _ in range(burners)]
+        with open_client(endpoint) as session:
+            _play(session, time.monotonic() + seconds)
+
+
+def _wait_for_router(endpoint: str) -> None:
+    host, port = endpoint.removeprefix("tcp/").split(":")
+    import socket
+
+    deadline = time.monotonic() + START_S
+    while time.monotonic() < deadline:
+        with socket.socket() as probe:
+            if probe.connect_ex((host, int(port))) == 0:
+                return
+        time.sleep(0.05)
+    raise RuntimeError(f"no router at {endpoint} after {START_S} s")
+
+
+def _play(session: Session, until_s: float) -> None:
+    """Whenever the goal is reached, put the world back and ask for it again."""
+    inbox, arm = session.inbox(("status",), ""), session.publisher("arm_request", "agilo")
+    seed = 0
+    while time.monotonic() < until_s:
+        for sample in inbox.drain():
+            if isinstance(sample.message, ExecStatus) and sample.message.result:
+                seed += 1
+                session.ask("agilo/sim/reset", f'{{"seed": {seed}}}')
+                time.sleep(1.5)  # the belief finds itself again
+                arm.publish(ArmRequest(arm=True, reset=False, sender=sample.sender, epoch=0))
+                session.ask("exec/goal", "")
+                time.sleep(0.5)
+                inbox.drain()
+        time.sleep(0.05)
+
+
+def _row(recording: Path) -> list[str]:
+    reports, delays = [], []
+    sent: dict[int, int] = {}
+    percepts: dict[tuple[str, int], int] = {}
+    for recorded, message in open_recording(recording).decoded():
+        if isinstance(message, Rejected):
+            continue
+        percepts[recorded.key, recorded.sequence] = recorded.publish_ns
+        if isinstance(message, VelocityCommand):
+            sent[message.stamp_ns] = recorded.log_ns
+        elif isinstance(message, TickReport):
+            reports.append(message)
+            newest = [
+                percepts.get((key, number), 0)
+                for key, number in zip(message.input_keys, message.input_sequences, strict=True)
+                if key.endswith(("/odom", "/pose"))
+            ]
+            if message.stamp_ns in sent and newest:
+                delays.append((sent[message.stamp_ns] - max(newest)) / 1e6)
+    work = np.array([report.work_ns for report in reports]) / 1e6
+    late = np.array([report.lateness_ns for report in reports]) / 1e6
+    missed = sum(report.skipped for report in reports)
+    return [str(len(reports)), str(missed), _spread(work), _spread(late), _spread(np.array(delays))]
+
+
+def _spread(values: NDArray[np.float64]) -> str:
+    if not len(values):
+        return "none"
+    return f"{np.percentile(values, 50):.2f} / {np.percentile(values, 99):.2f} / {values.max():.2f}"
