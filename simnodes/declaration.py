@@ -11,15 +11,21 @@ from simnodes.guard import Limit
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """A driver's command: its topic, and limits in the order of the axes."""
+    """A driver's command: its topic, and its axes with their limits, in one order."""
 
     command_topic: str  # name in schemas.topics
+    axes: tuple[str, ...]
     limits: tuple[Limit, ...]
+    timeout_ns: int = 300_000_000
 
 
 def declaration(robot: str) -> Declaration:
     """The declaration of a robot that ships with us."""
     text = resources.files("simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
-    table = tomllib.loads(text)
-    axes = table["command"]["axes"]
-    return Declaration(table["command"]["topic"], tuple(Limit(axis["lower"], axis["upper"]) for axis in axes))
+    command = tomllib.loads(text)["command"]
+    return Declaration(
+        command_topic=command["topic"],
+        axes=tuple(axis["name"] for axis in command["axes"]),
+        limits=tuple(Limit(axis["lower"], axis["upper"]) for axis in command["axes"]),
+        timeout_ns=round(command["timeout_s"] * 1e9),
+    )

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from schemas.messages import ArmRequest, DriverState, EStop, Message, Sample, VelocityCommand
-from simnodes.guard import Guard, Limit, Mode
+from schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
+from simnodes.declaration import Declaration
+from simnodes.guard import Guard, Mode
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
 TOPICS = ("arm_request", "estop")  # that every driver listens to, besides its command
@@ -17,9 +18,10 @@ TOPICS = ("arm_request", "estop")  # that every driver listens to, besides its c
 class Driver:
     """Feeds a guard from the bus and tells what it does."""
 
-    def __init__(self, limits: Sequence[Limit], epoch: int) -> None:
+    def __init__(self, declared: Declaration, epoch: int) -> None:
         """`epoch` must be another one at every start, and not 0."""
-        self.guard = Guard(limits, epoch)
+        self.guard = Guard(declared.limits, epoch, declared.timeout_ns)
+        self._axes = declared.axes
         self._told: tuple[Mode, str] | None = None
         self._tell_at_ns = 0
         self._rejected: dict[str, int] = {}
@@ -41,7 +43,9 @@ class Driver:
             elif isinstance(message, ArmRequest):
                 self._arm(message, sample.sender, now_ns)
             else:
-                self.guard.command(sample.arrival_ns, sample.sender, sample.sequence, command_values(message))
+                self.guard.command(
+                    sample.arrival_ns, sample.sender, sample.sequence, command_values(message, self._axes)
+                )
         self._rejected = rejected
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
@@ -70,8 +74,11 @@ class Driver:
             self.guard.disarm(f"disarmed by {(sender or 'somebody')[:8]}")
 
 
-def command_values(message: Message) -> tuple[float, ...]:
-    """The set-points in a command, in the order of the driver's axes; empty for what is no command."""
+def command_values(message: Message, axes: Sequence[str]) -> tuple[float, ...]:
+    """The set-points in a command, in the order of the driver's axes; empty, so refused, for other messages."""
     if isinstance(message, VelocityCommand):
         return (message.v, message.omega)
+    if isinstance(message, JointCommand) and sorted(message.names) == sorted(axes):
+        named = dict(zip(message.names, message.velocities, strict=False))
+        return tuple(named[axis] for axis in axes if axis in named)
     return ()

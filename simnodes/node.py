@@ -9,6 +9,7 @@ from typing import Any
 
 from runtime.clock import Clock, wall_ns
 from runtime.loop import Loop, Turn
+from runtime.publisher import Publisher
 from runtime.session import Session
 from simnodes.body import Reading
 from simnodes.declaration import Declaration
@@ -18,7 +19,6 @@ from simnodes.world import World
 
 PERIOD_NS = 10_000_000  # of world time a turn; the guard's stop is late by at most as much
 MOST_AT_ONCE = 10  # periods to catch up with after a stall; what is beyond is lost to the world
-SENSORS = ("odom", "pose", "ball", "truth")
 
 
 class Node:
@@ -44,11 +44,12 @@ class Node:
           speed: World seconds per real second; the guard's time-out stays real.
         """
         robot = world.body.robot
-        self.driver = Driver(declared.limits, epoch)
+        self.driver = Driver(declared, epoch)
         self._world, self._clock = world, clock
         self._loop = Loop(round(PERIOD_NS / speed), clock)
         self._inbox = session.inbox((declared.command_topic, *TOPICS), robot)
-        self._out = {name: session.publisher(name, robot) for name in (*SENSORS, "driver")}
+        self._session = session
+        self._out = {"driver": session.publisher("driver", robot)}
         questions = {name: session.questions(f"{robot}/sim/{name}") for name in NAMES}
         self._services = Services(world, questions, on_reset=lambda: self.driver.guard.disarm("the world was reset"))
         self._frozen_ns = 0  # real time that does not count for the guard, because the world stood still
@@ -88,7 +89,12 @@ class Node:
         for reading in readings:
             sensed: Any = reading.message
             message = replace(sensed, stamp_ns=origin_ns + reading.time_ns)
-            self._out[reading.topic].publish(message)
+            self._outlet(reading.topic).publish(message)
+
+    def _outlet(self, topic: str) -> Publisher:
+        if topic not in self._out:  # which sensors a body has shows when they speak
+            self._out[topic] = self._session.publisher(topic, self._world.body.robot)
+        return self._out[topic]
 
     def _tell(self, now_ns: int) -> None:
         state = self.driver.state(now_ns, wall_ns())

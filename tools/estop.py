@@ -5,12 +5,16 @@ from __future__ import annotations
 import argparse
 import time
 
+from runtime.intake import Intake
+from runtime.publisher import Publisher
 from runtime.session import open_client
-from schemas.messages import EStop
+from schemas.codec import decode
+from schemas.messages import DriverState, EStop
+from schemas.topics import TOPICS
 from tools.deployment import configure_bus, deployment
 
-WAIT_S = 1.0  # for a driver to be known to this session
-REPEATS, APART_S = 3, 0.02  # against a publication that is lost
+WAIT_S = 1.5  # for every driver to confirm; they speak at 10 Hz
+AGAIN_S = 0.1  # until all have, repeat it: a publication may be lost
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -19,15 +23,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 when some driver listens, 1 when none does."""
+    """0 when every driver that speaks has stopped, 1 when one has not or none speaks."""
     with open_client(deployment(arguments).bus.endpoint) as session:
-        outlet = session.publisher("estop", "")
-        ends = time.monotonic() + WAIT_S
-        while not outlet.matched() and time.monotonic() < ends:
-            time.sleep(0.005)
-        heard = outlet.matched()
-        for _ in range(REPEATS):
-            outlet.publish(EStop(True))
-            time.sleep(APART_S)
-    print("stopped" if heard else "no driver listens")
-    return 0 if heard else 1
+        intake = Intake()
+        tap = session.tap(TOPICS["driver"].key.format(robot="*"), intake.put)
+        modes = _stop(session.publisher("estop", ""), intake)
+        tap.undeclare()
+    for robot, mode in sorted(modes.items()):
+        print(f"{robot} is {mode}")
+    if not modes:
+        print("no driver speaks")
+    return 0 if modes and set(modes.values()) == {"estopped"} else 1
+
+
+def _stop(outlet: Publisher, intake: Intake) -> dict[str, str]:
+    """Each robot's mode after the e-stop was sent, repeatedly, for WAIT_S."""
+    modes: dict[str, str] = {}
+    ends = time.monotonic() + WAIT_S
+    while time.monotonic() < ends:
+        outlet.publish(EStop(True))
+        time.sleep(AGAIN_S)
+        for raw in intake.take():
+            state = decode(DriverState, raw.payload)
+            if isinstance(state, DriverState):
+                modes[raw.key.partition("/")[0]] = state.mode
+    return modes

@@ -16,7 +16,7 @@ from simnodes.node import Node
 from simnodes.world import World
 from tests.fake_body import FakeBody
 
-LIMITS = Declaration("cmd_vel", (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
+LIMITS = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
 
 
 class Traced(FakeBody):

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from schemas.messages import ArmRequest, EStop, Sample, VelocityCommand
-from simnodes.driver import Driver
+from schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
+from simnodes.declaration import Declaration, declaration
+from simnodes.driver import Driver, command_values
 from simnodes.guard import Limit, Mode
 from simnodes.services import Services
 from simnodes.world import Event, World
@@ -14,7 +15,7 @@ from tests.fake_body import FakeBody
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000
-LIMITS = (Limit(-1.0, 1.0), Limit(-2.0, 2.0))
+DECLARED = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
 
 
 def arm(by=A, at_ns=0, **changes):
@@ -27,19 +28,19 @@ def command(v, sequence, sender=A, at_ns=0):
 
 
 def test_an_arming_request_without_a_name_arms_whoever_sent_it():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([arm(A), command(0.5, 1, A, 1)], {}, 1)
     assert driver.guard.output(1) == (0.5, 0.0)
 
 
 def test_a_person_may_arm_the_executive():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([arm(B, sender=A), command(0.5, 1, A, 1)], {}, 1)
     assert driver.guard.sender == A
 
 
 def test_an_estop_beats_everything_that_arrives_with_it():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([arm(A)], {}, 0)
     driver.take([command(0.5, 1), arm(A, 1), Sample("estop", EStop(True), 2, 1, B)], {}, 2)
     assert driver.guard.mode is Mode.ESTOPPED
@@ -49,7 +50,7 @@ def test_an_estop_beats_everything_that_arrives_with_it():
 
 
 def test_disarming_names_who_did_it_and_heeds_the_epoch():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([arm(A)], {}, 0)
     driver.take([arm(B, arm=False, epoch=6)], {}, 0)
     assert driver.guard.mode is Mode.ARMED
@@ -58,7 +59,7 @@ def test_disarming_names_who_did_it_and_heeds_the_epoch():
 
 
 def test_the_state_is_told_at_10_hz_and_on_change():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     assert driver.state(0, 5).mode == "disarmed"
     assert driver.state(99 * MS, 5) is None
     assert driver.state(100 * MS, 5) is not None
@@ -68,17 +69,29 @@ def test_the_state_is_told_at_10_hz_and_on_change():
 
 
 def test_the_state_counts_refusals_and_undecodable_bytes():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([command(0.5, 1)], {"malformed": 3}, 0)
     told = driver.state(0, 5)
     assert dict(zip(told.refused_reasons, told.refused_counts, strict=True)) == {"not armed": 1, "malformed": 3}
 
 
 def test_a_message_that_is_no_command_never_moves_anything():
-    driver = Driver(LIMITS, 7)
+    driver = Driver(DECLARED, 7)
     driver.take([arm(A)], {}, 0)
     driver.take([Sample("agilo/cmd_vel", EStop(False), 0, 1, A), Sample("x", None, 0, 2, A)], {}, 0)
     assert driver.guard.output(0) == (0.0, 0.0)
+
+
+def test_joint_commands_go_by_name():
+    command = JointCommand(0, ("elbow", "wrist"), (0.1, 0.2))
+    assert command_values(command, ("wrist", "elbow")) == (0.2, 0.1)
+    assert command_values(command, ("wrist", "elbow", "base")) == ()
+    assert command_values(command, ("wrist", "base")) == ()
+    assert command_values(JointCommand(0, ("elbow", "wrist"), (0.1,)), ("wrist", "elbow")) == (0.1,)
+
+
+def test_agilo_declares_its_limits_and_the_time_out():
+    assert declaration("agilo") == Declaration("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
 
 
 def make_world(*events):
