@@ -11,6 +11,10 @@ from executive.planning.problem import Problem
 from executive.planning.problem_reader import parse_problem
 from executive.planning.search import GroundCache, Search
 from executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
+from executive.planning.suffix import relink, suffix
+from executive.planning.validator import validate
+from executive.planning.vhpop_reader import PlanTextError, parse_plan
+from executive.planning.vhpop_text import format_links, format_plan
 
 __all__ = [
     "DEFAULT",
@@ -23,12 +27,19 @@ __all__ = [
     "Literal",
     "PddlError",
     "Plan",
+    "PlanTextError",
     "Problem",
     "Result",
     "Search",
     "Settings",
     "Step",
     "Unsupported",
+    "format_links",
+    "format_plan",
     "parse_domain",
+    "parse_plan",
     "parse_problem",
+    "relink",
+    "suffix",
+    "validate",
 ]

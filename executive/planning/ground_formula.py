@@ -114,14 +114,13 @@ def bindings(variables: tuple[Typed, ...], binding: Binding, world: World) -> It
 
 
 def conjunction(conditions: Iterable[GroundCondition]) -> GroundCondition:
-    """All of them, flattened, each once, in order; FALSE when one is false."""
-    parts: dict[GroundCondition, None] = {}
+    """All of them, flattened, in order, as often as they stand there; FALSE when one is false."""
+    parts: list[GroundCondition] = []
     for condition in conditions:
         if condition == FALSE:
             return FALSE
-        for part in condition.parts if isinstance(condition, Every) else (condition,):
-            parts.setdefault(part)
-    return next(iter(parts)) if len(parts) == 1 else Every(tuple(parts))
+        parts += condition.parts if isinstance(condition, Every) else (condition,)
+    return parts[0] if len(parts) == 1 else Every(tuple(parts))
 
 
 def disjunction(conditions: Iterable[GroundCondition]) -> GroundCondition:

@@ -172,13 +172,13 @@ def _conditions(
     conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts, temporal: bool
 ) -> tuple[tuple[GroundCondition, Span], ...] | None:
     """The ground conditions by span, in order; None when one is false."""
-    grounded: dict[tuple[GroundCondition, Span], None] = {}
+    grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
         result = ground(condition.formula, binding, world, facts)
         if result == FALSE:
             return None
         for part in conjuncts(result):
-            grounded.setdefault((part, _span(condition.when, temporal)))
+            grounded.append((part, _span(condition.when, temporal)))
     return tuple(grounded)
 
 

@@ -1,0 +1,38 @@
+"""Arithmetic on orderings of steps: levels and transitive closure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+Pair = tuple[int, int]
+
+
+def levels(steps: Iterable[int], orderings: Iterable[Pair]) -> dict[int, float] | None:
+    """The longest chain that ends in each step, counted from 1; None when the orderings go round in a circle."""
+    before: dict[int, set[int]] = {step: set() for step in steps}
+    for i, j in orderings:
+        if i in before and j in before:
+            before[j].add(i)
+    found: dict[int, float] = {}
+    while len(found) < len(before):
+        ready = [step for step, earlier in before.items() if step not in found and earlier <= found.keys()]
+        if not ready:
+            return None
+        for step in ready:
+            found[step] = 1.0 + max((found[earlier] for earlier in before[step]), default=0.0)
+    return found
+
+
+def closure(orderings: Iterable[Pair]) -> tuple[Pair, ...]:
+    """All pairs that follow from the given ones, sorted."""
+    after: dict[int, set[int]] = {}
+    for i, j in orderings:
+        after.setdefault(i, set()).add(j)
+    changed = True
+    while changed:
+        changed = False
+        for later in after.values():
+            size = len(later)
+            later.update(*[after.get(j, set()) for j in list(later)])
+            changed = changed or len(later) > size
+    return tuple(sorted((i, j) for i, later in after.items() for j in later))
