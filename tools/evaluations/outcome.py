@@ -23,12 +23,18 @@ class Variant:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """Which world: domain and scenario, with the profile of its body ("", or "degraded")."""
+    """Which world: domain and scenario, with the profile of its body ("", or "degraded").
+
+    `goal` is a PDDL goal in place of the scenario's; `drawn` are quantities that every seed pins to a value of its
+    own: label, quantity, lower, upper.
+    """
 
     domain: str
     scenario: str
     profile: str = ""
     zoo: str = ""
+    goal: str = ""
+    drawn: tuple[tuple[str, str, float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

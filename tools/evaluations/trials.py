@@ -6,6 +6,7 @@ An episode is fixed by scenario, seed and variant, so a broken-off evaluation go
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tools.evaluations.pinned import PinnedDomain
 
 SCENARIO_STREAM = 0  # of the seed; noise is drawn from another
+PIN_STREAM = 4
 
 
 def run_all(
@@ -81,9 +83,15 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     rng = np.random.default_rng([seed, SCENARIO_STREAM])
     domain = domains.load(task.domain)
     scenario, start = domains.load_scenario(task.domain, task.scenario, rng)
-    pinned: Any = PinnedDomain(domain, {(label, quantity): value for label, quantity, value in variant.pins})
+    pins = {(label, quantity): value for label, quantity, value in variant.pins}
+    drawing = np.random.default_rng([seed, PIN_STREAM])
+    pins |= {(label, quantity): float(drawing.uniform(lower, upper)) for label, quantity, lower, upper in task.drawn}
+    pinned: Any = PinnedDomain(domain, pins)
     settings = Settings(seed=seed, refinement=variant.refinement)
-    return make_context(pinned, scenario, _models(domain.robot, task.zoo), settings, SENDER), start
+    context = make_context(pinned, scenario, _models(domain.robot, task.zoo), settings, SENDER)
+    if task.goal:
+        context = replace(context, problem=context.problem.with_goal(task.goal))
+    return context, start
 
 
 @lru_cache(maxsize=4)
