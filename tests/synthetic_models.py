@@ -86,7 +86,8 @@ DRIBBLE = Action("dribbleBall", pose_parameters(), idle, "dribbleBall/duration")
 APPROACH = Action("approachBall", pose_parameters(), idle, "goToPose/duration", "goToPose/success", "goToPose")
 LIBRARY = {action.name: action for action in (GO, DRIBBLE, APPROACH)}
 MODELS = Models(
-    {"goToPose/duration": PoseDuration(), "dribbleBall/duration": PoseDuration(2.0)}, {"goToPose/success": ConeSuccess()}
+    {"goToPose/duration": PoseDuration(), "dribbleBall/duration": PoseDuration(2.0)},
+    {"goToPose/success": ConeSuccess()},
 )
 
 
