@@ -52,6 +52,13 @@ class EStop:
 
 
 @dataclass(frozen=True, slots=True)
+class Clock:
+    """rosgraph_msgs/Clock: the recorded time, for ROS 2 nodes that listen to a replay with use_sim_time."""
+
+    stamp_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class JointState:
     """sensor_msgs/JointState: rad, rad/s and N·m of each named joint; all tuples have one length."""
 
@@ -266,6 +273,7 @@ Message = (
     | Odometry
     | PoseEstimate
     | EStop
+    | Clock
     | JointState
     | JointCommand
     | MotorCurrents

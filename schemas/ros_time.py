@@ -23,16 +23,24 @@ def _classes() -> tuple[Any, Any]:
     return ros_class("std_msgs/msg/Header"), ros_class("builtin_interfaces/msg/Time")
 
 
+def time(stamp_ns: int) -> Any:
+    """A builtin_interfaces/Time, 0 <= stamp_ns <= MAX_STAMP_NS."""
+    seconds, rest = divmod(stamp_ns, NS_PER_S)
+    return _classes()[1](sec=seconds, nanosec=rest)
+
+
 def header(stamp_ns: int, frame: str = "") -> Any:
     """A ROS header with this stamp, 0 <= stamp_ns <= MAX_STAMP_NS."""
-    header_class, time_class = _classes()
-    seconds, rest = divmod(stamp_ns, NS_PER_S)
-    return header_class(stamp=time_class(sec=seconds, nanosec=rest), frame_id=frame)
+    return _classes()[0](stamp=time(stamp_ns), frame_id=frame)
 
 
 def stamp_ns(ros_header: Any) -> int:
-    """The stamp of a ROS header; negative seconds or more than a second of nanoseconds are refused."""
-    stamp = ros_header.stamp
+    """The stamp of a ROS header."""
+    return time_ns(ros_header.stamp)
+
+
+def time_ns(stamp: Any) -> int:
+    """Nanoseconds of a builtin_interfaces/Time; negative or more than a second of nanoseconds is refused."""
     if stamp.sec < 0 or stamp.nanosec >= NS_PER_S:
         raise Refusal("stamp out of range")
     return int(stamp.sec * NS_PER_S + stamp.nanosec)

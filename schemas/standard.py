@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from schemas import messages as m
-from schemas.ros_time import Refusal, header, stamp_ns
+from schemas.ros_time import Refusal, header, stamp_ns, time, time_ns
 from schemas.typesystem import ros_class
 
 UNIT_TOLERANCE = 1e-3  # of a quaternion's squared norm; drivers that send float32 stay far below
@@ -113,6 +113,16 @@ def estop_from_ros(ros: Any) -> m.EStop:
     return m.EStop(ros.data)
 
 
+def clock_to_ros(message: m.Clock) -> Any:
+    """rosgraph_msgs/Clock."""
+    return ros_class("rosgraph_msgs/msg/Clock")(clock=time(message.stamp_ns))
+
+
+def clock_from_ros(ros: Any) -> m.Clock:
+    """The time that a clock says."""
+    return m.Clock(time_ns(ros.clock))
+
+
 def joints_to_ros(message: m.JointState) -> Any:
     """sensor_msgs/JointState; it has no frame."""
     positions, velocities, efforts = map(np.array, (message.positions, message.velocities, message.efforts))
@@ -141,5 +151,6 @@ CONVERTERS: dict[type, tuple[Any, Any]] = {
     m.Odometry: (odometry_to_ros, odometry_from_ros),
     m.PoseEstimate: (pose_to_ros, pose_from_ros),
     m.EStop: (estop_to_ros, estop_from_ros),
+    m.Clock: (clock_to_ros, clock_from_ros),
     m.JointState: (joints_to_ros, joints_from_ros),
 }

@@ -40,6 +40,7 @@ TOPICS: dict[str, Topic] = {
     "driver": Topic("{robot}/driver", m.DriverState, 10, "driver", STALE_S, "interactive_high"),
     "arm_request": Topic("{robot}/arm_request", m.ArmRequest, 0, "people", priority="interactive_high"),
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
+    "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # a replay's
     "truth": Topic("{robot}/sim/truth", m.SimTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive"),

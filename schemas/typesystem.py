@@ -20,6 +20,7 @@ STANDARD: dict[type, str] = {
     m.Odometry: "nav_msgs/msg/Odometry",
     m.PoseEstimate: "geometry_msgs/msg/PoseWithCovarianceStamped",
     m.EStop: "std_msgs/msg/Bool",
+    m.Clock: "rosgraph_msgs/msg/Clock",
     m.JointState: "sensor_msgs/msg/JointState",
 }
 MESSAGES: tuple[type, ...] = get_args(m.Message)

@@ -1,0 +1,36 @@
+"""Single key presses from the terminal, without waiting for one; does nothing when there is no terminal."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+import termios
+import tty
+from typing import Any
+
+KEYS = {b" ": "space", b"\x1b[A": "up", b"\x1b[B": "down", b"\x1b[C": "right", b"q": "quit", b"s": "right"}
+
+
+class Keyboard:
+    """Inside `with`, the terminal gives single keys; afterwards it is as it was."""
+
+    def __init__(self) -> None:
+        self._saved: list[Any] | None = None
+        self._file = sys.stdin.fileno() if sys.stdin and sys.stdin.isatty() else None
+
+    def __enter__(self) -> Keyboard:
+        if self._file is not None:
+            self._saved = termios.tcgetattr(self._file)
+            tty.setcbreak(self._file)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._file is not None and self._saved is not None:
+            termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)
+
+    def pressed(self) -> str:
+        """Name of a key that was pressed (space, up, down, right, quit), empty if none was."""
+        if self._file is None or not select.select([self._file], [], [], 0)[0]:
+            return ""
+        return KEYS.get(os.read(self._file, 8), "")
