@@ -51,7 +51,9 @@ class Outcome:
     predicted_s: tuple[float, ...]
     actual_s: tuple[float, ...]
     asserted: bool  # whether any detour was made
-    ball_moved_m: float  # how far the ball had moved when the first action that is no detour ended
+    ball_moved_m: float  # how far the ball had moved when the approach ended; 0 without an approach
+    free: tuple[tuple[str, str, float, float, float], ...]  # first choice: label, quantity, lower, upper, value
+    bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value
 
 
 def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
