@@ -1,0 +1,99 @@
+"""Run actions with random arguments in simulation, faster than real time, and keep the episodes to learn from."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from executive import domains
+from schemas.errors import UsageError
+from tools import gathering
+from tools.gathering import Work
+
+EPILOG = """\
+examples:
+  tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
+  tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
+
+Each action's episodes go to OUT/ACTION: Parquet parts, and manifest.json that says how they were made. The same seed
+gives the same bits for any number of jobs."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    parser.add_argument("robot", help="whose actions: agilo")
+    parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all that have a model)")
+    parser.add_argument("--episodes", type=int, default=1000, help="how many of each (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=7, help="draws arguments and noise (default: %(default)s)")
+    parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
+    parser.add_argument("--resume", action="store_true", help="go on where an interrupted run stopped")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON, no progress bar")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Gather; exit code 0, or 130 if interrupted."""
+    name = gathering.domain_of(arguments.robot)
+    out = arguments.out or Path("data") / arguments.robot
+    works = [
+        Work(name, action, arguments.episodes, arguments.seed, out / action)
+        for action in actions_of(name, arguments.actions)
+    ]
+    if arguments.episodes < 1:
+        raise UsageError(f"--episodes {arguments.episodes}: expected at least 1")
+    for work in works:
+        gathering.prepare(work, arguments.resume)
+    figures = []
+    for work in works:
+        try:
+            figures.append(_gather(work, arguments.jobs, quiet=arguments.json))
+        except KeyboardInterrupt:
+            left = sum(min(gathering.PART, work.episodes - first) for first in gathering.missing_parts(work))
+            Console(stderr=True).print(
+                f"{work.folder}: kept {work.episodes - left} of {work.episodes}; --resume goes on"
+            )
+            return 130
+    if arguments.json:
+        print(json.dumps(figures))
+    return 0
+
+
+def actions_of(domain: str, asked: list[str]) -> list[str]:
+    """Actions to gather: those asked for, or one for each duration model that the domain's actions name.
+
+    Raises:
+      UsageError: An action that the domain does not have.
+    """
+    known = domains.load(domain).actions
+    for action in asked:
+        if action not in known:
+            raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
+    return asked or sorted({action.duration_model.split("/")[0] for action in known.values()})
+
+
+def _gather(work: Work, jobs: int, quiet: bool) -> dict[str, object]:
+    parts, started = gathering.missing_parts(work), time.perf_counter()
+    left = sum(min(gathering.PART, work.episodes - first) for first in parts)
+    simulated = busy = 0.0
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
+        task = progress.add_task(work.action, total=work.episodes, completed=work.episodes - left, rate="")
+        for count, sim_s, wall_s in gathering.gather(work, parts, jobs):
+            simulated, busy = simulated + sim_s, busy + wall_s
+            speed = simulated / busy if busy else 0.0
+            progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")
+    return {
+        "action": work.action,
+        "folder": str(work.folder),
+        "episodes": left,
+        "simulated_s": simulated,
+        "wall_s": time.perf_counter() - started,
+        "times_real_per_core": simulated / busy if busy else None,
+    }

@@ -1,0 +1,110 @@
+"""Make action models from episodes: ONNX files with cards, tested on episodes of their own, then fitted to all."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from models.runtime import ZOO
+from schemas.errors import UsageError
+
+EPILOG = """\
+examples:
+  tailor train agilo --data data/agilo
+  tailor train agilo --data data/agilo --learner m5 --features relative --zoo out/zoo
+
+A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, and a success model when
+some of its episodes failed. Three quarters train, one quarter tests; the model that is kept is fitted to all."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    parser.add_argument("robot", help="whose actions, as in the data sets' manifests")
+    parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all data sets)")
+    parser.add_argument("--data", type=Path, help="folder with a data set per action (default: data/ROBOT)")
+    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder to write models to (default: the one that ships)")
+    parser.add_argument("--features", default="projective", help="feature space (default: %(default)s)")
+    parser.add_argument("--learner", default="bag", help="of durations: bag, linear, m5 (default: %(default)s)")
+    parser.add_argument("--failure-learner", default="tree", help="of successes: tree (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="draws folds and resampled episodes (default: %(default)s)")
+    parser.add_argument("--json", action="store_true", help="print the tests as JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Train; exit code 0."""
+    console = Console(stderr=True)
+    rows = []
+    for folder in _data_sets(arguments):
+        with console.status(f"learning from {folder}"):
+            rows.extend(train_one(folder, arguments))
+    if arguments.json:
+        print(json.dumps(rows))
+    else:
+        Console().print(_table(rows))
+    return 0
+
+
+def train_one(folder: Path, arguments: argparse.Namespace) -> list[dict[str, Any]]:
+    """Train the models of one data set and write them to the zoo; returns what they reached in the test."""
+    from models import publishing, runtime, training
+    from models.episodes import read_data_set
+    from models.features import SPACES
+
+    if arguments.features not in SPACES:
+        raise UsageError(f"no feature space '{arguments.features}' (expected one of: {', '.join(SPACES)})")
+    data, space = read_data_set(folder), SPACES[arguments.features]
+    if data.manifest["robot"] != arguments.robot:
+        raise UsageError(f"{folder}: episodes of robot '{data.manifest['robot']}', expected '{arguments.robot}'")
+    if data.names != tuple(quantity.name for quantity in space.arguments):
+        raise UsageError(f"{folder}: arguments {data.names}, expected {space.arguments} by features '{space.name}'")
+    jobs = [("duration", arguments.learner, training.train_duration)]
+    if any(not episode.success for episode in data.episodes):
+        jobs.append(("success", arguments.failure_learner, training.train_success))
+    rows = []
+    for kind, learner, train in jobs:
+        trained = train(data.episodes, space, learner, arguments.seed)
+        about = publishing.Publication(kind, learner, space, arguments.seed, _command(arguments, data.manifest))
+        path = publishing.publish(arguments.zoo, data, trained, about)
+        runtime.load_model(path)  # a model that does not pass its own check must not ship
+        rows.append({"robot": arguments.robot, "action": data.manifest["action"], "kind": kind, **trained.test})
+    return rows
+
+
+def _data_sets(arguments: argparse.Namespace) -> list[Path]:
+    data = arguments.data or Path("data") / arguments.robot
+    found = {path.parent.name: path.parent for path in sorted(data.glob("*/manifest.json"))}
+    for action in arguments.actions:
+        if action not in found:
+            raise UsageError(f"{data}: no episodes of '{action}' (data sets there: {', '.join(found) or 'none'})")
+    if not found:
+        raise UsageError(f"{data}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
+    return [found[action] for action in arguments.actions or found]
+
+
+def _command(arguments: argparse.Namespace, manifest: dict[str, Any]) -> str:
+    """The two commands that make the model again."""
+    robot, action = arguments.robot, manifest["action"]
+    gather = f"tailor gather {robot} {action} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
+    train = f"tailor train {robot} {action} --features {arguments.features} --learner {arguments.learner}"
+    return f"{gather} && {train} --failure-learner {arguments.failure_learner} --seed {arguments.seed}"
+
+
+def _table(rows: list[dict[str, Any]]) -> Table:
+    table = Table("model", "test episodes", "mean duration", "test MAE (95 % interval)", "accuracy", "missed failures")
+    for row in rows:
+        name = f"{row['robot']}/{row['action']}/{row['kind']}"
+        if row["kind"] == "duration":
+            low, high = row["mae_ci95"]
+            error = f"{row['mae_s']:.3f} s ({low:.3f} .. {high:.3f})"
+            table.add_row(name, str(row["n"]), f"{row['mean_duration_s']:.2f} s", error, "", "")
+        else:
+            shares = f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
+            table.add_row(name, str(row["n"]), "", "", *shares)
+    return table
