@@ -10,12 +10,12 @@ import numpy as np
 from executive.budget import Budget
 from executive.library import Models
 from executive.refinement.detour import with_detour
-from executive.refinement.objective import SequenceObjective
+from executive.refinement.examination import Examination
 from executive.refinement.sequence import ActionSequence, Failure
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.weighing import Weighing, accepting
 
-SAMPLES_PER_CHECK = 256
+SLACK = 0.02  # above the least failure probability that was found; without it refinement had a single point to choose
 
 
 class Assertion:
@@ -24,7 +24,7 @@ class Assertion:
     Args:
       sequence: The instantiated actions.
       models: The loaded models.
-      settings: Horizon, limit of the failure probability, number of samples, depth.
+      settings: Horizon, limits of the failure probability, number of samples, depth.
       rng: The only source of randomness.
     """
 
@@ -36,9 +36,9 @@ class Assertion:
         self._settings = settings
         self._rng = rng
         self._position = 0
-        self._tried = 0
-        self._best_success = 0.0
+        self._examination: Examination | None = None
         self._weighing: Weighing | None = None
+        self._plain = (sequence, 0, 1.0)  # before the first detour to the current action: position, least failure
 
     def advance(self, budget: Budget) -> ActionSequence | Failure | None:
         """Go on until the budget is spent (None) or every action in the horizon is predicted to succeed.
@@ -49,74 +49,77 @@ class Assertion:
         while self._position < len(self._sequence.within(self._settings.horizon)):
             if not self._sequence.actions[self._position].action.success_model:
                 self._look_at(self._position + 1)
-            elif self._weighing is not None:
-                if not self._weighed(self._weighing, budget):
-                    return None
-            elif budget.spent():
+                continue
+            decided = self._weigh(self._weighing, budget) if self._weighing else self._examine(budget)
+            if isinstance(decided, Failure):
+                return decided
+            if not decided:
                 return None
-            elif self._succeeds():
-                self._look_at(self._position + 1)
-            elif self._exhausted():
-                failure = self._assert_subgoal()
-                if failure is not None:
-                    return failure
         return self._sequence
 
     def _look_at(self, position: int) -> None:
         """Turn to another action."""
         self._position = position
-        self._tried = 0
-        self._best_success = 0.0
+        self._examination = None
 
-    def _objective(self) -> SequenceObjective:
-        """The current action alone, as a function of its free parameters."""
-        actions, at = self._sequence.actions, self._position
-        arrived = frozenset(actions[at - 1].variables) if at else frozenset()
-        return SequenceObjective(actions[at : at + 1], self._sequence.variables, self._models, self._settings, arrived)
+    def _examine(self, budget: Budget) -> bool | Failure:
+        """Look for values with which the current action succeeds, and act on it; False: the budget is spent."""
+        if self._examination is None:
+            self._examination = Examination(self._sequence, self._position, self._models, self._settings, self._rng)
+        succeeds = self._examination.advance(budget)
+        if succeeds is None:
+            return False
+        if succeeds:
+            self._look_at(self._position + 1)
+            return True
+        return self._predicted_to_fail(self._examination.best_failure)
 
-    def _succeeds(self) -> bool:
-        """Whether one more batch of values holds one for which success is predicted, with margin."""
-        objective = self._objective()
-        count = SAMPLES_PER_CHECK if objective.ids else 1
-        said = objective.stages[0].predict(objective.ranges.draw(count, self._rng))
-        failure = np.where(np.isfinite(said.worst_failure + said.duration_s), said.worst_failure, 1.0)
-        self._tried += count
-        self._best_success = max(self._best_success, 1 - float(failure.min()))
-        return bool(failure.min() <= self._settings.p_fail_max)
-
-    def _exhausted(self) -> bool:
-        """Whether enough values have been tried to call it a failure for every one."""
-        return not self._objective().ids or self._tried >= self._settings.assertion_samples
-
-    def _assert_subgoal(self) -> Failure | None:
-        """Put the detour before the current action and look at the detour first."""
-        instance = self._sequence.actions[self._position]
-        said = f"{instance.action.name} is predicted to fail (success {self._best_success:.2f} at best)"
+    def _predicted_to_fail(self, least: float) -> bool | Failure:
+        """Assert a subgoal, or settle for what is the best anywhere, or give up."""
+        instance, depth = self._sequence.actions[self._position], self._depth()
+        said = f"{instance.action.name} is predicted to fail (success {1 - least:.2f} at best)"
         if instance.action.detour not in self._sequence.library:
             return Failure(f"{said} and names no detour")
-        if self._depth() >= self._settings.assertion_depth:
-            return Failure(f"{said} even after {self._depth()} detours")
+        if depth and not instance.asserted and least <= self._settings.p_fail_settle:
+            self._settle(least + SLACK)
+            return True
+        if depth >= self._settings.assertion_depth:
+            return Failure(f"{said} even after {depth} detours")
+        if not depth:
+            self._plain = (self._sequence, self._position, least)
         detoured = with_detour(self._sequence, self._position)
-        if self._settings.weigh_detours and not self._depth():
-            self._weighing = Weighing(self._sequence, detoured, self._position, self._models, self._settings, self._rng)
+        if self._settings.weigh_detours and not depth:
+            args = (self._position, self._models, self._settings, self._rng)
+            self._weighing = Weighing(self._sequence, detoured, *args)
         else:
-            self._sequence = detoured
-            self._look_at(self._position)  # now the detour
-        return None
+            self._take(detoured)
+        return True
 
-    def _weighed(self, weighing: Weighing, budget: Budget) -> bool:
-        """Whether it has been decided which way is cheaper; then that way is taken."""
+    def _settle(self, risk: float) -> None:
+        """No start keeps the limit: accept the least risk there is, and without the detour where it buys nothing."""
+        plain, position, least = self._plain
+        if least <= risk:
+            self._sequence, self._position = plain, position
+        self._sequence = accepting(self._sequence, self._position, risk)
+        self._look_at(self._position + 1)
+
+    def _weigh(self, weighing: Weighing, budget: Budget) -> bool:
+        """Decide which way is cheaper and take it; False: the budget is spent."""
         pays = weighing.advance(budget)
         if pays is None:
             return False
         self._weighing = None
         if pays:
-            self._sequence = with_detour(self._sequence, self._position)
-            self._look_at(self._position)
+            self._take(with_detour(self._sequence, self._position))
         else:
             self._sequence = accepting(self._sequence, self._position, 1.0)
             self._look_at(self._position + 1)
         return True
+
+    def _take(self, detoured: ActionSequence) -> None:
+        """Go on with a detour, and look at it first: it stands where the current action stood."""
+        self._sequence = detoured
+        self._look_at(self._position)
 
     def _depth(self) -> int:
         """The detours already asserted for the current action, or for the one that it is a detour to."""

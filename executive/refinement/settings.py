@@ -25,6 +25,7 @@ class RefinementSettings:
     solver: SolverName = "auto"
     k_std: float = 1.0  # durations count as mean + k standard deviations: guards against the optimiser's curse
     p_fail_max: float = 0.05  # above it an action is INVALID (Algorithm 4)
+    p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
     risk_cost_s: float = 0.0
     arrival_spread: tuple[tuple[str, float], ...] = ()  # (("x", 0.03), ("phi", 0.1))
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
@@ -45,5 +46,6 @@ class RefinementSettings:
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise UsageError(f"refinement.{name} is {value}, expected a finite number >= 0")
-        if not 0 <= self.p_fail_max <= 1:
-            raise UsageError(f"refinement.p_fail_max is {self.p_fail_max}, expected a probability")
+        for name in ("p_fail_max", "p_fail_settle"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected a probability")

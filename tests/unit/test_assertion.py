@@ -174,3 +174,36 @@ def test_weighing_goes_on_where_the_budget_stopped_it():
     results = [sliced.advance(CheckBudget(3)) for _ in range(20)]
     assert results[0] is None
     assert results[-1] == asserted(FROM_THE_SIDE, settings, PLAIN)
+
+
+class AtBest:
+    """A model that is never surer than `best`, and that only where the cone says yes."""
+
+    def __init__(self, best):
+        self.best = best
+
+    def probability(self, arguments):
+        return self.best * ConeSuccess().probability(arguments)
+
+
+def test_unsure_model_is_settled_with_instead_of_given_up():
+    """No start keeps the limit: the detour goes where success is likeliest, at the risk that is left."""
+    unsure = Models(MODELS.durations, {"goToPose/success": AtBest(0.86)})
+    result = asserted(approach(3.0, (-0.3, 0.3)), models=unsure)
+    assert names(result) == ["goToPose", "approachBall", "dribbleBall"]
+    assert 0.14 < result.actions[1].risk < 0.2
+    refinement = Refinement(result, unsure, SETTINGS, np.random.default_rng(0))
+    refinement.advance(CheckBudget(100))
+    assert refinement.choice.valid
+
+
+def test_detour_that_buys_no_certainty_is_not_made():
+    unsure = Models(MODELS.durations, {"goToPose/success": AtBest(0.86)})
+    result = asserted(approach(-1.0, (-0.3, 0.3)), models=unsure)
+    assert names(result) == ["approachBall", "dribbleBall"]
+    assert 0.14 < result.actions[0].risk < 0.2
+
+
+def test_model_that_is_against_it_everywhere_is_believed():
+    against = Models(MODELS.durations, {"goToPose/success": AtBest(0.3)})
+    assert isinstance(asserted(approach(3.0, (-0.3, 0.3)), models=against), Failure)

@@ -1,0 +1,47 @@
+"""Whether an action is predicted to succeed for any value of its free parameters: sampled, and resumable."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from executive.budget import Budget
+from executive.library import Models
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.sequence import ActionSequence
+from executive.refinement.settings import RefinementSettings
+
+SAMPLES_PER_CHECK = 256
+
+
+class Examination:
+    """Looks at one action of a sequence; `best_failure` is the least probability of failure seen so far."""
+
+    def __init__(
+        self,
+        sequence: ActionSequence,
+        position: int,
+        models: Models,
+        settings: RefinementSettings,
+        rng: np.random.Generator,
+    ) -> None:
+        arrived = frozenset(sequence.actions[position - 1].variables) if position else frozenset()
+        actions = sequence.actions[position : position + 1]
+        self.best_failure = 1.0
+        self._objective = SequenceObjective(actions, sequence.variables, models, settings, arrived)
+        self._settings = settings
+        self._rng = rng
+        self._left = settings.assertion_samples if self._objective.ids else 1
+
+    def advance(self, budget: Budget) -> bool | None:
+        """True: some value keeps the failure within the limit. False: none does. None: the budget is spent."""
+        while self.best_failure > self._settings.p_fail_max:
+            if self._left <= 0:
+                return False
+            if budget.spent():
+                return None
+            count = min(SAMPLES_PER_CHECK, self._left)
+            said = self._objective.stages[0].predict(self._objective.ranges.draw(count, self._rng))
+            failure = np.where(np.isfinite(said.worst_failure + said.duration_s), said.worst_failure, 1.0)
+            self.best_failure = min(self.best_failure, float(failure.min()))
+            self._left -= count
+        return True
