@@ -9,6 +9,7 @@ from executive.planning.language import Domain, Literal
 from executive.planning.plan import GOAL, Link, Plan, Result, Step
 from executive.planning.problem import Problem
 from executive.planning.problem_reader import parse_problem
+from executive.planning.progress import progress
 from executive.planning.search import GroundCache, Search
 from executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
 from executive.planning.suffix import relink, suffix
@@ -39,6 +40,7 @@ __all__ = [
     "parse_domain",
     "parse_plan",
     "parse_problem",
+    "progress",
     "relink",
     "suffix",
     "validate",

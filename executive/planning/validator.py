@@ -162,12 +162,13 @@ def _changes(event: _Event, state: State, problem: Problem, bound: Bound) -> tup
     removed: set[Fact] = set()
     for effect in action.effects:
         if effect.when in _moments(event, action):
-            facts = _affected(effect, binding, state, Objects(problem))
+            facts = affected(effect, binding, state, Objects(problem))
             (added if effect.positive else removed).update(facts)
     return frozenset(added), frozenset(removed - added)
 
 
-def _affected(effect: Effect, binding: Binding, state: State, objects: Objects) -> Iterator[Fact]:
+def affected(effect: Effect, binding: Binding, state: State, objects: Objects) -> Iterator[Fact]:
+    """The facts that an effect makes true or false in a state."""
     for inner in objects.bindings(effect.variables, binding):
         if all(holds(condition.formula, inner, state, objects) for condition in effect.condition):
             yield fact_of(effect.atom, inner)
