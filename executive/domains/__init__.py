@@ -13,7 +13,7 @@ import numpy as np
 from executive.library import Domain, Scenario
 from schemas.errors import UsageError
 
-DOMAINS = ("soccer",)
+DOMAINS = ("soccer", "arm")
 
 
 def load(name: str) -> Domain:
@@ -27,6 +27,9 @@ def load(name: str) -> Domain:
 def scenarios(name: str) -> list[str]:
     """Names of a domain's scenarios, the default first."""
     load(name)
+    if _invents(name):
+        invented: list[str] = _package(name).scenarios()
+        return invented
     declared = ((_declaration(name, file), file) for file in _scenario_files(name))
     return [file for _, file in sorted(declared, key=lambda pair: (pair[0].get("order", 99), pair[1]))]
 
@@ -41,6 +44,9 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
       UsageError: Unknown domain or scenario.
     """
     known = scenarios(name)
+    if _invents(name):
+        invented: tuple[Scenario, dict[str, float]] = _package(name).load_scenario(scenario, rng)
+        return invented
     if scenario not in known:
         raise UsageError(f"no scenario {scenario!r} in {name}, expected one of: {', '.join(known)}")
     declared = _declaration(name, scenario)
@@ -51,8 +57,16 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
 
 
 def _package(name: str) -> Any:
-    """A domain's package; it offers `make()` and `draw(declared, rng) -> (start, places, events)`."""
+    """A domain's package; it offers `make()` and `draw(declared, rng) -> (start, places, events)`.
+
+    One that makes its scenarios up offers `scenarios()` and `load_scenario(scenario, rng)` instead of `draw` and files.
+    """
     return importlib.import_module(f"executive.domains.{name}")
+
+
+def _invents(name: str) -> bool:
+    """Whether a domain makes its scenarios up, as the arm does from the letters of a font."""
+    return hasattr(_package(name), "load_scenario")
 
 
 def _scenario_files(name: str) -> list[str]:

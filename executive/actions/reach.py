@@ -1,0 +1,97 @@
+"""reach: move joints to a waypoint and pass it with given velocities. Knows no letters, and counts no joints.
+
+Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, then of each joint at the goal.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from executive.actions.cubic import Cubic, Joints, best_duration_s, cubic
+from executive.library import Array, Control
+
+PERIOD_S = 0.1  # of the executive; a command stands until the next one
+
+
+class JointBelief(Protocol):
+    """A belief that knows its joints."""
+
+    @property
+    def angles(self) -> Joints: ...  # noqa: D102
+
+    @property
+    def velocities(self) -> Joints: ...  # noqa: D102
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """Memory: the motion that is being followed, and what it was made for."""
+
+    goal: Joints  # angle and velocity of each joint in turn
+    cubic: Cubic
+    started_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """Follows one cubic in joint space, closed over the angles; makes another one when it has strayed."""
+
+    acceleration_radps2: float  # what a motion from rest to rest may take
+    acceleration_max_radps2: float  # what no motion may exceed
+    feedback_per_s: float = 2.0  # velocity for an error of angle
+    strayed_rad: float = 0.15
+    reached_rad: float = 0.05
+    reached_radps: float = 0.15
+
+    def __call__(self, memory: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
+        """See executive.library.Controller; the command is a velocity (rad/s) for each joint.
+
+        It is done one period before the waypoint, with the command that leads there: when the next action takes over,
+        the arm is where it was to be, as fast as it was to be.
+        """
+        goal = tuple(arguments[len(arguments) // 2 :].tolist())
+        motion = memory if isinstance(memory, Motion) and memory.goal == goal else self._begin(goal, now_ns, belief)
+        if self._off_rad(motion, now_ns, belief) > self.strayed_rad:
+            motion = self._begin(goal, now_ns, belief)
+        if not self._arrives(motion, now_ns):
+            return Control(motion, self._command(motion, now_ns, belief))
+        if self._is_near(motion, now_ns, belief):
+            return Control(motion, self._command(motion, now_ns, belief), "done")
+        motion = self._begin(goal, now_ns, belief)
+        return Control(motion, self._command(motion, now_ns, belief))
+
+    def _begin(self, goal: Joints, now_ns: int, belief: JointBelief) -> Motion:
+        """A motion from where the arm is; it takes whole periods, so that the waypoint falls on a tick."""
+        states = (belief.angles, belief.velocities, goal[0::2], goal[1::2])
+        duration_s = best_duration_s(*states, self.acceleration_radps2)
+        periods = max(1, round(duration_s / PERIOD_S))
+        motion = cubic(*states, periods * PERIOD_S)
+        while motion.peak_acceleration > self.acceleration_max_radps2:  # ends: it falls as the time grows
+            periods += 1
+            motion = cubic(*states, periods * PERIOD_S)
+        return Motion(goal, motion, now_ns)
+
+    def _off_rad(self, motion: Motion, now_ns: int, belief: JointBelief) -> float:
+        """How far the arm is from where the motion has it."""
+        return math.dist(motion.cubic.angles(_elapsed_s(motion, now_ns)), belief.angles)
+
+    def _arrives(self, motion: Motion, now_ns: int) -> bool:
+        """Whether the waypoint comes within this period, rather than in the next."""
+        return _elapsed_s(motion, now_ns) > motion.cubic.duration_s - 1.5 * PERIOD_S
+
+    def _is_near(self, motion: Motion, now_ns: int, belief: JointBelief) -> bool:
+        wanted = motion.cubic.velocities(_elapsed_s(motion, now_ns))
+        slow_enough = math.dist(wanted, belief.velocities) < self.reached_radps
+        return slow_enough and self._off_rad(motion, now_ns, belief) < self.reached_rad
+
+    def _command(self, motion: Motion, now_ns: int, belief: JointBelief) -> Joints:
+        """Velocity at the end of this period, when the driver will have got there, and what corrects the angles."""
+        t = _elapsed_s(motion, now_ns)
+        wanted = zip(motion.cubic.velocities(t + PERIOD_S), motion.cubic.angles(t), belief.angles, strict=True)
+        return tuple(velocity + self.feedback_per_s * (angle - is_at) for velocity, angle, is_at in wanted)
+
+
+def _elapsed_s(motion: Motion, now_ns: int) -> float:
+    return (now_ns - motion.started_ns) * 1e-9

@@ -1,0 +1,68 @@
+"""The arm domain: all that the executive is told about the PowerCube arm and its letters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from executive.domains.arm import belief as believing
+from executive.domains.arm import meaning
+from executive.domains.arm.belief import ArmBelief
+from executive.domains.arm.library import ACTIONS, EXECUTABLES
+from executive.domains.arm.robot import JOINTS, V_MAX_RADPS
+from executive.library import Action, Axis, Fact, Interval, Scenario
+from schemas.messages import JointCommand, Message, Sample
+
+
+@dataclass(frozen=True, slots=True)
+class ArmDomain:
+    """See executive.library.Domain."""
+
+    pddl: str
+    name: str = "arm"
+    robot: str = "powercube"
+    actions: Mapping[str, Action] = field(default_factory=lambda: ACTIONS)
+    executables: Mapping[str, str] = field(default_factory=lambda: EXECUTABLES)
+    axes: tuple[Axis, ...] = tuple(Axis(joint, "rad/s", -V_MAX_RADPS, V_MAX_RADPS) for joint in JOINTS)
+    command_topic: str = "joint_cmd"
+    sensors: tuple[str, ...] = ("joint_states",)
+    required: tuple[str, ...] = ("joint_states",)
+    belief_names: tuple[str, ...] = ("a (rad)", "wa (rad/s)", "b (rad)", "wb (rad/s)")
+
+    def initial_belief(self) -> ArmBelief:
+        """Nothing is known."""
+        return ArmBelief()
+
+    def update(
+        self, belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
+    ) -> ArmBelief:
+        """Read the encoders; the command is not needed."""
+        return believing.update(belief, now_ns, samples)
+
+    def ready(self, belief: ArmBelief) -> bool:
+        """Whether the encoders have been heard."""
+        return belief.seen_ns is not None
+
+    def belief_values(self, belief: ArmBelief) -> tuple[float, ...]:
+        """As named in `belief_names`."""
+        return tuple(meaning.state(belief).values())
+
+    def anchor(self, belief: ArmBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
+        """What was drawn cannot be seen: the abstract state is what is remembered."""
+        return remembered
+
+    def value(
+        self,
+        quantity: str,
+        label: str,
+        holds: tuple[Fact, ...],
+        achieved: tuple[Fact, ...],
+        belief: ArmBelief,
+        scenario: Scenario,
+    ) -> Interval | None:
+        """See arm.meaning."""
+        return meaning.value(quantity, label, holds, belief, scenario)
+
+    def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
+        """Joint velocities; the driver closes the current loop."""
+        return JointCommand(stamp_ns, JOINTS, command)

@@ -1,0 +1,103 @@
+"""Letters and words as scenarios: strokes of a font, put into joint space, as a PDDL problem with places.
+
+`letter-A` to `letter-Z` fill the page; `word-TAILOR` writes letters side by side, smaller.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+import numpy as np
+
+from executive.library import Scenario
+from schemas.errors import UsageError
+
+Point = tuple[float, float]  # rad: pan, lift
+
+WIDTH, HEIGHT = 1.0, 1.4  # of a capital in the font's units
+GAP = 0.45  # between two letters, in the same units
+PAGE_WIDTH_RAD = 2.3
+LETTER_RAD = 0.8  # a letter alone: one unit of the font
+SIZES = (0.9, 1.05)  # drawn by the seed: nobody writes a letter twice alike
+HOME = (-0.85, -0.7)  # where the arm rests before it writes
+HOME_SPREAD_RAD = 0.1
+MOST_LETTERS = 12  # a smaller hand could not be read
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """What is written: where the arm starts, and the stroke of each letter."""
+
+    text: str
+    home: Point
+    strokes: tuple[tuple[Point, ...], ...]
+
+
+@cache
+def font() -> dict[str, tuple[Point, ...]]:
+    """The strokes by letter, in the font's units."""
+    table = tomllib.loads(resources.files(__package__).joinpath("letters.toml").read_text(encoding="utf-8"))
+    return {letter: tuple((float(x), float(y)) for x, y in stroke) for letter, stroke in table.items()}
+
+
+def scenarios() -> list[str]:
+    """One scenario for each letter; words are not listed, there are too many."""
+    return [f"letter-{letter}" for letter in sorted(font())]
+
+
+def text_of(scenario: str) -> str:
+    """What a scenario of that name writes, or "" if it is none of ours."""
+    found = re.fullmatch(f"letter-([A-Z])|word-([A-Z]{{1,{MOST_LETTERS}}})", scenario)
+    return (found[1] or found[2]) if found else ""
+
+
+def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
+    """The scenario with size and start drawn from `rng`, and the start state of the body.
+
+    Raises:
+      UsageError: No such scenario.
+    """
+    text = text_of(scenario)
+    if not text:
+        raise UsageError(
+            f"no scenario {scenario!r} in arm, expected letter-A to letter-Z, or word- and 1 to {MOST_LETTERS} capitals"
+        )
+    writing = _laid_out(text, rng)
+    (a, b) = writing.home
+    return _scenario(scenario, writing), {"a": a, "wa": 0.0, "b": b, "wb": 0.0}
+
+
+def _laid_out(text: str, rng: np.random.Generator) -> Writing:
+    """Letters side by side about the middle of the page, with the size and the start that `rng` draws."""
+    size, off_a, off_b = rng.uniform(*SIZES), *rng.uniform(-HOME_SPREAD_RAD, HOME_SPREAD_RAD, 2)
+    wide = len(text) * WIDTH + (len(text) - 1) * GAP
+    unit = float(size) * min(LETTER_RAD, PAGE_WIDTH_RAD / max(SIZES) / wide)
+    strokes = []
+    for place, letter in enumerate(text):
+        left, low = place * (WIDTH + GAP) - wide / 2, -HEIGHT / 2
+        strokes.append(tuple((unit * (left + x), unit * (low + y)) for x, y in font()[letter]))
+    return Writing(text, (HOME[0] + float(off_a), HOME[1] + float(off_b)), tuple(strokes))
+
+
+def _scenario(name: str, writing: Writing) -> Scenario:
+    """All strokes in one chain of waypoints p1, p2, …; only at the last one the arm must come to rest."""
+    points = [point for stroke in writing.strokes for point in stroke]
+    labels = [f"p{k}" for k in range(1, len(points) + 1)]
+    places = {label: {"a": a, "b": b} for label, (a, b) in zip(labels, points, strict=True)}
+    places[labels[-1]] |= {"wa": 0.0, "wb": 0.0}
+    counts = tuple((letter, len(stroke)) for letter, stroke in zip(writing.text, writing.strokes, strict=True))
+    return Scenario(name, _problem(labels), places, {"letters": counts, "events": ()})
+
+
+def _problem(labels: list[str]) -> str:
+    steps = " ".join(f"(next {a} {b})" for a, b in zip(["home", *labels], labels, strict=False))
+    return f"""(define (problem writing)
+  (:domain arm)
+  (:objects home {" ".join(labels)})
+  (:init (at home) {steps})
+  (:goal (drawn {labels[-1]})))
+"""

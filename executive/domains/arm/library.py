@@ -1,0 +1,33 @@
+"""The arm's one executable action: reach a waypoint and pass it with given joint velocities (paper Table 6)."""
+
+from __future__ import annotations
+
+from executive.actions.reach import Reach
+from executive.library import Action, Parameter
+
+PAN_RAD = 1.3  # where waypoints may lie
+LIFT_RAD = 0.9
+PASSING_RADPS = 0.7  # fastest passage that is asked of a joint
+ACCELERATION_RADPS2 = 0.95  # a random reach then takes 2.9 s on average (paper Table 1)
+ACCELERATION_MAX_RADPS2 = 2.5  # the driver ramps at 4
+
+
+def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:
+    v = PASSING_RADPS
+    return (
+        Parameter(f"a{suffix}", argument, "a", "rad", -PAN_RAD, PAN_RAD),
+        Parameter(f"wa{suffix}", argument, "wa", "rad/s", -v, v),
+        Parameter(f"b{suffix}", argument, "b", "rad", -LIFT_RAD, LIFT_RAD),
+        Parameter(f"wb{suffix}", argument, "wb", "rad/s", -v, v),
+    )
+
+
+REACH = Action(
+    "reach",
+    (*_state("", 0), *_state("g", 1)),
+    Reach(ACCELERATION_RADPS2, ACCELERATION_MAX_RADPS2),
+    "reach/duration",
+)
+
+ACTIONS = {REACH.name: REACH}
+EXECUTABLES = {"reach": "reach"}
