@@ -35,7 +35,8 @@ def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
         if word not in TOPICS and "/" not in word and "*" not in word:
             known = ", ".join(TOPICS)
             raise UsageError(f"topic {word!r}: expected a name ({known}), a key pattern like agilo/* or a type")
-    return Selection(*parts)
+    unrecorded = () if parts[0] else tuple(name for name, topic in TOPICS.items() if not topic.recorded)
+    return Selection(parts[0], parts[1] + unrecorded)
 
 
 def _matches(pattern: str, key: str, ros_name: str) -> bool:

@@ -16,7 +16,7 @@ from runtime.inbox import Inbox, Raw, depth
 from runtime.publisher import Publisher
 from runtime.questions import Question, Questions
 from schemas.errors import UsageError
-from schemas.topics import TOPICS, Topic, key_of
+from schemas.topics import TOPICS, key_of
 from schemas.typesystem import ros_type
 
 _PRIORITIES = {
@@ -73,16 +73,23 @@ class Session:
 
     def publisher(self, name: str, robot: str) -> Publisher:
         """An outlet for a topic of schemas.topics."""
-        return self.raw_publisher(key_of(name, robot), TOPICS[name])
-
-    def raw_publisher(self, key: str, topic: Topic) -> Publisher:
-        """An outlet for a topic under another key; for replay with remapped topics."""
+        topic, key = TOPICS[name], key_of(name, robot)
         declared = self._zenoh.declare_publisher(
             key,
             encoding=encoding_of(topic.type),
             priority=_PRIORITIES[topic.priority],
             congestion_control=zenoh.CongestionControl.DROP,  # a stalled reader must never stall a tick
             express=topic.priority != "data",
+        )
+        return Publisher(key, _Wire(declared), self.sender)
+
+    def player(self, key: str, ros_type: str) -> Publisher:
+        """An outlet for recorded bytes under any key; waits rather than lose one, so never use it in a tick."""
+        declared = self._zenoh.declare_publisher(
+            key,
+            encoding=f"application/cdr;{ros_type}" if ros_type else None,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            express=True,
         )
         return Publisher(key, _Wire(declared), self.sender)
 

@@ -20,6 +20,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "arm": ("tools.arm", "let a driver obey the running executive"),
     "estop": ("tools.estop", "stop every driver until it is reset"),
     "record": ("tools.record", "record the bus into an MCAP file"),
+    "replay": ("tools.replay", "play a recording on the bus"),
     "info": ("tools.info", "what a recording holds"),
     "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
     "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
