@@ -1,0 +1,50 @@
+"""What a run's provenance says of it: domain, robot, scenario, names of the belief's values, limits of the command."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from schemas.errors import UsageError
+from tools.viewer.rows import Fields
+
+# What the page draws as lines; the executive's shell keeps to them (architecture.md, "One tick").
+TIMES_MS = {"period": 100, "budget": 60, "end": 80}
+
+
+def about(provenance: str) -> Fields:
+    """The page's facts from a `Provenance` message's JSON; what it does not say is left out."""
+    order = _table(_loads(provenance).get("order"))
+    settings = _table(order.get("settings"))
+    said = {
+        "domain": order.get("domain"),
+        "scenario": order.get("scenario"),
+        "seed": settings.get("seed"),
+        "horizon": _table(settings.get("refinement")).get("horizon"),
+    }
+    return {"times": TIMES_MS} | {k: v for k, v in said.items() if v not in (None, "")} | _domain(said["domain"])
+
+
+def _domain(name: Any) -> Fields:
+    """What only the domain's own folder knows; nothing of it when this installation has no such domain."""
+    from executive import domains
+
+    if not isinstance(name, str):
+        return {}
+    try:
+        domain = domains.load(name)
+    except UsageError:
+        return {}
+    axes = [{"name": a.name, "unit": a.unit, "lower": a.lower, "upper": a.upper} for a in domain.axes]
+    return {"robot": domain.robot, "beliefNames": list(domain.belief_names), "axes": axes}
+
+
+def _loads(text: str) -> dict[str, Any]:
+    try:
+        return _table(json.loads(text))
+    except ValueError:
+        return {}
+
+
+def _table(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}

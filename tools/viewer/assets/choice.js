@@ -1,0 +1,81 @@
+// What was chosen for the free parameters, against what greedy would have chosen, and what the models say of the rest.
+
+class ChoicePanel {
+  constructor(run, target) {
+    this.run = run;
+    this.panel = target;
+    this.picked = null; // "place quantity" of the parameter whose alternatives are shown
+    this.drawn = "";
+  }
+
+  show(at) {
+    const [subgoals, report] = [this.run.last("subgoals", at), this.run.last("refinement", at)];
+    const why = this.run.last("why", at);
+    const fitting = why && subgoals && why.at === subgoals.at ? why : null;
+    const key = [subgoals?.at, report?.at, report?.evaluations, fitting?.at, this.picked].join(" ");
+    if (key === this.drawn) return;
+    this.drawn = key;
+    this.again = () => { this.drawn = ""; this.show(at); };
+    this.panel.note.textContent = report ? this.search(report) : "";
+    if (!subgoals) this.panel.body.replaceChildren(html("p", { class: "empty", text: "Nothing chosen yet." }));
+    else this.panel.body.replaceChildren(...(fitting ? this.explained(fitting) : this.told(subgoals)));
+  }
+
+  search(report) {
+    const state = report.finished ? "search finished" : "still searching";
+    return `${report.evaluations} evaluations in ${report.checks} checks, ${report.solver}, ${state}`;
+  }
+
+  /** With the models at hand: chosen against greedy, and the alternatives. */
+  explained(why) {
+    const [chosen, greedy] = [sum(why.chosen), sum(why.greedy)];
+    const free = why.alternatives;
+    const key = (a) => `${a.place} ${a.quantity}`;
+    const shown = free.find((a) => key(a) === this.picked) ?? free.find((a) => a.periodic) ?? free[0];
+    const chips = free.map((a) => html("button", { type: "button", "aria-pressed": a === shown, onclick: () => { this.picked = key(a); this.again(); } },
+      `${a.quantity} at ${a.place}: ${quantity(a.chosen, a.unit)} (greedy ${quantity(a.greedy, a.unit)})`));
+    const saved = greedy - chosen;
+    const said = `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "less" : "more"} than greedy (${((100 * saved) / greedy).toFixed(1)} %)`;
+    const verdict = html("b", { text: Math.abs(saved) < 0.005 ? "as greedy" : said });
+    return [
+      html("p", { class: "verdict" }, `${seconds(chosen)} for the next ${why.actions.length === 1 ? "action" : `${why.actions.length} actions`}: `, verdict, ", as the models predict it"),
+      this.table(why, chosen, greedy), html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips), this.plots(why, shown),
+    ];
+  }
+
+  table(why, chosen, greedy) {
+    const cells = (...words) => words.map((text) => html("td", { text }));
+    const first = this.firstIndex(why.at);
+    const rows = why.actions.map((action, i) => html("tr", {}, html("td", {}, html("span", { class: `key ${colour(first + i)}` }), action), ...cells(seconds(why.chosen[i]), seconds(why.greedy[i]), signed(why.chosen[i] - why.greedy[i], 2))));
+    return html("table", {},
+      html("tr", {}, ...["predicted", "chosen", "greedy", "difference"].map((text) => html("th", { text }))), ...rows,
+      html("tr", { class: "sum" }, ...cells("sum", seconds(chosen), seconds(greedy), signed(chosen - greedy, 2))));
+  }
+
+  plots(why, said) {
+    const first = this.firstIndex(why.at);
+    const curves = said.touched.map((i) => ({ name: why.actions[i], seconds: said.seconds[i], kind: colour(first + i) }));
+    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "c2" }] : [];
+    const common = { values: said.values, valid: said.valid, chosen: said.chosen, greedy: said.greedy, unit: said.unit };
+    if (!said.periodic) return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
+    return html("div", { class: "plots" }, ...[...curves, ...both].map((c) => polarPlot({ ...common, seconds: c.seconds, kind: c.kind, caption: c.name })));
+  }
+
+  /** The place in the run of the action that a decision begins with, for its colour. */
+  firstIndex(at) {
+    const running = this.run.actions().find((a) => a.until >= at - 0.01);
+    return running?.index ?? 0;
+  }
+
+  /** Without models: what the messages tell. */
+  told(subgoals) {
+    const rows = subgoals.actions.flatMap((action) => action.parameters.filter((p) => !p.bound).map((p) => [`${action.action}: ${p.name} at ${p.place}`, quantity(p.value, p.unit), `${quantity(p.lower, p.unit)} … ${quantity(p.upper, p.unit)}`]));
+    const durations = subgoals.actions.slice(0, subgoals.horizon).map((action) => [action.action, seconds(action.predicted), `± ${seconds(action.spread)}`]);
+    const table = (head, body) => html("table", {}, html("tr", {}, ...head.map((text) => html("th", { text }))), ...body.map((row) => html("tr", {}, ...row.map((text) => html("td", { text })))));
+    return [table(["action", "predicted", "spread"], durations), rows.length ? table(["free parameter", "chosen", "range"], rows) : html("p", { class: "empty", text: "Nothing was free to choose." })];
+  }
+}
+
+function sum(values) {
+  return values.reduce((total, value) => total + value, 0);
+}

@@ -1,0 +1,29 @@
+// The page's top line: what runs, and how it stands at the shown moment.
+
+class Heading {
+  constructor(run, title) {
+    this.run = run;
+    const element = document.getElementById("heading");
+    this.facts = html("span", { class: "facts" });
+    this.now = html("span", { class: "now" });
+    element.replaceChildren(html("h1", { text: title }), this.facts, this.now);
+  }
+
+  show(at) {
+    const [about, state, belief] = [this.run.about(), this.run.last("state", at), this.run.last("belief", at)];
+    const action = this.run.last("action", at);
+    const facts = [about.domain, state?.scenario || about.scenario, about.robot, about.horizon && `horizon ${about.horizon}`, about.seed !== undefined && `seed ${about.seed}`];
+    this.facts.textContent = facts.filter(Boolean).join(" · ");
+    const parts = [];
+    if (action?.index >= 0 && belief) parts.push(html("span", { text: `${action.action} ${belief.elapsed.toFixed(1)} of ${seconds(belief.predicted, 1)}` }));
+    if (state?.mode) parts.push(pill(state.mode, state.reason));
+    if (state?.result) parts.push(pill(state.result.split(":")[0], state.result));
+    const driver = this.run.last("driver", at);
+    if (driver && driver.mode !== "armed") parts.push(pill(driver.mode, driver.reason, `driver ${driver.mode}`));
+    this.now.replaceChildren(...parts);
+  }
+}
+
+function pill(kind, reason, words = kind) {
+  return html("span", { class: `pill ${kind}`, title: reason || null, text: reason && reason !== kind ? `${words}: ${reason.replace(/^failed: /, "")}` : words });
+}

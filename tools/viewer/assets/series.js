@@ -1,0 +1,75 @@
+// Small multiples over time: what stands in the field's place for a robot that is no point on a plane.
+
+const PLOT = { width: 380, height: 92, left: 40, right: 8, top: 16, bottom: 16 };
+
+class Series {
+  constructor(run, target) {
+    this.run = run;
+    this.panel = target;
+    this.drawn = -1;
+  }
+
+  show(at, view) {
+    const key = `${this.run.version} ${view[0]} ${view[1]}`;
+    if (this.drawn !== key) { this.drawn = key; this.lay(view); }
+    for (const plot of this.plots) plot.move(at);
+  }
+
+  lay(view) {
+    this.plots = [...this.beliefs(), ...this.others()].map((line) => timePlot(line, view));
+    const grid = html("div", { class: "plots", style: "grid-template-columns:repeat(auto-fit,minmax(17rem,1fr))" }, ...this.plots.map((p) => p.element));
+    this.panel.body.replaceChildren(this.plots.length ? grid : html("p", { class: "empty", text: "No numbers yet." }));
+    this.panel.title.textContent = "State";
+    this.panel.note.textContent = this.plots.length ? "as believed; subgoals as dots where they are due" : "";
+  }
+
+  /** The belief's values, each with the goals that the actions had for a parameter of that name. */
+  beliefs() {
+    const names = this.run.about().beliefNames ?? [];
+    const rows = this.run.all("belief");
+    const count = rows[0]?.values.length ?? 0;
+    return Array.from({ length: count }, (_, i) => {
+      const name = names[i] ?? `belief ${i}`;
+      return { name, points: rows.map((row) => [row.at, row.values[i]]), goals: this.goals(name.split(" (")[0].replace(/ /g, "_")) };
+    });
+  }
+
+  goals(name) {
+    return this.run.actions().flatMap((action) => {
+      const subgoals = this.run.last("subgoals", action.begin + 0.15);
+      const goal = subgoals?.actions[0]?.parameters.find((p) => p.name === `${name}g`);
+      return goal ? [[action.until, goal.value, goal.bound]] : [];
+    });
+  }
+
+  others() {
+    return this.run.series().flatMap((kind) => {
+      const rows = this.run.all(kind);
+      const names = Object.keys(rows[0]).filter((name) => name !== "at");
+      return names.slice(0, 12).map((name) => ({ name: `${kind.slice(7)} ${name}`, points: rows.map((row) => [row.at, row[name]]), goals: [] }));
+    });
+  }
+}
+
+/** One plot over time with a cursor that moves. */
+function timePlot(line, [from, to]) {
+  const seen = line.points.filter(([at, value]) => at >= from && at <= to && value !== null);
+  const [low, high] = extent([...seen.map((p) => p[1]), ...line.goals.map((g) => g[1])], 0.1);
+  const x = scale(from, to, PLOT.left, PLOT.width - PLOT.right);
+  const y = scale(low, high, PLOT.height - PLOT.bottom, PLOT.top);
+  const cursor = svg("line", { class: "cursor", y1: PLOT.top, y2: PLOT.height - PLOT.bottom });
+  const now = svg("text", { class: "ink", x: PLOT.width - PLOT.right, y: 10, "text-anchor": "end" });
+  const element = svg("svg", { viewBox: `0 0 ${PLOT.width} ${PLOT.height}` },
+    ...ticks(low, high, 3).flatMap((v) => [svg("line", { class: "grid", x1: PLOT.left, x2: PLOT.width - PLOT.right, y1: y(v), y2: y(v) }), svg("text", { x: PLOT.left - 4, y: y(v) + 3.5, "text-anchor": "end", text: String(v) })]),
+    svg("path", { class: "trace c0", d: through(seen.map(([at, value]) => [x(at), y(value)])) }),
+    ...line.goals.filter(([at]) => at >= from && at <= to).map(([at, value, bound]) => svg("circle", { class: bound ? "dot" : "dot lone", cx: x(at), cy: y(value), r: 3 })),
+    svg("text", { class: "strong", x: PLOT.left, y: 10, text: line.name }), now, cursor);
+  const move = (at) => {
+    const px = x(Math.min(to, Math.max(from, at)));
+    cursor.setAttribute("x1", px);
+    cursor.setAttribute("x2", px);
+    const last = seen.filter((p) => p[0] <= at).pop();
+    now.textContent = last ? last[1].toFixed(3) : "";
+  };
+  return { element, move };
+}

@@ -1,0 +1,107 @@
+// Everything over one axis of time: actions, events, speed, tick timing, granted checks; drag to move, wheel to zoom.
+
+const WIDE = { width: 1240, left: 92, right: 66 };
+
+class Timeline {
+  constructor(run, target, player) {
+    this.run = run;
+    this.panel = target;
+    this.player = player;
+    this.window = null; // [from, to] when zoomed
+    this.drawn = "";
+  }
+
+  /** The stretch of time that is shown; a live page shows the last minute. */
+  view() {
+    if (this.window) return this.window;
+    const from = this.player.live ? Math.max(this.run.start, this.run.end - 60) : this.run.start;
+    return [from, Math.max(this.run.end, from + 1)];
+  }
+
+  show(at) {
+    const view = this.view();
+    const key = `${this.run.version} ${view}`;
+    if (key !== this.drawn) { this.drawn = key; this.lay(view); }
+    const px = this.x(Math.min(view[1], Math.max(view[0], at)));
+    this.cursor.setAttribute("x1", px);
+    this.cursor.setAttribute("x2", px);
+  }
+
+  lay(view) {
+    const x = scale(view[0], view[1], WIDE.left, WIDE.width - WIDE.right);
+    Object.assign(x, { low: WIDE.left, high: WIDE.width - WIDE.right, shows: (at) => at >= view[0] && at <= view[1] });
+    this.x = x;
+    let top = 4;
+    const parts = [];
+    for (const lane of this.lanes()) {
+      parts.push(svg("text", { class: "strong", x: 0, y: top + (lane.label ?? 12), text: lane.name }));
+      parts.push(svg("g", { "data-lane": lane.name }, ...lane.draw(x, top)));
+      top += lane.height + 8;
+    }
+    const axis = ticks(view[0], view[1], 12).flatMap((t) => [svg("line", { class: "grid", x1: x(t), x2: x(t), y1: 0, y2: top }), svg("text", { x: x(t), y: top + 12, "text-anchor": "middle", text: `${t} s` })]);
+    this.cursor = svg("line", { class: "cursor", y1: 0, y2: top });
+    const hit = svg("rect", { class: "hit", x: x.low, y: 0, width: x.high - x.low, height: top });
+    const drawing = svg("svg", { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" }, svg("g", {}, ...axis), hit, ...parts, this.cursor);
+    this.listen(drawing);
+    this.panel.body.replaceChildren(drawing);
+    this.panel.note.textContent = this.summary();
+  }
+
+  lanes() {
+    const run = this.run;
+    const times = run.about().times ?? { period: 100, budget: 60, end: 80 };
+    const lanes = [
+      { name: "action", height: 38, label: 26, draw: (x, top) => actionLane(run, x, top) },
+      { name: "event", height: 16, draw: (x, top) => eventLane(run, x, top) },
+    ];
+    const source = run.source();
+    if (source) {
+      const points = run.all(source).map((p) => [p.at, p.v]);
+      lanes.push({ name: "speed", height: 50, draw: (x, top) => curveLane(x, top, 50, [{ points, kind: "trace c0" }, ...this.commanded()], extent([0, ...points.map((p) => p[1])]), "m/s") });
+    }
+    if (run.all("tick").length) {
+      lanes.push({ name: "tick ms", height: 74, draw: (x, top) => tickLane(run, x, top, 74, times) });
+      const checks = run.all("tick").map((row) => [row.at, row.checks]);
+      lanes.push({ name: "checks", height: 42, draw: (x, top) => curveLane(x, top, 42, [{ points: checks, kind: "trace c2" }], extent([0, ...checks.map((c) => c[1])], 0.02), "granted") });
+    }
+    return lanes;
+  }
+
+  commanded() {
+    const rows = this.run.all("series cmd_vel");
+    return rows.length ? [{ points: rows.map((row) => [row.at, row.v]), kind: "ghost" }] : [];
+  }
+
+  summary() {
+    const rows = this.run.all("tick");
+    if (!rows.length) return "";
+    const [work, late] = [rows.map((row) => row.work), rows.map((row) => row.late)];
+    const missed = rows.reduce((sum, row) => sum + row.skipped, 0);
+    const ms = (value) => `${value.toFixed(value < 10 ? 1 : 0)} ms`;
+    return `${rows.length} ticks · work p50 ${ms(quantile(work, 0.5))}, p99 ${ms(quantile(work, 0.99))} · late p99 ${ms(quantile(late, 0.99))}, max ${ms(Math.max(...late))} · ${missed} missed`;
+  }
+
+  listen(drawing) {
+    const at = (event) => {
+      const box = drawing.getBoundingClientRect();
+      return this.x.invert(((event.clientX - box.left) / box.width) * WIDE.width);
+    };
+    drawing.addEventListener("pointerdown", (event) => { this.dragging = true; this.player.go(at(event)); });
+    drawing.addEventListener("pointermove", (event) => { if (this.dragging && event.buttons) this.player.go(at(event)); });
+    drawing.addEventListener("dblclick", () => { this.window = null; this.player.refresh(); });
+    drawing.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey && !event.shiftKey) return; // plain scrolling stays the page's
+      event.preventDefault();
+      this.zoom(at(event), event.deltaY + event.deltaX > 0 ? 1.25 : 0.8);
+    }, { passive: false });
+  }
+
+  /** Widen or narrow the shown stretch about a moment. */
+  zoom(about, factor) {
+    const [from, to] = this.view();
+    const next = [about + (from - about) * factor, about + (to - about) * factor];
+    const whole = next[0] <= this.run.start && next[1] >= this.run.end;
+    this.window = whole ? null : [Math.max(this.run.start, next[0]), Math.min(this.run.end, Math.max(next[1], next[0] + 0.5))];
+    this.player.refresh();
+  }
+}

@@ -1,0 +1,79 @@
+"""Explanations for the page, with the models that a run's provenance names; silent where they are not to be had."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from executive.composition import recompose
+from executive.core.context import Context
+from schemas.errors import UsageError
+from schemas.messages import Subgoals
+from tools.viewer.explanation import Alternatives, Explanation, explain
+from tools.viewer.rows import Fields, number
+
+STREAM = 5  # of the seed; the executive's own draws come from others
+
+
+class Explainer:
+    """Explains the decisions of one executive."""
+
+    def __init__(self, compose: Callable[[Mapping[str, Any]], Context] = recompose) -> None:
+        """`compose` makes a context of a provenance, or raises UsageError."""
+        self._compose = compose
+        self._context: Context | None = None
+        self.missing = "no provenance yet"  # why there are no explanations; empty when there are
+
+    def learn(self, provenance: str) -> None:
+        """Load what a provenance names; a failure is kept in `missing`."""
+        try:
+            self._context = self._compose(json.loads(provenance))
+            self.missing = ""
+        except (UsageError, KeyError, ValueError) as error:
+            self._context = None
+            self.missing = str(error)
+
+    def explanation(self, message: Subgoals) -> Explanation | None:
+        """Why these subgoals; None without models, or when nothing was free."""
+        context = self._context
+        if context is None:
+            return None
+        rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
+        return explain(message, context.domain.actions, context.models, context.settings.refinement, rng)
+
+    def fields(self, message: Subgoals) -> Fields | None:
+        """The explanation as the page takes it."""
+        explanation = self.explanation(message)
+        return None if explanation is None else fields_of(explanation)
+
+
+def fields_of(explanation: Explanation) -> Fields:
+    """An explanation in JSON values; INVALID and unknown numbers are null."""
+    return {
+        "actions": list(explanation.actions),
+        "chosen": [number(s) for s in explanation.chosen_s],
+        "greedy": [number(s) for s in explanation.greedy_s],
+        "cost": {"chosen": number(explanation.chosen_cost), "greedy": number(explanation.greedy_cost)},
+        "alternatives": [_alternatives(a) for a in explanation.alternatives],
+    }
+
+
+def _alternatives(said: Alternatives) -> Fields:
+    variable = said.variable
+    return {
+        "id": variable.id,
+        "place": variable.label,
+        "quantity": variable.quantity,
+        "unit": variable.unit,
+        "periodic": variable.periodic,
+        "chosen": number(said.chosen),
+        "greedy": number(said.greedy),
+        "touched": list(said.touched),
+        "values": [number(v) for v in said.values],
+        "seconds": [[number(s) for s in row] for row in said.durations_s],
+        "total": [number(s) for s in said.total_s],
+        "valid": [int(v) for v in said.valid],
+    }

@@ -1,0 +1,146 @@
+"""Why a subgoal was chosen: what the models predict for its alternatives, and what greedy would have done (Figure 11).
+
+Made from a recorded `Subgoals` message and the action models alone; nothing is executed again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.library import Action, Array, Models
+from executive.refinement.greedy import greedy
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
+from executive.refinement.settings import RefinementSettings
+from schemas import messages as m
+
+SWEEP = 73  # values of one parameter: every five degrees of a turn, both ends included
+
+
+@dataclass(frozen=True, slots=True)
+class Alternatives:
+    """Predictions over one free parameter, the others as chosen.
+
+    `values` has shape (n,); `durations_s` one row of n for each action within the horizon, NaN where a model gives no
+    number; `valid` says where every action is predicted to succeed; `touched` which actions depend on the parameter.
+    """
+
+    variable: Variable
+    chosen: float
+    greedy: float
+    values: Array
+    durations_s: Array
+    valid: NDArray[np.bool_]
+    touched: tuple[int, ...]
+
+    @property
+    def total_s(self) -> Array:
+        """Summed durations, shape (n,)."""
+        total: Array = self.durations_s.sum(axis=0)
+        return total
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A choice against its alternatives. Durations are predicted means; `cost` is the objective, +inf is INVALID."""
+
+    actions: tuple[str, ...]  # within the horizon, in order
+    chosen_s: tuple[float, ...]
+    greedy_s: tuple[float, ...]
+    chosen_cost: float
+    greedy_cost: float
+    alternatives: tuple[Alternatives, ...]  # one for each free parameter
+
+
+def explain(
+    message: m.Subgoals,
+    library: Mapping[str, Action],
+    models: Models,
+    settings: RefinementSettings,
+    rng: np.random.Generator,
+) -> Explanation | None:
+    """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
+
+    The greedy choice is searched anew with the executive's own solver, from `rng`.
+    """
+    sequence = sequence_of(message, library)
+    if sequence is None:
+        return None
+    settings = replace(settings, horizon=message.horizon)
+    chosen = {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
+    objective = _objective(sequence, models, settings)
+    if not objective.ids:
+        return None
+    if not np.isfinite(objective(objective.vector(chosen)[None]))[0]:
+        sequence = _risked(sequence)  # a failure that was knowingly accepted is not in the message
+        objective = _objective(sequence, models, settings)
+    alone = greedy(sequence, models, settings, rng).values
+    picked, lone = objective.vector(chosen), objective.vector(alone)
+    return Explanation(
+        tuple(a.action.name for a in sequence.within(settings.horizon)),
+        _durations(objective, picked),
+        _durations(objective, lone),
+        float(objective(picked[None])[0]),
+        float(objective(lone[None])[0]),
+        tuple(_alternatives(objective, sequence.variables[i], picked, lone) for i in objective.ids),
+    )
+
+
+def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSequence | None:
+    """The instantiated sequence that the message reports; None if it names an action that the library lacks."""
+    if not message.actions or any(a.action not in library for a in message.actions):
+        return None
+    table: dict[int, Variable] = {}
+    for told in message.actions:
+        for declared, parameter in zip(library[told.action].parameters, told.parameters, strict=True):
+            wide = parameter.upper - parameter.lower >= declared.upper - declared.lower
+            table[parameter.id] = Variable(
+                parameter.id,
+                parameter.label,
+                declared.quantity,
+                declared.unit,
+                parameter.lower,
+                parameter.upper,
+                declared.periodic and wide,
+                parameter.value if parameter.bound else None,
+            )
+    unused = Variable(0, "", "", "", 0.0, 0.0, False, 0.0)  # ids have gaps where a detour replaced a variable
+    variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
+    actions = tuple(
+        InstantiatedAction(library[a.action], a.step, tuple(p.id for p in a.parameters), a.asserted)
+        for a in message.actions
+    )
+    return ActionSequence(actions, variables, library)
+
+
+def _objective(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:
+    return SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
+
+
+def _risked(sequence: ActionSequence) -> ActionSequence:
+    return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
+
+
+def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, ...]:
+    return tuple(float(said.duration_s[0]) for said in objective.predict(candidate))
+
+
+def _alternatives(objective: SequenceObjective, variable: Variable, picked: Array, lone: Array) -> Alternatives:
+    column = objective.ids.index(variable.id)
+    values = np.linspace(variable.lower, variable.upper, SWEEP)
+    candidates = np.tile(picked, (SWEEP, 1))
+    candidates[:, column] = values
+    predicted = [stage.predict(candidates[:, stage.columns]).duration_s for stage in objective.stages]
+    return Alternatives(
+        variable,
+        float(picked[column]),
+        float(lone[column]),
+        values,
+        np.array(predicted),
+        np.isfinite(objective(candidates)),
+        tuple(i for i, stage in enumerate(objective.stages) if column in stage.columns),
+    )
