@@ -22,6 +22,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "record": ("tools.record", "record the bus into an MCAP file"),
     "replay": ("tools.replay", "play a recording on the bus"),
     "info": ("tools.info", "what a recording holds"),
+    "recover": ("tools.recover", "make a whole recording of a damaged one"),
+    "cut": ("tools.cut", "cut a span of time or some topics out of a recording"),
     "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
     "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
     "plan": ("tools.plan", "plan with PDDL files, in VHPOP's manner"),

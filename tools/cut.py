@@ -1,0 +1,53 @@
+"""Cut a piece out of a recording: a span of time, some topics; bytes and metadata stay as they are."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from runtime.copying import copy
+from runtime.recording import open_recording
+from runtime.selection import selection
+from schemas.errors import UsageError
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor cut`."""
+    add = parser.add_argument
+    add("file", help="recording (MCAP)")
+    add("-o", "--output", metavar="FILE", help="file to make (default: NAME-cut.mcap)")
+    add(
+        "--from", dest="start", type=float, default=0.0, metavar="S", help="seconds after the first message (default 0)"
+    )
+    add(
+        "--to",
+        dest="end",
+        type=float,
+        metavar="S",
+        help="seconds after the first message, exclusive (default: the end)",
+    )
+    add("--topics", action="append", default=[], metavar="WORDS", help="only these: odom, 'agilo/*', a ROS type; a,b,c")
+    add("--exclude", action="append", default=[], metavar="WORDS", help="all but these")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 when something is left, 1 when nothing is."""
+    if arguments.end is not None and arguments.end <= arguments.start:
+        raise UsageError(f"--to is {arguments.end:g}, expected more than --from {arguments.start:g}")
+    recording = open_recording(arguments.file)
+    wanted = selection(arguments.topics, arguments.exclude)
+    first = next(recording.messages(), None)
+    zero_ns = 0 if first is None else first.log_ns
+    start_ns = zero_ns + round(arguments.start * 1e9)
+    end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
+    target = Path(arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap"))
+
+    def keep(key: str, ros_type: str, log_ns: int) -> bool:
+        return start_ns <= log_ns < end_ns and wanted.wants(key, ros_type)
+
+    note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
+    copied = copy(recording.path, target, keep, note)
+    if copied.account.text():
+        print(f"{recording.path}: {copied.account.text()}")
+    print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
+    return 0 if copied.kept else 1
