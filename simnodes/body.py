@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from schemas.messages import Message, SimTruth
+from schemas.messages import Message
 
 STEP_NS = 5_000_000  # every duration handed to a body is a multiple of this
 
@@ -46,6 +46,6 @@ class Body(Protocol):
         """Simulator service: move or push a thing while the clock runs; names as in `reset`."""
         ...
 
-    def truth(self) -> SimTruth:
-        """The state of the world now."""
+    def truth(self) -> Message:
+        """The state of the world now, as the simulator tells it."""
         ...

@@ -13,8 +13,8 @@ from executive.budget import CheckBudget
 from executive.core.context import PERIOD_NS, Context
 from executive.core.state import Inputs, Output, State, initial_state
 from executive.core.step import step
-from schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, SimTruth, Subgoals
-from schemas.topics import key_of
+from schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
+from schemas.topics import TOPICS, key_of
 from simnodes.body import Body, Reading
 from simnodes.declaration import declaration
 from simnodes.driver import Driver
@@ -34,7 +34,7 @@ class Episode:
     ended_s: float = math.nan  # last action
     finished: list[ActionFinished] = field(default_factory=list)
     subgoals: list[Subgoals] = field(default_factory=list)
-    truth: list[SimTruth] = field(default_factory=list)
+    truth: list[Message] = field(default_factory=list)
     status: list[ExecStatus] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)  # all that the core said, and the truth, in order
 
@@ -89,7 +89,7 @@ class _Link:
     def __init__(self, robot: str, world: World) -> None:
         self._robot, self._world = robot, world
         self._declared = declaration(robot)
-        self._driver = Driver(self._declared.limits, EPOCH)
+        self._driver = Driver(self._declared, EPOCH)
         self._sequence = 0
 
     def take(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
@@ -109,10 +109,10 @@ class _Link:
         for reading in self._world.advance(PERIOD_NS):
             newest[reading.topic] = reading
         self._sequence += 1
-        truth = newest.pop("truth", None)
-        if truth is not None and isinstance(truth.message, SimTruth):
-            episode.truth.append(truth.message)
-            episode.messages.append(truth.message)
+        for topic in [topic for topic in newest if TOPICS[topic].source == "simulator"]:
+            truth = newest.pop(topic).message
+            episode.truth.append(truth)
+            episode.messages.append(truth)
         samples = [Sample(key_of(r.topic, self._robot), r.message, r.time_ns, self._sequence) for r in newest.values()]
         after_ns = now_ns + PERIOD_NS
         driver = self._driver.state(after_ns, after_ns)

@@ -13,13 +13,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from executive.library import Action, Array, Belief, Domain
-from schemas.messages import Sample, SimTruth
+from schemas.messages import Message, Sample
+from schemas.topics import TOPICS
 from simnodes.body import Body, Reading
 
 PERIOD_NS = 100_000_000  # 10 Hz
 LIMIT_S = 40.0  # an action that takes longer has failed
-BODIES = {"soccer": "simnodes.agilo.body:AgiloBody"}
-TRIALS = {"soccer": "tools.trials.soccer:SoccerTrials"}
+BODIES = {"soccer": "simnodes.agilo.body:AgiloBody", "arm": "simnodes.powercube.body:PowerCubeBody"}
+TRIALS = {"soccer": "tools.trials.soccer:SoccerTrials", "arm": "tools.trials.arm:ArmTrials"}
 
 
 class Trials(Protocol):
@@ -41,7 +42,7 @@ class Trials(Protocol):
         """Controller arguments with the believed state in place of the start."""
         ...
 
-    def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
+    def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """What has gone wrong in the world by now, or ""."""
         ...
 
@@ -52,7 +53,7 @@ class Tick:
 
     time_s: float
     belief: Belief
-    truth: SimTruth
+    truth: Message
     command: tuple[float, ...]
 
 
@@ -140,7 +141,7 @@ def run_action(
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
     """The newest sensor reading of each topic, as a ring of depth one hands it over on the bus."""
-    last = {reading.topic: reading for reading in readings if reading.topic != "truth"}
+    last = {reading.topic: reading for reading in readings if TOPICS[reading.topic].source == "driver"}
     return tuple(
         Sample(reading.topic, reading.message, reading.time_ns, 0)
         for reading in sorted(last.values(), key=lambda reading: reading.time_ns)

@@ -31,25 +31,27 @@ class Motor:
     def reset(self, angle: float, velocity: float, current_a: float) -> None:
         """Start in motion (rad, rad/s), carrying a load that takes `current_a`."""
         self._target = self.velocity = velocity
-        self._slope = 0.0
+        self._step = 0.0
         self._inner = angle + current_a / STIFFNESS_A_PER_RAD
         self._last = angle
         self.tacho = velocity
         self.current_a = current_a
 
     def accept(self, velocity: float) -> None:
-        """Take a set-point (rad/s), to be reached in INTERPOLATION_S at the earliest."""
+        """Take a set-point (rad/s), reached in INTERPOLATION_S at the earliest; the same one again changes nothing."""
         limit = self._p.velocity_max_radps
-        self._target = max(-limit, min(limit, velocity))
-        slope = (self._target - self.velocity) / INTERPOLATION_S * PERIOD_S
-        self._slope = max(-self._step_max, min(self._step_max, slope))
+        target = max(-limit, min(limit, velocity))
+        if target == self._target:
+            return
+        self._target = target
+        self._step = min(self._step_max, abs(target - self.velocity) / INTERPOLATION_S * PERIOD_S)
 
     def tick(self, angle: float) -> float:
         """One period on; the current (A) for an angle as the encoder says it (rad)."""
         self.tacho += ((angle - self._last) / PERIOD_S - self.tacho) * (PERIOD_S / TACHO_S)
         self._last = angle
         left = self._target - self.velocity
-        self.velocity = self._target if abs(left) <= abs(self._slope) else self.velocity + self._slope
+        self.velocity += max(-self._step, min(self._step, left))
         self.velocity = self._before_the_end(angle, self.velocity)
         inner = self._inner + self.velocity * PERIOD_S
         self._inner = max(angle - LEASH_RAD, min(angle + LEASH_RAD, inner))

@@ -127,3 +127,20 @@ def test_the_arm_runs_fifty_times_faster_than_real_time():
     begun = time.process_time()
     made.advance(5_000_000_000)
     assert 5.0 / (time.process_time() - begun) > 50
+
+
+def test_hearing_a_set_point_again_changes_nothing():
+    once, often = body(), body()
+    once.command((0.4, -0.3))
+    expected = once.advance(TICK_NS)
+    told = []
+    for _ in range(10):
+        often.command((0.4, -0.3))
+        told += often.advance(TICK_NS // 10)
+    assert told == expected
+
+
+def test_a_motor_turns_round_after_it_was_braked_at_the_end_of_its_range():
+    made = body(a=1.8)
+    follow(made, [(1.2, 0.0)] * 20 + [(1.1, 0.0)] * 5 + [(-0.5, 0.0)] * 10)
+    assert made.truth().velocities[0] == pytest.approx(-0.5, abs=0.03)
