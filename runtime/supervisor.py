@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from runtime.processes import Child
 from runtime.restart import Restart
 
+FINAL_CODES = (0, 2)  # done; bad input, which another start would not mend
 STARTUP_NS = 30_000_000_000  # from start to the first sign of life
 
 
@@ -87,7 +88,7 @@ class Supervisor:
 
     def _died(self, watch: _Watch, code: int, now_ns: int) -> None:
         name = watch.charge.name
-        if not watch.charge.restarts or code == 0:
+        if not watch.charge.restarts or code in FINAL_CODES:
             watch.over = True
         elif watch.restart.exhausted(now_ns):
             watch.over = True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -69,9 +69,11 @@ def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, scree
     if plan.record is not None:
         listened = session.publisher("plan", robot)
         supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())
-        _wait(supervisor, ("record",), listened.matched, stop)
+        if not _appeared(supervisor, "record", listened.matched, stop):
+            return "failed: the recorder did not start"
     supervisor.begin(Charge("sim", _sim(plan, robot)), time.monotonic_ns())
-    _wait(supervisor, ("sim",), lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop)
+    if not _appeared(supervisor, "sim", lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop):
+        return "failed: the simulator did not start"
     supervisor.begin(Charge("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
     return _watch(plan, inbox, supervisor, screen, stop)
 
@@ -95,20 +97,20 @@ def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, sto
     return result
 
 
-def _wait(supervisor: Supervisor, names: Sequence[str], ready: object, stop: Stop) -> None:
-    """Wait until a process shows that it is there."""
-    assert callable(ready)
+def _appeared(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop: Stop) -> bool:
+    """Wait until a process shows that it is there; False if it ends, time runs out, or people stop the system."""
     deadline = time.monotonic() + START_S
-    while not (stop.requested or ready()):
+    while not ready():
         supervisor.look(time.monotonic_ns())
-        if time.monotonic() > deadline or any(supervisor.ended(name) is not None for name in names):
-            raise RuntimeError(f"{', '.join(names)} did not start")
+        if stop.requested or time.monotonic() > deadline or supervisor.ended(name) is not None:
+            return False
         time.sleep(0.02)
+    return True
 
 
 def _sim(plan: Plan, robot: str) -> list[str]:
     order = plan.order
-    scene = ("--domain", order.domain, "--scenario", order.scenario, "--seed", str(order.settings.seed))
+    scene = ("--scenario", order.scenario, "--seed", str(order.settings.seed))
     return tailor("sim", robot, *scene, "--connect", plan.endpoint)
 
 

@@ -44,6 +44,20 @@ def act(context: Context, state: State) -> Acted:
     return _ended(context, state, running, control)
 
 
+def ending(context: Context, state: State, index: int, running: Running, how: tuple[str, str]) -> ActionFinished:
+    """What is told of an action, the `index`-th of the task, that ends in this tick; `how` is outcome and reason."""
+    return ActionFinished(
+        stamp_ns=context.stamp(state.now_ns),
+        tick=state.tick,
+        action=running.action.name,
+        action_index=index,
+        outcome=how[0],
+        reason=how[1],
+        predicted_s=running.predicted_s,
+        actual_s=running.elapsed_s(state.now_ns),
+    )
+
+
 def running_from(decision: Decision, now_ns: int) -> Running:
     """The first action of a decision, ready to run with the chosen values."""
     first = decision.sequence.actions[0]
@@ -83,16 +97,7 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
 
 def _ended(context: Context, state: State, running: Running, control: Control) -> Acted:
     task = replace(state.task, running=None, decision=None, finished=state.task.finished + 1)
-    finished = ActionFinished(
-        stamp_ns=context.stamp(state.now_ns),
-        tick=state.tick,
-        action=running.action.name,
-        action_index=state.task.finished,
-        outcome=control.outcome,
-        reason=control.reason,
-        predicted_s=running.predicted_s,
-        actual_s=running.elapsed_s(state.now_ns),
-    )
+    finished = ending(context, state, state.task.finished, running, (control.outcome, control.reason))
     state = replace(state, deliberation=None, coasted=0)
     if control.outcome == "done":
         return Acted(replace(state, task=_with_effects(context, replace(task, failures=()), running)), finished)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from executive import planning
+from executive.core.action_cycle import ending
 from executive.core.context import Context
 from executive.core.deliberation import Decision, Deliberation, PlanFound
+from executive.core.execution import Running
 from executive.core.state import Output, State
 from executive.refinement.sequence import InstantiatedAction, Variable
 from schemas import messages as m
@@ -18,6 +20,8 @@ class Told:
 
     deliberation: Deliberation | None
     found: PlanFound | None
+    running: Running | None
+    finished: int
     decision: Decision | None
     evaluations: int
 
@@ -28,6 +32,8 @@ def snapshot(state: State) -> Told:
     return Told(
         deliberation,
         deliberation.found if deliberation is not None else None,
+        state.task.running,
+        state.task.finished,
         state.task.decision,
         _evaluations(deliberation),
     )
@@ -36,6 +42,9 @@ def snapshot(state: State) -> Told:
 def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
     """The messages about this tick, the status last."""
     outputs: list[Output] = []
+    if told.running is not None and state.task.finished > told.finished:
+        how = ("aborted", "the world has changed and another action comes first now")
+        outputs.append(Output("finished", ending(context, state, told.finished, told.running, how)))
     deliberation = state.deliberation
     if deliberation is not None:
         found = deliberation.found

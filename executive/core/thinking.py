@@ -86,7 +86,7 @@ def _redirected(task: Task, running: Running, now_ns: int) -> Task:
     assert task.decision is not None
     following = running_from(task.decision, now_ns)
     if following.action.name != running.action.name or following.step != running.step:
-        return replace(task, running=following)
+        return replace(task, running=following, finished=task.finished + 1)
     predicted_s = running.elapsed_s(now_ns) + following.predicted_s
     return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
 

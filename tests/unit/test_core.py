@@ -211,3 +211,16 @@ def test_command_guard_refuses_what_is_not_finite_and_clamps_the_rest(command, e
 
 def test_settings_default_to_the_papers_horizon():
     assert Settings().refinement.horizon == 2
+
+
+def test_action_that_gives_way_to_another_one_is_told_as_aborted():
+    """The place moves behind a wall: an action of another plan step has to come first."""
+    settings = Settings()
+    run = list(drive(line_context(settings), ticks=3))
+    state, _, _ = run[-1]
+    other = dataclasses.replace(state.task.running, step=99)
+    state = dataclasses.replace(state, task=dataclasses.replace(state.task, running=other))
+    moved = Inputs((odometry(4 * TICK, 0.0, 4, 0.4), driver(4 * TICK)))
+    _, outputs = step(line_context(settings), state, 4 * TICK, moved, CheckBudget(2000))
+    ended = [output.message for output in outputs if isinstance(output.message, ActionFinished)]
+    assert [(f.action, f.outcome, f.action_index) for f in ended] == [("slide", "aborted", 0)]
