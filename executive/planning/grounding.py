@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from executive.planning.durations import duration_range
 from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span
@@ -76,6 +78,15 @@ def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundAc
                 action = _instance(len(actions), schema, binding, world, facts, tick_s)
                 actions += [action] if action else []
     yield GroundActions(world, tick_s, tuple(facts), tuple(actions))
+
+
+def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions:
+    """The same ground actions with their conditions in random order: so open conditions come in another order."""
+    mixed = (
+        tuple(action.conditions[n] for n in rng.permutation(len(action.conditions))) for action in grounded.actions
+    )
+    actions = (replace(action, conditions=own) for action, own in zip(grounded.actions, mixed, strict=True))
+    return replace(grounded, actions=tuple(actions))
 
 
 # --- bindings ------------------------------------------------------------------------------------

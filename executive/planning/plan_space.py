@@ -60,7 +60,6 @@ class GroundSpace:
         self._world = world
         self._ranking = Ranking(rankings_for(settings, task.problem.metric), task, settings.weight)
         self._orders = [FlawSelection(parse_flaw_order(order.text), task, rng) for order in settings.flaw_orders]
-        self._shuffle = rng if settings.random_open_conditions else None
         self.rank = self._ranking.rank
 
     def initial(self) -> PartialPlan:

@@ -10,7 +10,7 @@ from executive.budget import Budget
 from executive.planning.best_first import BestFirst
 from executive.planning.deepening import Deepening
 from executive.planning.ground_task import make_task
-from executive.planning.grounding import GroundActions, TooManyBindings, ground_actions, world_of
+from executive.planning.grounding import GroundActions, TooManyBindings, ground_actions, shuffled, world_of
 from executive.planning.language import Domain
 from executive.planning.partial_plan import PartialPlan
 from executive.planning.plan import Result
@@ -47,8 +47,14 @@ class Search:
         self._problem = problem
         self._settings = settings
         self._cache = ground if ground is not None else GroundCache()
+        self._algorithm: BestFirst[PartialPlan] | Deepening[PartialPlan] | None = None
         self._work = self._run()
         self._result: Result | None = None
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Plans generated and visited so far."""
+        return (self._algorithm.generated, self._algorithm.visited) if self._algorithm else (0, 0)
 
     def advance(self, budget: Budget) -> Result | None:
         """Goes on until there is a result or the budget is spent (None: call again later)."""
@@ -65,11 +71,13 @@ class Search:
             return
         grounded = self._cache.last
         assert grounded is not None
-        task = make_task(self._problem, grounded, settings.action_cost)
         rng = np.random.default_rng(settings.seed)
+        if settings.random_open_conditions:
+            grounded = shuffled(grounded, rng)
+        task = make_task(self._problem, grounded, settings.action_cost)
         space: PlanSpace[PartialPlan] = GroundSpace(task, grounded.world, settings, rng)
-        algorithm = BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
-        yield from algorithm.run()
+        self._algorithm = BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
+        yield from self._algorithm.run()
 
     def _ground(self) -> Iterator[None]:
         """Grounds the problem's world unless the cache has it."""

@@ -1,0 +1,231 @@
+"""Plans with PDDL files, in VHPOP's manner: a partial-order plan with causal links.
+
+Prints the plan's plain form, START:(action args)[duration]. Options have the letters and names of VHPOP. Exit codes:
+0 a plan, 1 no plan (unsolvable or a limit), 2 bad input.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from executive.planning import (
+    Domain,
+    FlawOrder,
+    Plan,
+    Problem,
+    Result,
+    Search,
+    Settings,
+    format_links,
+    format_plan,
+    parse_domain,
+    parse_plan,
+    parse_problem,
+    relink,
+    validate,
+)
+from executive.planning.flaw_orders import NAMED
+from executive.planning.ranking import NAMES
+from runtime.planner_process import PlannerProcess
+from schemas.errors import UsageError
+from tools.plan_drawing import to_dot, to_svg
+
+MAX_PLANS = 1_000_000  # a search that gets there has used about 1 GB
+_POLL_S = 0.002  # how often a child planner is looked at
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the arguments; -h is VHPOP's ranking here, help is --help only."""
+    parser.conflict_handler = "resolve"
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
+    parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file")
+    parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file")
+    _configure_search(parser.add_argument_group("search, as in VHPOP"))
+    parser.set_defaults(node_limit=MAX_PLANS)
+    _configure_output(parser.add_argument_group("output"))
+
+
+def _configure_search(group: argparse._ArgumentGroup) -> None:
+    add = group.add_argument
+    add("-g", "--ground-actions", dest="ground", action="store_true", default=True, help="ground actions (default)")
+    add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
+    add("-h", "--heuristic", metavar="RANKING", default="",
+        help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
+    add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
+        help="flaw order by name or as {n,s}LR/{l}MW_add; several take turns (default MW-Loc and LCFR-Loc-Conf)")  # fmt: skip
+    add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
+        help="plans that the flaw order before it may generate, or 'unlimited'; without one: all")  # fmt: skip
+    add("-s", "--search-algorithm", dest="search", choices=("A", "IDA"), default="A", help="A* (default) or IDA*")
+    add("-w", "--weight", type=float, default=1.0, help="weight of the heuristic (default 1)")
+    add("-a", "--action-cost", choices=("UNIT", "DURATION", "RELATIVE"), default="UNIT", type=str.upper,
+        help="what a step costs (default UNIT)")  # fmt: skip
+    add("-t", "--tolerance", type=float, default=0.01, metavar="S", help="one tick of a durative plan (default 0.01)")
+    add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
+    add("-S", "--seed", type=int, default=0, help="seed of everything random (default 0)")
+    add("-T", "--time-limit", type=float, default=None, metavar="MINUTES", help="give up after that many minutes")
+    add("--planner", metavar="COMMAND", help="let a real vhpop plan instead, e.g. 'vhpop -g -f MW-Loc'")
+
+
+def _configure_output(group: argparse._ArgumentGroup) -> None:
+    forms = group.add_mutually_exclusive_group()
+    forms.add_argument("--links", action="store_true", help="the causal-link form (the paper's Figure 10)")
+    forms.add_argument("--json", action="store_true", help="one JSON object, also when there is no plan")
+    forms.add_argument("--dot", action="store_true", help="the partial order as a Graphviz graph")
+    forms.add_argument("--svg", action="store_true", help="the partial order as an SVG picture")
+    group.add_argument("-v", "--verbose", nargs="?", type=int, const=1, default=0, metavar="LEVEL",
+                       help="say on stderr what the search cost")  # fmt: skip
+
+
+class _AppendOrder(argparse.Action):
+    """-f ORDER: one more flaw order."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        namespace.orders = [*namespace.orders, FlawOrder(str(values))]
+
+
+class _LimitOrder(argparse.Action):
+    """-l N: the limit of the flaw order before it, or of the whole search when there is none."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        limit = None if values == "unlimited" else _positive(values)
+        if namespace.orders:
+            *before, last = namespace.orders
+            namespace.orders = [*before, dataclasses.replace(last, limit=limit)]
+        else:
+            namespace.node_limit = limit if limit is not None else sys.maxsize
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise UsageError(f"--limit: expected a number of plans of at least 1 or 'unlimited', found '{text}'")
+    return int(text)
+
+
+# --- running -------------------------------------------------------------------------------------
+@dataclasses.dataclass(slots=True)
+class _TimeBudget:
+    """Grants work until a deadline of CPU-independent time."""
+
+    deadline: float
+    granted: int = 0
+
+    def spent(self) -> bool:
+        """See `Budget`."""
+        self.granted += 1
+        return time.monotonic() >= self.deadline
+
+
+def run(args: argparse.Namespace) -> int:
+    """Plans and prints; 0 with a plan, 1 without."""
+    domain = parse_domain(_read(args.domain), str(args.domain))
+    problem = parse_problem(_read(args.problem), domain, str(args.problem))
+    started = time.process_time()
+    result = _ask(args, domain, problem) if args.planner else _search(args, domain, problem)
+    cpu_ms = (time.process_time() - started) * 1e3
+    if result.plan is not None:
+        fault = validate(result.plan, domain, problem)
+        if fault:
+            result = dataclasses.replace(result, status="limit", plan=None, reason=f"the plan is unsound: {fault}")
+    if args.verbose:
+        print(f"generated {result.generated}, visited {result.visited}, {cpu_ms:.1f} ms CPU", file=sys.stderr)
+    _print(args, result, problem, cpu_ms)
+    return 0 if result.plan is not None else 1
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
+
+
+def settings_of(args: argparse.Namespace) -> Settings:
+    """The search settings that the options name."""
+    chosen: dict[str, Any] = {"flaw_orders": tuple(args.orders)} if args.orders else {}
+    return Settings(
+        rankings=tuple(args.heuristic.split("/")) if args.heuristic else (),
+        search=args.search,
+        ground=args.ground,
+        weight=args.weight,
+        action_cost=args.action_cost.lower(),
+        node_limit=args.node_limit,
+        tolerance_s=args.tolerance,
+        seed=args.seed,
+        random_open_conditions=args.random_open_conditions,
+        **chosen,
+    )
+
+
+def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
+    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
+    search = Search(domain, problem, settings_of(args))
+    result = search.advance(_TimeBudget(time.monotonic() + limit_s))
+    if result is None:
+        return Result("limit", None, f"no plan within {limit_s:g} s", *search.counts)
+    return result
+
+
+def _ask(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
+    """Lets the external planner answer; its plan is parsed and, where it has no causal links, linked."""
+    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
+    child = PlannerProcess(args.planner, _read(args.domain), _read(args.problem), limit_s)
+    try:
+        while (answer := child.poll()) is None:
+            time.sleep(_POLL_S)
+    finally:
+        child.kill()
+    try:
+        plan: Plan | None = parse_plan(answer.output)
+    except UsageError as error:
+        return Result("limit", None, f"{answer.reason}; {error}", 0, 0)
+    assert plan is not None
+    if not plan.links:
+        plan = relink(plan, domain, problem)
+    return Result("solved" if plan else "limit", plan, "" if plan else "the planner's plan is unsound", 0, 0)
+
+
+# --- printing ------------------------------------------------------------------------------------
+def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
+    plan = result.plan
+    if args.json:
+        print(json.dumps(_as_json(result, problem, cpu_ms)))
+    elif plan is None:
+        told = {"unsolvable": "no plan exists", "limit": "no plan found", "unsupported": "cannot plan"}
+        print(f"{problem.name}: {told.get(result.status, result.status)}: {result.reason}", file=sys.stderr)
+    elif args.links:
+        print(format_links(plan), end="")
+    elif args.dot:
+        print(to_dot(plan), end="")
+    elif args.svg:
+        print(to_svg(plan), end="")
+    else:
+        print(format_plan(plan), end="")
+
+
+def _as_json(result: Result, problem: Problem, cpu_ms: float) -> dict[str, Any]:
+    plan = result.plan
+    return {
+        "problem": problem.name,
+        "status": result.status,
+        "reason": result.reason,
+        "steps": [
+            {"id": s.id, "start": s.start, "action": list(s.action), "duration": s.duration}
+            for s in (plan.steps if plan else ())
+        ],
+        "links": [
+            {"producer": x.producer, "literal": str(x.literal), "consumer": "goal" if x.consumer < 0 else x.consumer}
+            for x in (plan.links if plan else ())
+        ],
+        "orderings": [list(pair) for pair in (plan.orderings if plan else ())],
+        "makespan": plan.makespan if plan else None,
+        "generated": result.generated,
+        "visited": result.visited,
+        "cpu_ms": round(cpu_ms, 3),
+    }
