@@ -27,10 +27,11 @@ class BallBelief(PlanarBelief, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Pushing:
-    """Memory while the ball is in the rail: where on the path, and the last commanded speed, m/s."""
+    """Memory while the ball is in the rail: where on the path, the last commanded speed (m/s), a slip to mend."""
 
     progress: Progress
     v: float
+    slipping: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +49,8 @@ class DribbleBall:
     in_rail_m: float  # axle to ball
     radius_m: float = 0.55
     v_max_mps: float = 0.75
-    bend_radps: float = 0.66  # what bends are planned for
-    omega_max_radps: float = 0.72  # the rest is for corrections
+    bend_radps: float = 0.63  # what bends are planned for
+    omega_max_radps: float = 0.70  # the rest is for corrections; the rail holds 0.75 for ever
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself
@@ -57,17 +58,18 @@ class DribbleBall:
     bending_radps: float = 0.15  # turning faster than this counts as a bend
     lookahead_m: float = 0.28
     run_out_m: float = 0.15  # straight end of every path
-    slip_aside_m: float = 0.015  # so far the ball may be aside, and ahead, of the rail's bottom without a reaction;
-    slip_ahead_m: float = 0.05  # the camera sees how far aside it is twice as well
-    slip_gain: float = 15.0  # how fast turning is given up with slip, 1/m
+    slip_aside_m: float = 0.025  # so far aside or ahead of the rail's bottom the ball is slipping out
+    slip_ahead_m: float = 0.06  # the camera sees how far aside it is twice as well
+    mended_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
     chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
     lost_m: float = 0.17  # from the bottom of the rail: gone
-    caught_m: float = 0.08
+    seated_ahead_m: float = 0.035  # pushing begins when the ball is this near to the bottom
+    seated_aside_m: float = 0.035
     off_path_m: float = 0.35  # plan a new path
-    near_m: float = 0.20
+    near_m: float = 0.25
     reached_m: float = 0.03
-    heading_rad: float = 0.35
+    heading_rad: float = 0.45
     speed_mps: float = 0.10
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
@@ -76,45 +78,52 @@ class DribbleBall:
         ball = belief.ball
         if ball is None:
             return Control(memory, (0.0, 0.0), "failed", "the ball was never seen")
-        slip = math.hypot(ball.ahead - self.in_rail_m, ball.left)
-        if isinstance(memory, Fetching) and slip > self.caught_m:
-            return self._retrieve(memory.stage, belief, ball)
-        if slip > self.lost_m:
-            return self._retrieve("chase", belief, ball)
+        ahead, left = ball.ahead - self.in_rail_m, abs(ball.left)
+        if math.hypot(ahead, left) > self.lost_m:
+            memory = memory if isinstance(memory, Fetching) else Fetching("chase")
+        if not isinstance(memory, Pushing) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
+            return self._retrieve(memory.stage if isinstance(memory, Fetching) else "chase", belief, ball)
         if not isinstance(memory, Pushing):
-            memory = Pushing(self._plan(belief.pose, goal), max(0.0, belief.v))
+            memory = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v))
         return self._push(memory, belief, ball, goal)
 
-    def _plan(self, pose: Pose, goal: tuple[float, ...]) -> Progress:
-        """A new path; its end lies before the goal and is run out straight."""
+    def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
+        """A new path that can be driven from this speed on; its end lies before the goal and is run out straight."""
         x, y, phi = goal[0], goal[1], goal[2]
         end = (x - self.run_out_m * math.cos(phi), y - self.run_out_m * math.sin(phi), phi)
-        return Progress(shortest((pose.x, pose.y, pose.phi), end, self.radius_m).extended(self.run_out_m), 0.0)
+        radius = max(self.radius_m, v / self.bend_radps)
+        return Progress(shortest((pose.x, pose.y, pose.phi), end, radius).extended(self.run_out_m), 0.0)
 
     def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
         progress, aside = project(memory.progress, pose, 0.3)
         if self._arrived(progress, belief, goal):
             return Control(memory, (goal[3], 0.0), "done")
+        slipping = self._slips(ball, memory.slipping)
         if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
-            progress = self._plan(pose, goal)
-        slip = max(abs(ball.left) - self.slip_aside_m, ball.ahead - self.in_rail_m - self.slip_ahead_m)
-        slipping = max(0.0, min(1.0, self.slip_gain * slip))
-        limit = speed_limit(progress, goal[3], self._pace)
+            progress = self._plan(pose, memory.v, goal)
+        pace = self._pace(progress.path.radius)
+        limit = speed_limit(progress, goal[3], pace)
         omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.1)
-        omega = (1.0 - slipping) * omega + slipping * self.chase_radps * math.atan2(ball.left, ball.ahead)
-        v = self._ramp(memory.v, limit, slipping, abs(belief.omega) > self.bending_radps)
+        if slipping:
+            limit = min(self.v_max_mps, limit + self.catch_up_mps)
+            omega = self.chase_radps * math.atan2(ball.left, ball.ahead)
+        v = self._ramp(memory.v, limit, abs(belief.omega) > self.bending_radps)
         bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
-        return Control(Pushing(progress, v), (v, max(-bound, min(bound, omega))))
+        return Control(Pushing(progress, v, slipping), (v, max(-bound, min(bound, omega))))
 
-    @property
-    def _pace(self) -> Pace:
-        return Pace(self.v_max_mps, self.bend_radps * self.radius_m, self.braking_mps2, self.bend_braking_mps2)
+    def _slips(self, ball: BallTrack, before: bool) -> bool:
+        """Whether the ball is leaving the rail, or has been and is not back at the bottom."""
+        ahead, aside = ball.ahead - self.in_rail_m, abs(ball.left)
+        if before:
+            return aside > self.mended_m or ahead > self.slip_ahead_m
+        return aside > self.slip_aside_m or ahead > self.slip_ahead_m
 
-    def _ramp(self, v: float, limit: float, slipping: float, bending: bool) -> float:
-        """The next commanded speed: towards the limit as fast as the ball allows; a slipping ball is caught up with."""
-        if slipping > 0.0:
-            limit = min(self.v_max_mps, limit + self.catch_up_mps * slipping)
+    def _pace(self, radius: float) -> Pace:
+        return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking_mps2)
+
+    def _ramp(self, v: float, limit: float, bending: bool) -> float:
+        """The next commanded speed: towards the limit as fast as the ball allows."""
         braking = self.bend_braking_mps2 if bending else self.braking_mps2
         return max(v - braking * TICK_S, min(limit, v + self.speeding_up_mps2 * TICK_S))
 

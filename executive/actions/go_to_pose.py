@@ -32,6 +32,8 @@ class GoToPose:
     reached_m: float = 0.03  # along the goal's heading
     heading_rad: float = 0.20
     aligned_rad: float = 0.10  # turning on the spot goes on until here
+    stopping_radps2: float = 1.3  # what the motor board does, with a reserve
+    still_radps: float = 0.4
     speed_mps: float = 0.10  # by which the arrival may be too fast
 
     def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
@@ -44,7 +46,7 @@ class GoToPose:
         if self._arrived(belief, distance, dx * math.cos(phig) + dy * math.sin(phig), off, vg, memory):
             return Control(memory, (vg, 0.0), "done")
         if self._phase(memory, distance, off) == "align":
-            return Control("align", (0.0, self._steer(off)))
+            return Control("align", (0.0, self._turn(off)))
         ahead = self.lead * distance
         error = difference(math.atan2(dy - ahead * math.sin(phig), dx - ahead * math.cos(phig)), pose.phi)
         v_end = vg * max(0.0, math.cos(off)) ** 2  # headed wrongly, it will have to stop and turn
@@ -62,8 +64,12 @@ class GoToPose:
         if belief.v > vg + self.speed_mps:
             return False
         if phase == "align":
-            return abs(off) < self.aligned_rad and distance < self.stay_m
+            return abs(off) < self.aligned_rad and abs(belief.omega) < self.still_radps and distance < self.stay_m
         return distance < self.near_m and along < self.reached_m and abs(off) < self.heading_rad
+
+    def _turn(self, off: float) -> float:
+        """Turning on the spot so that it can be stopped in time."""
+        return math.copysign(min(abs(self._steer(off)), math.sqrt(2 * self.stopping_radps2 * abs(off))), off)
 
     def _steer(self, error: float) -> float:
         return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 VELOCITY_MEMORY = 0.8  # weight of the old velocity at a percept: steps of 80 ms, so about 0.4 s
 GROWTH_M2_PER_S = 4e-4  # a resting ball out of sight: 2 cm after 1 s
-CARRIED_GROWTH_M2_PER_S = 2e-3  # a ball in the grip may slide in it
+CARRIED_GROWTH_M2_PER_S = 1e-3  # a ball in the grip may slide in it
 MOVING_GROWTH_M2_PER_S = 9e-3  # at 1 m/s; proportional to its speed
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from executive.actions.planar import PHIG, VG, XG, YG, X, Y
+from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 from executive.domains.soccer import robot
@@ -24,7 +25,8 @@ BELIEF_SIGMA_RAD = 0.015
 BALL_SIGMA_M = 0.02
 DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
 DRIBBLE_Y_M = 1.8
-DRIBBLE_M = (1.0, 3.0)  # from the ball to its target
+DRIBBLE_M = (0.8, 3.2)  # from the ball to its target
+DRIBBLE_ASIDE_RAD = 1.8  # the target's heading off the line to it
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +46,7 @@ class SoccerTrials:
         while True:
             places = rng.uniform(lower, upper)
             arguments: Array = action.arguments(places[None, :])[0]
-            apart = math.dist(places[[X, Y]], places[[XG, YG]])
-            if (DRIBBLE_M[0] <= apart <= DRIBBLE_M[1]) if dribble else self._has_room(arguments):
+            if self._sensible(places) if dribble else self._has_room(arguments):
                 return arguments
 
     def start(self, action: Action, arguments: Array) -> dict[str, float]:
@@ -86,6 +87,12 @@ class SoccerTrials:
             return ""
         moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
         return "collision" if moved > COLLIDED_M else ""
+
+    def _sensible(self, places: Array) -> bool:
+        """Whether a dribble is of the kind that scenarios ask for."""
+        dx, dy = places[XG] - places[X], places[YG] - places[Y]
+        aside = abs(difference(places[PHIG], math.atan2(dy, dx)))
+        return bool(DRIBBLE_M[0] <= math.hypot(dx, dy) <= DRIBBLE_M[1] and aside <= DRIBBLE_ASIDE_RAD)
 
     def _has_room(self, arguments: Array) -> bool:
         ball_x = arguments[XG] + robot.BEHIND_BALL_M * math.cos(arguments[PHIG])

@@ -44,8 +44,8 @@ def _ball_and_target(
         raise ValueError("the ranges of the scenario leave no room")
     half_view = declared["robot"]["half_view_rad"]
     heading = _bearing(robot, ball) + rng.uniform(-half_view, half_view)
-    straight = declared["target"].get("straight", False)
-    phi = _bearing(ball, target) if straight else rng.uniform(-math.pi, math.pi)
+    aside = declared["target"]["aside_rad"]
+    phi = _bearing(ball, target) + rng.uniform(-aside, aside)
     start = {"x": robot[0], "y": robot[1], "phi": wrap(heading), "v": 0.0, "ball_x": ball[0], "ball_y": ball[1]}
     label = declared["settings"]["target_label"]
     return start, {label: {"x": target[0], "y": target[1], "phi": wrap(phi), "v": 0.0}}
