@@ -28,6 +28,7 @@ MAGIC = b"\x89MCAP0\r\n"
 MOST_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
 MOST_RECORD_BYTES = 128_000_000
 _HEAD = struct.Struct("<BQ")  # opcode, length
+_FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its offsets, checksum
 _KINDS: dict[int, Any] = {
     Opcode.HEADER: r.Header,
     Opcode.SCHEMA: r.Schema,
@@ -78,9 +79,28 @@ def scan(path: Path, account: Account, with_chunks: bool = True) -> Iterator[Any
             size = path.stat().st_size
             if file.read(len(MAGIC)) != MAGIC:
                 raise UsageError(f"{path}: not an MCAP file")
+            yield from _summary(file, size)
+            file.seek(len(MAGIC))
             yield from _records(file, size, account, with_chunks)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
+
+
+def _summary(file: IO[bytes], size: int) -> Iterator[Any]:
+    """Schemas and channels from the index at the end, if there is one: the chunk that declares them may be damaged."""
+    file.seek(max(size - _FOOTER.size - len(MAGIC), 0))
+    end = file.read()
+    if len(end) < _FOOTER.size or not end.endswith(MAGIC):
+        return
+    opcode, _, start, _, _ = _FOOTER.unpack(end[: _FOOTER.size])
+    if opcode != Opcode.FOOTER or not 0 < start < size:
+        return
+    file.seek(start)
+    while len(head := file.read(_HEAD.size)) == _HEAD.size:
+        opcode, length = _HEAD.unpack(head)
+        if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or length > size - file.tell():
+            return
+        yield from _one(_KINDS[opcode].read, file.read(length), Account())
 
 
 def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) -> Iterator[Any]:

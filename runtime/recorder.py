@@ -5,20 +5,16 @@ Nothing that happens here can hold up anyone: the bus is drained at once, and wh
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from runtime.clock import wall_ns
+from runtime.facts import Facts
 from runtime.inbox import Raw
 from runtime.intake import Intake
 from runtime.selection import Selection
 from runtime.tape import ENCODING, Tape
-from schemas.codec import decode
-from schemas.messages import Provenance
-from schemas.topics import TOPICS
 
 FLUSH_NS = 700_000_000  # with the turn and the disk's own time, kill -9 loses less than a second
 
@@ -56,7 +52,7 @@ class Recorder:
         intake: Intake,
         selection: Selection,
         limits: Limits,
-        facts: Mapping[str, Mapping[str, str]],
+        facts: Facts,
     ) -> None:
         """Create the (first) file.
 
@@ -65,11 +61,11 @@ class Recorder:
           intake: Where the messages wait.
           selection: Which of them to keep.
           limits: When to split.
-          facts: Metadata for every file, name -> entries.
+          facts: Metadata for every file; grows with what is heard.
         """
         self.health = Health()
-        self._path, self._intake, self._selection, self._limits = path, intake, selection, limits
-        self._facts = {name: dict(entries) for name, entries in facts.items()}
+        self._path, self._intake, self._selection = path, intake, selection
+        self._limits, self._facts = limits, facts
         self._dropped: Counter[str] = Counter()  # for want of disk
         self._closed_messages = self._closed_bytes = 0
         self._flush_at_ns = 0
@@ -102,25 +98,15 @@ class Recorder:
             self._dropped[raw.key] += 1
             return
         self._tape.write(raw, raw.received_wall_ns or wall_ns())
-        if raw.key == TOPICS["provenance"].key:
-            self._note_provenance(raw)
-
-    def _note_provenance(self, raw: Raw) -> None:
-        """An executive's configuration goes into the file's metadata too, once, and into every file that follows."""
-        message = decode(Provenance, raw.payload)
-        if isinstance(message, Provenance):
-            sender = raw.attachment[17:].hex() if raw.attachment else ""
-            entries = {"sender": sender, "json": message.json}
-            if self._facts.get("provenance") != entries:
-                self._facts["provenance"] = entries
-                self._tape.note("provenance", entries)
+        if self._facts.hear(raw):
+            self._tape.note("provenance", self._facts.entries["provenance"])
 
     def _note_drops(self) -> None:
         drops = self._intake.drops + self._dropped
         if drops != self.health.drops:
             self.health.drops = drops
-            self._facts["drops"] = {key: str(count) for key, count in sorted(drops.items())}
-            self._tape.note("drops", self._facts["drops"])
+            self._facts.put("drops", {key: str(count) for key, count in sorted(drops.items())})
+            self._tape.note("drops", self._facts.entries["drops"])
 
     def _split_when_full(self) -> None:
         first_ns = self._tape.first_ns
@@ -135,7 +121,7 @@ class Recorder:
     def _next_tape(self) -> Tape:
         part = len(self.health.files)
         name = f"{self._path.stem}_{part:03d}{self._path.suffix}" if self._limits.splits else self._path.name
-        tape = Tape(self._path.with_name(name), {**self._facts, "part": {"number": str(part)}})
+        tape = Tape(self._path.with_name(name), {**self._facts.entries, "part": {"number": str(part)}})
         self.health.files.append(tape.path)
         return tape
 
@@ -144,15 +130,3 @@ class Recorder:
         health.messages = self._closed_messages + self._tape.messages
         health.bytes = self._closed_bytes + self._tape.bytes
         health.trouble = self._tape.trouble
-
-
-def recorder_facts(version: str, started_ns: int) -> dict[str, dict[str, str]]:
-    """What every recording says of how it was made."""
-    clocks = {
-        "log_time": "wall time of reception, Unix nanoseconds",
-        "publish_time": "wall time of sending by the sender's clock, Unix nanoseconds",
-        "arrival": "exec/tick names inputs by key, sender and sequence, with monotonic arrival times",
-    }
-    return {
-        "recorder": {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(clocks)},
-    }

@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -105,3 +106,38 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
             assert Child("recorder", command, said).wait(10.0) == 2
     assert "exists already" in (tmp_path / "said").read_text()
     assert path.read_bytes() == b"precious"
+
+
+def test_a_snapshot_is_written_on_request_only(robot, tmp_path):
+    session, record = robot
+    record(tmp_path / "snap.mcap", "--snapshot", 5)
+    wait_until(lambda: session.ask("recorder/snapshot", "by hand", 0.2)[0], what="snapshot recorder")
+    path = tmp_path / "snap_000.mcap"
+    wait_until(lambda: readable(path), what="snapshot")
+    assert dict(open_recording(path).metadata())["snapshot"] == {"reason": "by hand"}
+
+
+def test_record_replay_record_is_byte_identical(tmp_path):
+    with bus_system() as (session, endpoint, start):
+
+        def record(name):
+            recorder = start("tools.main", "record", "-o", tmp_path / name, "--connect", endpoint)
+            marker = session.player("marker", "")
+            wait_until(marker.matched, what="recorder")
+            return recorder
+
+        sim = start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
+        wait_until(session.inbox(["driver"], "agilo").drain, what="driver state")
+        recorder = record("a.mcap")
+        time.sleep(2.0)
+        recorder.stop()
+        sim.stop()
+        recorder = record("b.mcap")
+        player = start("tools.main", "replay", tmp_path / "a.mcap", "--rate", 2, "--connect", endpoint)
+        assert player.wait(20.0) == 0
+        recorder.stop()
+        first, second = (list(open_recording(tmp_path / name).messages()) for name in ("a.mcap", "b.mcap"))
+    assert len(first) > 150
+    assert [replace(m, log_ns=0) for m in first] == [replace(m, log_ns=0) for m in second]
+    spans = [messages[-1].log_ns - messages[0].log_ns for messages in (first, second)]
+    assert abs(spans[0] / spans[1] - 2) < 0.1
