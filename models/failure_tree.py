@@ -14,11 +14,55 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from models.split_tree import LEAF, SplitTree
 
-Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Step = tuple[SplitTree, NDArray[np.float32]]  # a tree, and the probability of success in each of its leaves
 
 
-class FailureTree(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
-    """A decision tree whose leaves hold calibrated probabilities of success, classes sorted: failure before success.
+class FailureModel(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+    """What failure models share: two classes (sorted: failure before success), and the cost of mistakes.
+
+    A fitted model has `steps_`: trees with the probability of success in each leaf; it predicts their mean.
+    """
+
+    cost_ratio: float
+    steps_: list[Step]
+
+    def _checked(self, X: Any, y: Any, groups: Any) -> tuple[NDArray[np.float32], Ints, Ints]:
+        X, y = validate_data(self, X, y, dtype=np.float64)
+        check_classification_targets(y)
+        self.classes_, success = np.unique(y, return_inverse=True)
+        if len(self.classes_) > 2:
+            raise ValueError("Only binary classification is supported. The type of the target is multiclass.")
+        labels = np.arange(len(y)) if groups is None else np.asarray(groups)
+        return X.astype(np.float32), success, np.unique(labels, return_inverse=True)[1]
+
+    def __sklearn_tags__(self) -> Tags:
+        tags = super().__sklearn_tags__()
+        tags.classifier_tags.multi_class = False
+        return tags
+
+    def predict_proba(self, X: Any) -> NDArray[np.float32]:
+        """Probabilities of failure and success, shape (n, 2); one column if training saw one class."""
+        check_is_fitted(self)
+        features = np.asarray(validate_data(self, X, dtype=np.float64, reset=False), np.float32)
+        each = [values[splits.leaf_of(features)] for splits, values in self.steps_]
+        success = np.mean(each, axis=0, dtype=np.float32)
+        both = np.stack([1 - success, success], axis=1)
+        return both if len(self.classes_) == 2 else np.ones((len(both), 1), np.float32)
+
+    @property
+    def threshold_(self) -> float:
+        """Predict success only above this probability of it: where both mistakes cost the same."""
+        return self.cost_ratio / (1 + self.cost_ratio)
+
+    def predict(self, X: Any) -> NDArray[Any]:
+        """The class with the lower expected cost, shape (n,)."""
+        success = self.predict_proba(X)[:, -1] >= self.threshold_
+        return self.classes_[success.astype(np.int64) * (len(self.classes_) - 1)]
+
+
+class FailureTree(FailureModel):
+    """A decision tree whose leaves hold calibrated probabilities of success.
 
     Grown and pruned with failures weighted by the cost ratio; what a leaf then says is the plain share of successes
     among the *held-out* episodes that fall into it, drawn towards the share in its training rows.
@@ -32,7 +76,7 @@ class FailureTree(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
 
     def __init__(
         self,
-        cost_ratio: float = 5.0,
+        cost_ratio: float = 1.0,
         min_rows: int = 10,
         held_out: float = 0.25,
         random_state: int | np.random.Generator | None = 0,
@@ -44,23 +88,11 @@ class FailureTree(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
         """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
-        X, y = validate_data(self, X, y, dtype=np.float64)
-        check_classification_targets(y)
-        self.classes_, success = np.unique(y, return_inverse=True)
-        if len(self.classes_) > 2:
-            raise ValueError("Only binary classification is supported. The type of the target is multiclass.")
-        labels = np.arange(len(y)) if groups is None else np.asarray(groups)
-        held = self._held_out(np.unique(labels, return_inverse=True)[1])
-        features = X.astype(np.float32)
-        grown = self._pruned(features, success, held)
-        self.splits_ = _splits(grown)
-        self.success_ = self._calibrated(features, success, held)
+        features, success, episodes = self._checked(X, y, groups)
+        held = self._held_out(episodes)
+        splits = splits_of(self._pruned(features, success, held))
+        self.steps_ = [(splits, _calibrated(splits, features, success, held))]
         return self
-
-    def __sklearn_tags__(self) -> Tags:
-        tags = super().__sklearn_tags__()
-        tags.classifier_tags.multi_class = False
-        return tags
 
     def _held_out(self, episodes: NDArray[np.int64]) -> NDArray[np.bool_]:
         count = int(episodes.max()) + 1
@@ -86,38 +118,21 @@ class FailureTree(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
                 best, best_cost = tree, cost
         return best
 
-    def _calibrated(
-        self, features: NDArray[np.float32], success: NDArray[np.int64], held: NDArray[np.bool_]
-    ) -> NDArray[np.float32]:
-        leaf, size = self.splits_.leaf_of(features), self.splits_.leaves
-        kept = np.bincount(leaf[~held], success[~held], size), np.bincount(leaf[~held], minlength=size)
-        fresh = np.bincount(leaf[held], success[held], size), np.bincount(leaf[held], minlength=size)
-        prior = (kept[0] + 0.5) / (kept[1] + 1)  # half a success and half a failure: no leaf is certain
-        return ((fresh[0] + PRIOR_ROWS * prior) / (fresh[1] + PRIOR_ROWS)).astype(np.float32)
-
-    def predict_proba(self, X: Any) -> NDArray[np.float32]:
-        """Probabilities of failure and success, shape (n, 2); one column if training saw one class."""
-        check_is_fitted(self)
-        features = np.asarray(validate_data(self, X, dtype=np.float64, reset=False), np.float32)
-        success = self.success_[self.splits_.leaf_of(features)]
-        both = np.stack([1 - success, success], axis=1)
-        return both if len(self.classes_) == 2 else np.ones((len(both), 1), np.float32)
-
-    @property
-    def threshold_(self) -> float:
-        """Predict success only above this probability of it: where both mistakes cost the same."""
-        return self.cost_ratio / (1 + self.cost_ratio)
-
-    def predict(self, X: Any) -> NDArray[Any]:
-        """The class with the lower expected cost, shape (n,)."""
-        success = self.predict_proba(X)[:, -1] >= self.threshold_
-        return self.classes_[success.astype(np.int64) * (len(self.classes_) - 1)]
-
 
 PRIOR_ROWS = 10.0  # how many held-out rows the training share counts for
 
 
-def _splits(grown: DecisionTreeClassifier) -> SplitTree:
+def _calibrated(
+    splits: SplitTree, features: NDArray[np.float32], success: NDArray[np.int64], held: NDArray[np.bool_]
+) -> NDArray[np.float32]:
+    leaf, size = splits.leaf_of(features), splits.leaves
+    kept = np.bincount(leaf[~held], success[~held], size), np.bincount(leaf[~held], minlength=size)
+    fresh = np.bincount(leaf[held], success[held], size), np.bincount(leaf[held], minlength=size)
+    prior = (kept[0] + 0.5) / (kept[1] + 1)  # half a success and half a failure: no leaf is certain
+    return ((fresh[0] + PRIOR_ROWS * prior) / (fresh[1] + PRIOR_ROWS)).astype(np.float32)
+
+
+def splits_of(grown: DecisionTreeClassifier) -> SplitTree:
     """scikit-learn's tree in our form; its double thresholds rounded down are exact on single precision rows."""
     tree = grown.tree_
     inner = tree.children_left != LEAF

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from schemas.errors import UsageError
+
+COST_RATIO = 5.0  # a missed failure costs five false alarms, as WEKA's cost matrix in the paper does
 
 DURATION: Mapping[str, Callable[[int], Any]] = {
     "bag": lambda seed: BaggedModelTrees(random_state=seed),
@@ -15,7 +18,8 @@ DURATION: Mapping[str, Callable[[int], Any]] = {
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
 }
 SUCCESS: Mapping[str, Callable[[int], Any]] = {
-    "tree": lambda seed: FailureTree(random_state=seed),
+    "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
+    "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
 }
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import onnx
 
-from models.failure_tree import FailureTree
+from models.failure_tree import FailureModel
 from models.features import FeatureSpace
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from models.onnx_features import add_features
@@ -28,10 +28,11 @@ def export_duration(
     return graph.model(len(space.arguments), {"mean_s": mean, "std_s": spread}, notes)
 
 
-def export_success(learner: FailureTree, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
+def export_success(learner: FailureModel, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
     """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata."""
     graph = Graph()
     features = add_features(graph, space, "arguments")
-    column = add_steps(graph, features, learner.splits_, learner.success_)
+    count = len(learner.steps_)
+    column = add_steps(graph, features, [(tree, values / np.float32(count)) for tree, values in learner.steps_])
     success = graph.add("Reshape", column, graph.constant(np.array([-1])))
     return graph.model(len(space.arguments), {"success": success}, notes)

@@ -19,17 +19,18 @@ ENSEMBLE = (
 )  # fmt: skip
 
 
-def add_steps(sink: Sink, features: str, tree: SplitTree, values: NDArray[np.float32]) -> str:
-    """A tree with one number in each leaf, values (l,): features (n, f) to (n, 1)."""
+def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]]) -> str:
+    """The sum of trees with one number in each leaf, (l,): features (n, f) to (n, 1)."""
     rows: dict[str, list[Any]] = {name: [] for name in ENSEMBLE}
-    for node, feature in enumerate(tree.feature):
-        inner = feature != LEAF
-        row = (0, node, max(int(feature), 0), "BRANCH_LEQ" if inner else "LEAF", float(tree.threshold[node]))
-        for name, item in zip(ENSEMBLE[:7], (*row, int(tree.left[node]), int(tree.right[node])), strict=True):
-            rows[name].append(item)
-        if not inner:
-            for name, item in zip(ENSEMBLE[7:], (0, node, 0, float(values[tree.leaf[node]])), strict=True):
+    for number, (tree, values) in enumerate(steps):
+        for node, feature in enumerate(tree.feature):
+            inner = feature != LEAF
+            row = (number, node, max(int(feature), 0), "BRANCH_LEQ" if inner else "LEAF", float(tree.threshold[node]))
+            for name, item in zip(ENSEMBLE[:7], (*row, int(tree.left[node]), int(tree.right[node])), strict=True):
                 rows[name].append(item)
+            if not inner:
+                for name, item in zip(ENSEMBLE[7:], (number, node, 0, float(values[tree.leaf[node]])), strict=True):
+                    rows[name].append(item)
     return str(sink.add("TreeEnsembleRegressor", features, domain=ML, n_targets=1, post_transform="NONE", **rows))
 
 
@@ -55,7 +56,7 @@ def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str
 def _leaf(sink: Sink, features: str, tree: LinearTree, first: int) -> str:
     """Leaf numbers counted from `first`, shape (1, n); an ensemble each, for several targets cost eight times more."""
     numbers = np.arange(first, first + tree.leaves, dtype=np.float32)  # whole numbers, exact below 2**24
-    column = sink.add("Reshape", add_steps(sink, features, tree.splits, numbers), sink.constant(np.array([1, -1])))
+    column = sink.add("Reshape", add_steps(sink, features, [(tree.splits, numbers)]), sink.constant(np.array([1, -1])))
     return str(sink.add("Cast", column, to=TensorProto.INT32))
 
 

@@ -91,8 +91,8 @@ def _plain(value: object) -> bool:
 
 def leaves(learner: Any) -> list[int]:
     """Number of leaves of each of a learner's trees, if it has any."""
-    if hasattr(learner, "splits_"):
-        return [learner.splits_.leaves]
+    if hasattr(learner, "steps_"):
+        return [splits.leaves for splits, _ in learner.steps_]
     return [tree.leaves for tree in getattr(learner, "trees_", [])]
 
 

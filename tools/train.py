@@ -32,7 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder to write models to (default: the one that ships)")
     parser.add_argument("--features", default="projective", help="feature space (default: %(default)s)")
     parser.add_argument("--learner", default="bag", help="of durations: bag, linear, m5 (default: %(default)s)")
-    parser.add_argument("--failure-learner", default="tree", help="of successes: tree (default: %(default)s)")
+    parser.add_argument("--failure-learner", default="forest", help="of successes: forest, tree (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="draws folds and resampled episodes (default: %(default)s)")
     parser.add_argument("--json", action="store_true", help="print the tests as JSON")
 

@@ -23,27 +23,27 @@ def data_set(count: int, seed: int = 1) -> DataSet:
 
 @pytest.fixture(scope="module")
 def data() -> DataSet:
-    return data_set(400)
+    return data_set(240)
 
 
 @pytest.fixture(scope="module")
 def duration(data: DataSet) -> Trained:
-    return train_duration(data.episodes, features.projective, "bag", seed=3)
+    return train_duration(data.episodes, features.projective, "linear", seed=3)
 
 
 def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
-    about = Publication("duration", "bag", features.projective, 3, "tailor train toy")
+    about = Publication("duration", "linear", features.projective, 3, "tailor train toy")
     model = runtime.load_model(publish(tmp_path, data, duration, about))
     arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
     mean, std = model.predict(arguments)
     expected = duration.learner.predict_spread(features.projective(arguments))
     assert np.abs(mean - expected[0]).max() <= 1e-4
     assert np.abs(std - expected[1]).max() <= 1e-4
-    assert model.card["test"]["mae_s"] < 0.25 * model.card["test"]["mean_duration_s"]
+    assert model.card["test"]["mae_s"] < 0.3 * model.card["test"]["mean_duration_s"]
 
 
 def test_training_twice_gives_the_same_bits(data, duration) -> None:
-    again = train_duration(data.episodes, features.projective, "bag", seed=3)
+    again = train_duration(data.episodes, features.projective, "linear", seed=3)
     assert again.test == duration.test
     rows = features.projective(data.episodes[0].ticks)
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))

@@ -1,0 +1,125 @@
+"""The exported graph computes what the learner computes: 1e-4 s over 1e5 inputs, degenerate and on thresholds too."""
+
+import numpy as np
+import onnxruntime
+import pytest
+
+from models.failure_forest import FailureForest
+from models.failure_tree import FailureTree
+from models.features import SPACES, joints, projective
+from models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from models.onnx_export import export_duration, export_success
+from models.split_tree import LEAF
+from tests import standin
+
+PI = np.pi
+TOLERANCE = 1e-4
+
+
+def session(model):
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    options.log_severity_level = 1
+    return onnxruntime.InferenceSession(model.SerializeToString(), options, providers=["CPUExecutionProvider"])
+
+
+def awkward(count: int = 100_000):
+    """Random poses, a fifth degenerate: same place, same heading, on an axis, straight ahead, straight behind."""
+    rng = np.random.default_rng(5)
+    rows = rng.uniform([-3.5, -2.25, -PI, 0] * 2, [3.5, 2.25, PI, 0.6] * 2, (count, 8))
+    part = count // 25
+    rows[:part, 4:6] = rows[:part, :2]
+    rows[part : 2 * part, 6] = rows[part : 2 * part, 2]
+    rows[2 * part : 3 * part, 5] = rows[2 * part : 3 * part, 1]
+    rows[2 * part : 2 * part + 400, 2] = np.repeat([0, PI, -PI, PI / 2], 100)
+    sight = np.arctan2(*(rows[3 * part : 5 * part, [5, 4]] - rows[3 * part : 5 * part, [1, 0]]).T)
+    rows[3 * part : 4 * part, 2] = sight[:part]
+    rows[4 * part : 5 * part, 2] = sight[part:] + PI
+    return rows
+
+
+@pytest.fixture(scope="module")
+def episodes():
+    return standin.episodes(150, seed=4)
+
+
+@pytest.fixture(scope="module")
+def examples(episodes):
+    return standin.examples(episodes, 10)
+
+
+def on_thresholds(splits, base):
+    """Rows whose v, v_g or dist sits exactly on each threshold, one float below and one above."""
+    made = []
+    for feature, threshold in zip(splits.feature, splits.threshold, strict=True):
+        if feature in (LEAF, 3, 4):
+            continue
+        for value in (threshold, np.nextafter(threshold, np.float32(-9)), np.nextafter(threshold, np.float32(9))):
+            rows = base[:20].copy()
+            if feature == 2:
+                rows[:, [0, 1, 5]] = 0.0
+                rows[:, 4] = value
+            else:
+                rows[:, (3, 7)[feature]] = value
+            made.append(rows)
+    return np.concatenate(made) if made else base[:0]
+
+
+@pytest.mark.parametrize("learner", [ModelTreeRegressor(), ModelTreeRegressor("m5"), BaggedModelTrees(trees=4)])
+def test_durations_agree(learner, examples) -> None:
+    arguments, targets, groups = examples
+    learner.fit(projective(arguments), targets, groups=groups)
+    rows = np.concatenate([awkward(), *(on_thresholds(tree.splits, awkward(1000)) for tree in learner.trees_)])
+    mean, std = session(export_duration(learner, projective, {})).run(None, {"arguments": rows})
+    expected = learner.predict_spread(projective(rows))
+    assert np.abs(mean - expected[0]).max() <= TOLERANCE
+    assert np.abs(std - expected[1]).max() <= TOLERANCE
+
+
+@pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20)])
+def test_probabilities_agree(learner, episodes) -> None:
+    arguments, _, _ = standin.examples(episodes, 1)
+    learner.fit(projective(arguments), np.array([success for _, _, success in episodes]))
+    rows = np.concatenate([awkward(), *(on_thresholds(splits, awkward(1000)) for splits, _ in learner.steps_)])
+    (success,) = session(export_success(learner, projective, {})).run(None, {"arguments": rows})
+    assert np.abs(success - learner.predict_proba(projective(rows))[:, 1]).max() <= 1e-5
+
+
+@pytest.mark.parametrize("name", SPACES)
+def test_every_feature_space_gives_the_same_bits_in_the_graph(name, examples) -> None:
+    """A tree with a leaf every few rows shows any difference of a single bit."""
+    space = SPACES[name]
+    rows = awkward(20000)
+    features = space(rows)
+    tree = ModelTreeRegressor(min_rows=20, held_out=0.0, ridge=1e-3).fit(features, np.sin(9 * features).sum(axis=1))
+    mean, _ = session(export_duration(tree, space, {})).run(None, {"arguments": rows})
+    assert np.abs(mean - tree.predict(features)).max() <= TOLERANCE
+
+
+def test_joint_space_exports_too() -> None:
+    assert session(export_duration(_fitted(joints), joints, {})).get_inputs()[0].shape[1] == 8
+
+
+def _fitted(space):
+    rows = awkward(500)
+    return ModelTreeRegressor().fit(space(rows), rows.sum(axis=1))
+
+
+def test_what_is_not_a_number_stays_not_a_number(examples) -> None:
+    arguments, targets, groups = examples
+    bag = BaggedModelTrees(trees=3).fit(projective(arguments), targets, groups=groups)
+    rows = awkward(1000)[:16].copy()
+    rows[np.arange(8), np.arange(8)] = np.nan
+    rows[8 + np.arange(3), np.arange(3)] = np.inf
+    mean, _ = session(export_duration(bag, projective, {})).run(None, {"arguments": rows})
+    assert np.isnan(mean[:11]).all()
+    assert np.isfinite(mean[11:]).all()
+
+
+def test_the_runtime_has_nothing_to_warn_about(examples, capfd) -> None:
+    arguments, targets, groups = examples
+    bag = BaggedModelTrees(trees=3).fit(projective(arguments), targets, groups=groups)
+    running = session(export_duration(bag, projective, {}))
+    for count in (1, 7, 250):
+        running.run(None, {"arguments": awkward(1000)[:count]})
+    assert "[W:" not in capfd.readouterr().err

@@ -1,0 +1,90 @@
+"""Gathering: same seed, same bits, however it is spread, interrupted or resumed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models.episodes import read_data_set
+from schemas.errors import UsageError
+from tools import gathering
+from tools.gathering import EVALUATION_STREAM, PART, Work
+from tools.main import main
+
+COUNT = PART + 4
+
+
+def gather(folder: Path, *more: str, seed: int = 7) -> int:
+    settings = ["--episodes", str(COUNT), "--jobs", "1", "--seed", str(seed), "--json"]
+    return main(["gather", "agilo", "goToPose", "--out", str(folder), *settings, *more])
+
+
+@pytest.fixture(scope="module")
+def gathered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("gathered")
+    assert gather(folder) == 0
+    return folder / "goToPose"
+
+
+def parts(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted(folder.glob("part-*"))}
+
+
+def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    work = Work("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
+    gathering.prepare(work, resume=False)
+    gathering.run_part(work, PART)  # the second part first, and then the process dies in the midst of the first
+    (tmp_path / "goToPose" / "part-000000-000020.1234.tmp").write_bytes(b"half a part")
+    assert gather(tmp_path, "--resume") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+    assert not list((tmp_path / "goToPose").glob("*.tmp"))
+
+
+def test_episodes_of_evaluation_are_never_those_of_training(gathered: Path) -> None:
+    work = Work("soccer", "goToPose", 8, 7, gathered)
+    evaluation = Work("soccer", "goToPose", 8, 7, gathered, stream=EVALUATION_STREAM)
+    assert not np.isclose(work.rng(0).uniform(size=4), evaluation.rng(0).uniform(size=4)).any()
+
+
+def test_a_data_set_holds_what_happened(gathered: Path) -> None:
+    data = read_data_set(gathered)
+    assert [episode.number for episode in data.episodes] == list(range(COUNT))
+    for episode in data.episodes:
+        assert episode.success or episode.failure
+        assert abs(len(episode.ticks) * 0.1 - episode.duration_s) < 0.15
+        assert np.abs(episode.ticks[0, :2] - episode.arguments[:2]).max() < 0.2
+        assert (episode.ticks[:, 4:] == episode.arguments[4:]).all()
+
+
+def test_the_manifest_says_how_it_was_made(gathered: Path) -> None:
+    manifest = read_data_set(gathered).manifest
+    assert (manifest["robot"], manifest["action"], manifest["seed"]) == ("agilo", "goToPose", 7)
+    assert [argument["name"] for argument in manifest["arguments"]][:4] == ["x", "y", "phi", "v"]
+    assert len(manifest["source_sha256"]) == 64
+
+
+def test_gathering_over_other_episodes_is_refused(gathered: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert gather(gathered.parent) == 2
+    assert "--resume" in capsys.readouterr().err
+    assert gather(gathered.parent, "--resume", seed=8) == 2
+    assert "seed = 7, expected 8" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("wrong", [["r2d2"], ["agilo", "fly"], ["agilo", "--episodes", "0"]])
+def test_bad_input_is_told_before_anything_starts(wrong: list[str], tmp_path: Path) -> None:
+    assert main(["gather", *wrong, "--out", str(tmp_path / "x")]) == 2
+    assert not (tmp_path / "x").exists()
+
+
+def test_what_is_not_a_data_set_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"no manifest\.json"):
+        read_data_set(tmp_path)
+    (tmp_path / "manifest.json").write_text('{"robot": 1}')
+    with pytest.raises(UsageError, match="not a manifest"):
+        read_data_set(tmp_path)
+
+
+@pytest.mark.slow
+def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> None:
+    assert gather(tmp_path, "--jobs", "2") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
