@@ -1,0 +1,78 @@
+"""What a user gets wrong: one clear line, exit code 2, and nothing started."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+
+import pytest
+
+from models.runtime import ZOO
+from runtime.processes import tailor
+from tests.e2e.bus_system import ROOT, free_endpoint
+
+
+def refused(*arguments):
+    """The one line on stderr."""
+    done = subprocess.run(tailor(*map(str, arguments)), capture_output=True, text=True, timeout=30, cwd=ROOT)
+    assert done.returncode == 2, done.stderr
+    assert done.stdout == ""
+    lines = done.stderr.strip().splitlines()
+    assert len(lines) == 1, done.stderr
+    return lines[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("up", "chess"), "no domain 'chess', expected one of: "),
+        (("up", "soccer", "--scenario", "nope"), "no scenario 'nope' in soccer, expected one of: approach-dribble"),
+        (("up", "soccer", "--seed", "-1"), "--seed is -1, expected at least 0"),
+        (("up", "soccer", "--horizon", "0"), "--horizon is 0, expected at least 1"),
+        (("sim", "hal"), "robot 'hal' is not known, expected one of: agilo"),
+        (("executive", "soccer", "--goal", "(atbal pos3)"), "atbal"),
+        (("executive", "soccer", "--goal", "(atball pos3"), ":1:"),
+        (("goal", "(atball pos3)"), "no router answers"),
+        (("frobnicate",), "unknown command 'frobnicate'"),
+        (("verify", "nowhere.mcap"), "nowhere.mcap"),
+    ],
+)
+def test_mistake_on_the_command_line_is_told_in_one_line(arguments, expected):
+    if arguments[0] in ("goal",):
+        arguments = (*arguments, "--connect", free_endpoint())
+    assert expected in refused(*arguments)
+
+
+def test_unknown_key_in_a_deployment_file(tmp_path):
+    file = tmp_path / "d.toml"
+    file.write_text("[executive]\nsed = 1\n[bus]\nendpoint = 5\n")
+    line = refused("up", "soccer", "--config", file)
+    assert "unknown key 'executive.sed'" in line
+    assert "'bus.endpoint' is 5" in line
+
+
+def test_port_in_use():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        assert "the port is in use" in refused("up", "soccer", "--connect", f"tcp/127.0.0.1:{taken.getsockname()[1]}")
+
+
+@pytest.fixture
+def zoo(tmp_path):
+    return shutil.copytree(ZOO, tmp_path / "zoo")
+
+
+def test_missing_model_file(zoo):
+    (zoo / "agilo/goToPose/duration.onnx").unlink()
+    assert "goToPose/duration" in refused("up", "soccer", "--zoo", zoo)
+
+
+def test_altered_model_file(zoo):
+    path = zoo / "agilo/dribbleBall/duration.onnx"
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    line = refused("up", "soccer", "--zoo", zoo)
+    assert "dribbleBall/duration" in line
