@@ -24,7 +24,7 @@ Step 2   : (approachball pos1 pos2)
 Step 1   : (dribbleball pos2 pos3)
           2   -> (atball pos2)
 
-Goal     : 
+Goal     :
           0   -> (final pos3)
           1   -> (atball pos3)
 orderings = { 2<1 }
@@ -35,7 +35,7 @@ Initial  : (atball pos2) (final pos3)
 Step 1   : (dribbleball pos2 pos3)
           0   -> (atball pos2)
 
-Goal     : 
+Goal     :
           0   -> (final pos3)
           1   -> (atball pos3)
 orderings = { }

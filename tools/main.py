@@ -26,6 +26,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "cut": ("tools.cut", "cut a span of time or some topics out of a recording"),
     "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
     "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
+    "view": ("tools.view", "show a run as a page, of a recording or live"),
+    "why": ("tools.why", "say why subgoals were chosen, and what greedy would have done"),
     "plan": ("tools.plan", "plan with PDDL files, in VHPOP's manner"),
     "gather": ("tools.gather", "run actions in simulation and keep the episodes"),
     "train": ("tools.train", "make action models from episodes"),

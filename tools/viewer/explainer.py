@@ -56,7 +56,7 @@ def fields_of(explanation: Explanation) -> Fields:
         "actions": list(explanation.actions),
         "chosen": [number(s) for s in explanation.chosen_s],
         "greedy": [number(s) for s in explanation.greedy_s],
-        "cost": {"chosen": number(explanation.chosen_cost), "greedy": number(explanation.greedy_cost)},
+        "cost": [number(explanation.chosen_cost), number(explanation.greedy_cost)],
         "alternatives": [_alternatives(a) for a in explanation.alternatives],
     }
 
@@ -73,7 +73,7 @@ def _alternatives(said: Alternatives) -> Fields:
         "greedy": number(said.greedy),
         "touched": list(said.touched),
         "values": [number(v) for v in said.values],
-        "seconds": [[number(s) for s in row] for row in said.durations_s],
+        "seconds": [[number(s) for s in said.durations_s[i]] for i in said.touched],  # the others do not change
         "total": [number(s) for s in said.total_s],
-        "valid": [int(v) for v in said.valid],
+        "cost": [number(s) for s in said.cost],
     }

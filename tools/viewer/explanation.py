@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.library import Action, Array, Models
 from executive.refinement.greedy import greedy
@@ -26,7 +25,7 @@ class Alternatives:
     """Predictions over one free parameter, the others as chosen.
 
     `values` has shape (n,); `durations_s` one row of n for each action within the horizon, NaN where a model gives no
-    number; `valid` says where every action is predicted to succeed; `touched` which actions depend on the parameter.
+    number; `cost` is the objective, +inf where it is INVALID; `touched` says which actions depend on the parameter.
     """
 
     variable: Variable
@@ -34,7 +33,7 @@ class Alternatives:
     greedy: float
     values: Array
     durations_s: Array
-    valid: NDArray[np.bool_]
+    cost: Array
     touched: tuple[int, ...]
 
     @property
@@ -141,6 +140,6 @@ def _alternatives(objective: SequenceObjective, variable: Variable, picked: Arra
         float(lone[column]),
         values,
         np.array(predicted),
-        np.isfinite(objective(candidates)),
+        objective(candidates),
         tuple(i for i, stage in enumerate(objective.stages) if column in stage.columns),
     )

@@ -21,7 +21,7 @@ def plan_graph(message: PlanReport) -> Fields:
         return told
     try:
         plan = planning.parse_plan(message.plan)
-    except planning.PddlError as error:
+    except planning.PlanTextError as error:
         return told | {"reason": str(error)}
     return told | _graph(plan)
 

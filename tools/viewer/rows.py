@@ -47,7 +47,8 @@ def believed(names: tuple[str, ...], values: tuple[float, ...]) -> Fields | None
     if not {"x", "y", "phi"} <= said.keys():
         return None
     row = _pose(said["x"], said["y"], said["phi"], said.get("v", 0.0))
-    if {"ball_x", "ball_y"} <= said.keys() and math.hypot(said["ball_x"], said["ball_y"]) < FAR_M:
+    seen_once = said.get("ball_sigma", 0.0) >= 0  # a ball never seen has a deviation of -1
+    if seen_once and {"ball_x", "ball_y"} <= said.keys() and math.hypot(said["ball_x"], said["ball_y"]) < FAR_M:
         row["ball"] = [number(said["ball_x"]), number(said["ball_y"])]
     return row
 
@@ -122,7 +123,7 @@ def numbers(message: m.Message) -> dict[str, float | None]:
     labels = [v for v in values.values() if isinstance(v, tuple) and v and all(isinstance(i, str) for i in v)]
     found: dict[str, float | None] = {}
     for name, value in values.items():
-        if isinstance(value, bool) or isinstance(value, str):
+        if isinstance(value, bool | str):
             continue
         if isinstance(value, int | float):
             found[name] = number(value)

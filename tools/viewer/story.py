@@ -8,9 +8,9 @@ from typing import Any
 from schemas import messages as m
 from tools.viewer import rows
 from tools.viewer.about import about
+from tools.viewer.explainer import Explainer
 from tools.viewer.plan_graph import plan_graph
 from tools.viewer.rows import Fields
-from tools.viewer.explainer import Explainer
 
 STATE_GAP_S = 0.095  # the executive's 10 Hz, with room for jitter
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.

@@ -28,19 +28,25 @@ class ChoicePanel {
 
   /** With the models at hand: chosen against greedy, and the alternatives. */
   explained(why) {
-    const [chosen, greedy] = [sum(why.chosen), sum(why.greedy)];
     const free = why.alternatives;
     const key = (a) => `${a.place} ${a.quantity}`;
     const shown = free.find((a) => key(a) === this.picked) ?? free.find((a) => a.periodic) ?? free[0];
     const chips = free.map((a) => html("button", { type: "button", "aria-pressed": a === shown, onclick: () => { this.picked = key(a); this.again(); } },
       `${a.quantity} at ${a.place}: ${quantity(a.chosen, a.unit)} (greedy ${quantity(a.greedy, a.unit)})`));
-    const saved = greedy - chosen;
-    const said = `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "less" : "more"} than greedy (${((100 * saved) / greedy).toFixed(1)} %)`;
-    const verdict = html("b", { text: Math.abs(saved) < 0.005 ? "as greedy" : said });
     return [
-      html("p", { class: "verdict" }, `${seconds(chosen)} for the next ${why.actions.length === 1 ? "action" : `${why.actions.length} actions`}: `, verdict, ", as the models predict it"),
-      this.table(why, chosen, greedy), html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips), this.plots(why, shown),
+      this.verdict(why), this.table(why, sum(why.chosen), sum(why.greedy)),
+      html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips), this.plots(why, shown),
     ];
+  }
+
+  /** The objective, which is what refinement minimised: duration, its spread, and the risk of failing. */
+  verdict(why) {
+    const [chosen, greedy] = why.cost;
+    const words = why.actions.length === 1 ? "the next action" : `the next ${why.actions.length} actions`;
+    if (greedy === null || chosen === null) return html("p", { class: "verdict" }, html("b", { text: greedy === null ? "Greedy is predicted to fail" : "Accepted although predicted to fail" }), `, over ${words}.`);
+    const saved = greedy - chosen;
+    const said = Math.abs(saved) < 0.005 ? "as good as greedy" : `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "better" : "worse"} than greedy (${((100 * Math.abs(saved)) / greedy).toFixed(1)} %)`;
+    return html("p", { class: "verdict" }, html("b", { text: said }), ` by the objective over ${words}.`);
   }
 
   table(why, chosen, greedy) {
@@ -49,16 +55,17 @@ class ChoicePanel {
     const rows = why.actions.map((action, i) => html("tr", {}, html("td", {}, html("span", { class: `key ${colour(first + i)}` }), action), ...cells(seconds(why.chosen[i]), seconds(why.greedy[i]), signed(why.chosen[i] - why.greedy[i], 2))));
     return html("table", {},
       html("tr", {}, ...["predicted", "chosen", "greedy", "difference"].map((text) => html("th", { text }))), ...rows,
-      html("tr", { class: "sum" }, ...cells("sum", seconds(chosen), seconds(greedy), signed(chosen - greedy, 2))));
+      html("tr", { class: "sum" }, ...cells("sum", seconds(chosen), seconds(greedy), signed(chosen - greedy, 2))),
+      html("tr", { title: "duration, its spread, and the risk of failing: what refinement minimised" }, ...cells("objective", ...why.cost.map((s) => seconds(s)), why.cost.includes(null) ? "" : signed(why.cost[0] - why.cost[1], 2))));
   }
 
   plots(why, said) {
     const first = this.firstIndex(why.at);
-    const curves = said.touched.map((i) => ({ name: why.actions[i], seconds: said.seconds[i], kind: colour(first + i) }));
-    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "c2" }] : [];
-    const common = { values: said.values, valid: said.valid, chosen: said.chosen, greedy: said.greedy, unit: said.unit };
+    const curves = said.touched.map((i, k) => ({ name: why.actions[i], seconds: said.seconds[k], kind: colour(first + i) }));
+    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "c2", beside: said.cost }] : [];
+    const common = { values: said.values, valid: said.cost.map((s) => s !== null), chosen: said.chosen, greedy: said.greedy, unit: said.unit };
     if (!said.periodic) return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
-    return html("div", { class: "plots" }, ...[...curves, ...both].map((c) => polarPlot({ ...common, seconds: c.seconds, kind: c.kind, caption: c.name })));
+    return html("div", { class: "plots" }, ...[...curves, ...both].map((c) => polarPlot({ ...common, seconds: c.seconds, beside: c.beside, kind: c.kind, caption: c.name })));
   }
 
   /** The place in the run of the action that a decision begins with, for its colour. */

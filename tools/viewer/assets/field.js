@@ -140,16 +140,16 @@ class Field {
     return svg("path", { class: "range", d: through(points) });
   }
 
-  /** Predicted total duration by heading: a petal on the side from which the robot would come, longer is faster. */
+  /** The objective by heading: a petal on the side from which the robot would come, the longer the better. */
   petals(place, said) {
-    const totals = said.total.filter((_, i) => said.valid[i]);
-    const [best, worst] = [Math.min(...totals), Math.max(...totals)];
+    const known = said.cost.filter((cost) => cost !== null);
+    const [best, worst] = [Math.min(...known), Math.max(...known)];
     return said.values.map((phi, i) => {
-      const good = said.valid[i] ? (worst - said.total[i]) / (worst - best || 1) : 0;
+      const good = said.cost[i] === null ? 0 : (worst - said.cost[i]) / (worst - best || 1);
       const [inner, outer] = [RING_M[0], RING_M[0] + 0.02 + (RING_M[1] - RING_M[0]) * good];
       const [c, s] = [Math.cos(phi + Math.PI), Math.sin(phi + Math.PI)];
       const d = through([this.map(place.x + inner * c, place.y + inner * s), this.map(place.x + outer * c, place.y + outer * s)]);
-      const paint = said.valid[i] ? `color-mix(in oklab, var(--good) ${Math.round(100 * good ** 2)}%, var(--faint))` : "var(--line)";
+      const paint = said.cost[i] !== null ? `color-mix(in oklab, var(--good) ${Math.round(100 * good ** 2)}%, var(--faint))` : "var(--line)";
       return svg("path", { class: "petal", style: `stroke:${paint};opacity:${0.35 + 0.5 * good}`, d });
     });
   }

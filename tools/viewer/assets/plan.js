@@ -93,7 +93,7 @@ function linkParts(plan, places) {
   }
   return [...bundles.values()].flatMap(({ from, to, literals }) => {
     const kind = from.id === 0 ? "start" : "link";
-    const line = route(from, to, from.id === 0 ? -1 : 1);
+    const line = route(from, to, from.id === 0 && to.level > 1 ? -1 : 1);
     const shown = literals.length > 3 ? [...literals.slice(0, 2), `and ${literals.length - 2} more`] : literals;
     const label = shown.map((words, i) => svg("text", { x: line.x + line.side * 6, y: line.y + 3 + (i - (shown.length - 1) / 2) * 12, "text-anchor": line.side < 0 ? "end" : "start", text: words }));
     return [svg("path", { class: `link ${kind}`, d: line.d, "marker-end": `url(#head-${kind})` }, svg("title", { text: literals.join(" ") })), ...label];

@@ -3,14 +3,15 @@
 const ROUND = { size: 190, radius: 70 };
 const FLAT = { width: 380, height: 170, left: 36, right: 10, top: 12, bottom: 22 };
 
-/** Seconds over an angle: {values, seconds, valid, chosen, greedy, kind, caption}. */
+/** Seconds over an angle: {values, seconds, valid, chosen, greedy, kind, caption}, and `beside` them the objective. */
 function polarPlot(said) {
   const centre = ROUND.size / 2;
-  const most = Math.max(...said.seconds.filter((s) => s !== null), 0.1);
+  const most = Math.max(...[...said.seconds, ...(said.beside ?? [])].filter((s) => s !== null), 0.1);
   const rings = ticks(0, most, 3).filter((r) => r > 0);
   const radius = scale(0, Math.max(most, rings[rings.length - 1] ?? 0), 0, ROUND.radius);
   const point = (angle, r) => [centre + r * Math.cos(angle), centre - r * Math.sin(angle)];
-  const all = said.values.map((angle, i) => (said.seconds[i] === null ? null : point(angle, radius(said.seconds[i]))));
+  const placed = (numbers) => said.values.map((angle, i) => (numbers[i] === null ? null : point(angle, radius(numbers[i]))));
+  const all = placed(said.seconds);
   const valid = all.map((p, i) => (said.valid[i] ? p : null));
   const drawing = svg("svg", { viewBox: `0 0 ${ROUND.size} ${ROUND.size}`, role: "img", "aria-label": said.caption },
     ...rings.flatMap((r) => [svg("circle", { class: "grid", cx: centre, cy: centre, r: radius(r), fill: "none" }), svg("text", { x: centre + 2, y: centre - radius(r) - 1.5, text: `${r} s`, style: "font-size:9px" })]),
@@ -21,6 +22,7 @@ function polarPlot(said) {
     svg("path", { class: `area ${said.kind}`, d: `${through(valid.filter((p) => p !== null))}Z` }),
     svg("path", { class: `curve invalid ${said.kind}`, d: through(all) }),
     svg("path", { class: `curve ${said.kind}`, d: through(valid) }),
+    said.beside ? svg("path", { class: "rule", d: through(placed(said.beside)) }, svg("title", { text: "objective" })) : null,
     ...spoke(said, said.greedy, "lone", point, radius), ...spoke(said, said.chosen, "", point, radius));
   const caption = html("figcaption", {}, said.caption, html("br"), html("b", { text: seconds(near(said, said.chosen)) }), ` instead of ${seconds(near(said, said.greedy))}`);
   return html("figure", {}, drawing, caption);

@@ -1,0 +1,87 @@
+"""Serves the live page on this machine alone: the page, and its rows as server-sent events. It takes no input."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+
+from schemas.errors import UsageError
+from tools.viewer.feed import Feed
+
+ADDRESS = "127.0.0.1"
+OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here
+MOST_PAGES = 8
+BEAT_S = 2.0  # a comment so often tells a page that has gone
+
+
+@contextmanager
+def serving(document: str, feed: Feed, port: int) -> Iterator[int]:
+    """Serve while this lasts; yields the port (a free one for port 0).
+
+    Raises:
+      UsageError: The port is in use.
+    """
+    handler = type("Handler", (_Handler,), {"document": document.encode(), "feed": feed})
+    try:
+        server = ThreadingHTTPServer((ADDRESS, port), handler)
+    except OSError as error:
+        raise UsageError(f"--port {port}: {error.strerror}, expected a free one (0 finds one)") from error
+    server.daemon_threads = True
+    thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
+    thread.start()
+    try:
+        yield server.server_address[1]
+    finally:
+        server.shutdown()
+        server.server_close()
+
+
+class _Handler(BaseHTTPRequestHandler):
+    document: bytes
+    feed: Feed
+    timeout = 10  # of a socket that neither takes nor gives
+
+    def do_GET(self) -> None:
+        host = self.headers.get("Host", "").rpartition(":")[0] or self.headers.get("Host", "")
+        if host not in OWN_NAMES:
+            self.send_error(403)
+        elif self.path == "/":
+            self._send_document()
+        elif self.path != "/events":
+            self.send_error(404)
+        elif self.feed.pages >= MOST_PAGES:
+            self.send_error(503, "too many pages")
+        else:
+            self._send_events()
+
+    def log_message(self, *_: object) -> None:
+        """Nothing: requests are no news."""
+
+    def _send_document(self) -> None:
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html; charset=utf-8")
+        self.send_header("Content-Length", str(len(self.document)))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(self.document)
+
+    def _send_events(self) -> None:
+        self.send_response(200)
+        self.send_header("Content-Type", "text/event-stream")
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.close_connection = True
+        try:
+            self._say("event: reset\ndata:\n\n")
+            with self.feed.subscribe() as page:
+                while not page.lost:
+                    batch = page.next(BEAT_S)
+                    self._say(":\n\n" if batch is None else f"event: rows\ndata: {batch}\n\n")
+        except OSError:
+            return  # the page has gone
+
+    def _say(self, text: str) -> None:
+        self.wfile.write(text.encode())
+        self.wfile.flush()

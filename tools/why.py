@@ -1,0 +1,183 @@
+"""Say why subgoals were chosen: predicted durations of the alternatives, what greedy would have done, what it took."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from schemas.errors import UsageError
+from tools.figures.alternatives import draw_alternatives
+from tools.figures.page import image, page
+from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
+from tools.viewer.explainer import Explainer, fields_of
+from tools.viewer.explanation import Alternatives, Explanation
+from tools.viewer.recorded import timed
+
+NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """A decision with its explanation; None where nothing was free to choose."""
+
+    decision: Decision
+    explanation: Explanation | None
+
+    @property
+    def title(self) -> str:
+        """When, and which actions."""
+        actions = self.decision.subgoals.actions
+        names = ", then ".join(a.action + " (detour)" * a.asserted for a in actions)
+        return f"{self.decision.at_s:.1f} s: {names}"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor why`."""
+    parser.add_argument("recording", type=Path, help="MCAP file; the models that it names must be installed")
+    parser.add_argument("--at", type=float, metavar="T", help="only the decision in force T seconds after its begin")
+    parser.add_argument(
+        "-o", "--output", type=Path, help="draw the alternatives as Figure 11 does: a .png or .html file"
+    )
+    parser.add_argument("--sender", default="", metavar="ID", help="only executives whose id begins so")
+    parser.add_argument("--json", action="store_true", help="tell it as JSON, with every alternative's prediction")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Explain; 0 when there was something to explain, 1 when nothing was free to choose."""
+    output: Path | None = arguments.output
+    if output is not None and output.suffix not in (".png", ".html"):
+        raise UsageError(f"--output {output}: expected a .png or .html file")
+    reasons = reasons_of(arguments.recording, arguments.at, arguments.sender)
+    if arguments.json:
+        print(json.dumps([_told(reason) for reason in reasons], allow_nan=False))
+    else:
+        _show(reasons)
+    explained = [(reason.title, reason.explanation) for reason in reasons if reason.explanation is not None]
+    if output is not None and explained:
+        _draw(explained, output)
+    return 0 if explained else 1
+
+
+def reasons_of(recording: Path, at_s: float | None = None, sender: str = "") -> list[Reason]:
+    """The decisions that were acted on, or the one in force at a moment, explained.
+
+    Raises:
+      UsageError: No recording, no decision in it, or its models are not installed.
+    """
+    found = decisions_of(timed(recording, sender))
+    at = None if at_s is None else in_force(found.decisions, at_s)
+    decisions = list(acted_on(found.decisions)) if at_s is None else [at] if at is not None else []
+    if not decisions:
+        raise UsageError(f"{recording}: no decision{'' if at_s is None else f' before {at_s:g} s'}, expected a run")
+    explainer = Explainer()
+    explainer.learn(found.provenance)
+    if explainer.missing:
+        raise UsageError(f"{recording}: cannot load what it was made with: {explainer.missing}")
+    return [Reason(decision, explainer.explanation(decision.subgoals)) for decision in decisions]
+
+
+def _show(reasons: Sequence[Reason]) -> None:
+    console = Console()
+    for reason in reasons:
+        if reason.explanation is None:
+            console.print(f"[bold]{reason.title}[/bold]\n  nothing was free to choose\n", highlight=False)
+            continue
+        console.print(f"[bold]{reason.title}[/bold]", highlight=False)
+        console.print(durations(reason.explanation))
+        for of in reason.explanation.alternatives:
+            console.print(f"  {in_words(of)}", highlight=False)
+        console.print(f"  {effort(reason.decision)}\n", highlight=False)
+
+
+def durations(said: Explanation) -> Table:
+    """Predicted durations, chosen against greedy, and the objective."""
+    table = Table("predicted", "chosen", "greedy", "difference", box=None, pad_edge=True)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, chosen, greedy in zip(said.actions, said.chosen_s, said.greedy_s, strict=True):
+        table.add_row(name, *_compared(chosen, greedy))
+    table.add_row("sum", *_compared(sum(said.chosen_s), sum(said.greedy_s)), style="bold")
+    table.add_row("objective", *_compared(said.chosen_cost, said.greedy_cost))
+    return table
+
+
+def in_words(of: Alternatives) -> str:
+    """One free parameter: chosen, greedy's, its range, the best value, and what is about as good."""
+    variable, best = of.variable, of.cost.min()
+    near = of.values[of.cost <= best * NEAR]
+    said = f"{variable.quantity} at {variable.label}: {_value(of.chosen, variable.unit)}"
+    said += f", greedy {_value(of.greedy, variable.unit)}"
+    said += f", free in {_value(variable.lower, variable.unit)} to {_value(variable.upper, variable.unit)}"
+    if not math.isfinite(best):
+        return f"{said}; predicted to fail everywhere"
+    share = f"{100 * len(near) / len(of.values):.0f} % of the range is within 2 % of the best"
+    worst = of.cost[of.cost < math.inf].max()
+    return f"{said}; {share}, the worst valid value costs {worst - best:+.2f} s"
+
+
+def effort(decision: Decision) -> str:
+    """What the search took, and what came of it."""
+    said = []
+    report = decision.report
+    if report is not None:
+        state = "finished" if report.finished else "cut short"
+        said.append(
+            f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks over "
+            f"{decision.ticks} tick{'s' * (decision.ticks != 1)}, {1000 * decision.work_s:.0f} ms of thinking, {state}; "
+            f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
+        )
+    if decision.finished is not None:
+        end = decision.finished
+        said.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")
+    return "; ".join(said) or "nothing is known of the search"
+
+
+def _compared(chosen: float, greedy: float) -> tuple[str, str, str]:
+    both = math.isfinite(chosen) and math.isfinite(greedy)
+    return _seconds(chosen), _seconds(greedy), f"{chosen - greedy:+.2f} s" if both else ""
+
+
+def _seconds(value: float) -> str:
+    return f"{value:.2f} s" if math.isfinite(value) else "INVALID"
+
+
+def _value(value: float, unit: str) -> str:
+    return f"{math.degrees(value):.0f}°" if unit == "rad" else f"{value:.2f} {unit}".strip()
+
+
+def _told(reason: Reason) -> dict[str, Any]:
+    decision, report = reason.decision, reason.decision.report
+    return {
+        "at_s": decision.at_s,
+        "actions": [action.action for action in decision.subgoals.actions],
+        "explanation": None if reason.explanation is None else fields_of(reason.explanation),
+        "search": None
+        if report is None
+        else {"solver": report.solver, "evaluations": report.evaluations, "checks": report.checks},
+        "thinking_s": decision.work_s,
+        "actual_s": None if decision.finished is None else decision.finished.actual_s,
+    }
+
+
+def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
+    """The picture itself, or a page around it."""
+    if output.suffix == ".png":
+        draw_alternatives(explained, output)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            picture = Path(folder) / "alternatives.png"
+            draw_alternatives(explained, picture)
+            lines = "Full line: chosen. Dashed: greedy. Dotted: predicted to fail, or beyond the limit of risk."
+            body = [f"<p>{lines}</p>", image(picture, "predicted durations over the free parameters")]
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(page("Why these subgoals", body), encoding="utf-8")
+    print(output)
