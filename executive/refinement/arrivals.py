@@ -15,9 +15,8 @@ from executive.library import Array
 def displacements(quantities: Sequence[str], spread: Mapping[str, float]) -> Array:
     """Displacements of arrival, shape (m, q), the first all zero; m is 1 where nothing is displaced.
 
-    For r displaced quantities there are 2 r more: the sigma points of a normal distribution (plus and minus sqrt(r)
-    standard deviations along orthogonal directions), which have its mean and covariance. The directions are turned
-    so that each point displaces all quantities a little, not one by a lot.
+    For r displaced quantities there are r + 1 more, the corners of a regular simplex: the fewest points that have the
+    mean and the covariance of the spread. The simplex is turned so that every corner displaces all quantities.
 
     Args:
       quantities: The quantities of the arrival's parameters, length q.
@@ -28,15 +27,15 @@ def displacements(quantities: Sequence[str], spread: Mapping[str, float]) -> Arr
     count = len(displaced)
     if count == 0:
         return np.zeros((1, len(quantities)))
-    points = np.zeros((1 + 2 * count, len(quantities)))
-    directions = _turned_axes(count) * np.sqrt(count)
-    points[1::2, displaced] = directions * deviations[displaced]
-    points[2::2, displaced] = -directions * deviations[displaced]
+    points = np.zeros((count + 2, len(quantities)))
+    radius = np.sqrt(count * (count + 2) / (count + 1))  # all count + 2 points weigh the same
+    points[1:, displaced] = radius * _simplex(count) * deviations[displaced]
     return points
 
 
-def _turned_axes(count: int) -> Array:
-    """An orthogonal matrix without zeros to speak of: the discrete Hartley transform, shape (count, count)."""
-    angle = 2 * np.pi * np.outer(np.arange(count), np.arange(count)) / count
-    matrix: Array = (np.cos(angle) + np.sin(angle)) / np.sqrt(count)
-    return matrix
+def _simplex(count: int) -> Array:
+    """Corners of a regular simplex on the unit sphere, shape (count + 1, count), none of them along an axis."""
+    angle = 2 * np.pi * np.outer(np.arange(count + 1), np.arange(count + 1)) / (count + 1)
+    orthogonal = (np.cos(angle) + np.sin(angle)) / np.sqrt(count + 1)  # the discrete Hartley transform
+    corners: Array = orthogonal[:, 1:] * np.sqrt((count + 1) / count)
+    return corners

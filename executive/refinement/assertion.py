@@ -78,6 +78,9 @@ class Assertion:
         """Assert a subgoal, or settle for what is the best anywhere, or give up."""
         instance, depth = self._sequence.actions[self._position], self._depth()
         said = f"{instance.action.name} is predicted to fail (success {1 - least:.2f} at best)"
+        if not depth and least <= self._settings.p_fail_assert:
+            self._accept(least + SLACK)
+            return True
         if instance.action.detour not in self._sequence.library:
             return Failure(f"{said} and names no detour")
         if depth and not instance.asserted and least <= self._settings.p_fail_settle:
@@ -100,6 +103,10 @@ class Assertion:
         plain, position, least = self._plain
         if least <= risk:
             self._sequence, self._position = plain, position
+        self._accept(risk)
+
+    def _accept(self, risk: float) -> None:
+        """Let the current action fail with this probability and turn to the next one."""
         self._sequence = accepting(self._sequence, self._position, risk)
         self._look_at(self._position + 1)
 
@@ -112,8 +119,7 @@ class Assertion:
         if pays:
             self._take(with_detour(self._sequence, self._position))
         else:
-            self._sequence = accepting(self._sequence, self._position, 1.0)
-            self._look_at(self._position + 1)
+            self._accept(1.0)
         return True
 
     def _take(self, detoured: ActionSequence) -> None:

@@ -17,7 +17,7 @@ from executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import GO, norm, sequence
 
 FEATURES = ("v", "v_g", "dist", "angle_to", "angle_at")
-PLAIN = RefinementSettings(horizon=9, k_std=0.0)
+PLAIN = RefinementSettings(horizon=9, k_std=0.0, arrival_spread=())
 
 
 def features(arguments: Array) -> Array:

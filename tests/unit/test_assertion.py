@@ -15,7 +15,7 @@ from executive.refinement.sequence import ActionSequence, Failure
 from executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import APPROACH, DRIBBLE, GO, LIBRARY, MODELS, ConeSuccess, NeverSucceeds, sequence
 
-SETTINGS = RefinementSettings()
+SETTINGS = RefinementSettings(arrival_spread=())
 TARGET = {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
 
 
@@ -160,7 +160,7 @@ FROM_THE_SIDE = sequence(
 @pytest.mark.parametrize(("price_s", "expected"), [(1.0, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
 def test_detour_must_pay_when_it_is_weighed(price_s, expected):
     """An approach that fails in three of ten tries: a cheap failure is risked, a dear one is driven around."""
-    settings = RefinementSettings(weigh_detours=True, risk_cost_s=price_s)
+    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=price_s)
     result = asserted(FROM_THE_SIDE, settings, PLAIN)
     assert names(result) == expected
     refinement = Refinement(result, PLAIN, settings, np.random.default_rng(0))
@@ -169,7 +169,7 @@ def test_detour_must_pay_when_it_is_weighed(price_s, expected):
 
 
 def test_weighing_goes_on_where_the_budget_stopped_it():
-    settings = RefinementSettings(weigh_detours=True, risk_cost_s=100.0)
+    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=100.0)
     sliced = Assertion(FROM_THE_SIDE, PLAIN, settings, np.random.default_rng(0))
     results = [sliced.advance(CheckBudget(3)) for _ in range(20)]
     assert results[0] is None
@@ -207,3 +207,15 @@ def test_detour_that_buys_no_certainty_is_not_made():
 def test_model_that_is_against_it_everywhere_is_believed():
     against = Models(MODELS.durations, {"goToPose/success": AtBest(0.3)})
     assert isinstance(asserted(approach(3.0, (-0.3, 0.3)), models=against), Failure)
+
+
+def test_arrival_beside_the_subgoal_is_not_driven_around_again():
+    """Between the limit for subgoals and the one for detours an approach goes on, at the risk that it has."""
+    start, ball = {"x": 1.0, "y": -2.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.72, "v": 0.0}
+    risk = 1 - ConeSuccess().probability(np.array([[1, -2, 0, 0, 1, 0, 0.72, 0.0]]))[0]
+    assert SETTINGS.p_fail_max < risk < SETTINGS.p_fail_assert
+    result = asserted(sequence([APPROACH], [start, ball]))
+    assert names(result) == ["approachBall"]
+    refinement = Refinement(result, MODELS, SETTINGS, np.random.default_rng(0))
+    refinement.advance(CheckBudget(10))
+    assert refinement.choice.valid

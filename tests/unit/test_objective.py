@@ -30,7 +30,7 @@ def arguments(angle: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
-    said = objective(RefinementSettings(k_std=2.0, p_fail_max=1.0))(CANDIDATES)
+    said = objective(RefinementSettings(k_std=2.0, p_fail_max=1.0, arrival_spread=()))(CANDIDATES)
     for value, (angle, speed) in zip(said, CANDIDATES, strict=True):
         approach, dribble = arguments(angle, speed)
         first = MODELS.durations["goToPose/duration"].predict(approach)
@@ -72,8 +72,10 @@ def test_risk_costs_seconds():
 def test_energy_is_weighed_when_asked_for():
     models = Models(MODELS.durations | {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()},
                     MODELS.successes)  # fmt: skip
-    plain = objective(RefinementSettings(k_std=0.0))(CANDIDATES[:1])
-    priced = objective(RefinementSettings(k_std=0.0, energy_weight=0.1), None, models)(CANDIDATES[:1])
+    plain = objective(RefinementSettings(k_std=0.0, arrival_spread=()))(CANDIDATES[:1])
+    priced = objective(RefinementSettings(k_std=0.0, energy_weight=0.1, arrival_spread=()), None, models)(
+        CANDIDATES[:1]
+    )
     energy = sum(PoseDuration().predict(one)[0] for one in arguments(*CANDIDATES[0]))
     assert priced - plain == pytest.approx(0.1 * energy)
 
@@ -95,9 +97,10 @@ def test_displaced_arrivals_average_the_second_action_only():
     said = objective(settings)(CANDIDATES[:1])[0]
     angle, speed = CANDIDATES[0]
     first = MODELS.durations["goToPose/duration"].predict(arguments(angle, speed)[0])[0][0]
+    off = 0.2 * np.sqrt(1.5)  # two points and the middle have a standard deviation of 0.2
     second = [
         MODELS.durations["dribbleBall/duration"].predict(arguments(angle + off, speed)[1])[0][0]
-        for off in (-0.2, 0.0, 0.2)
+        for off in (-off, 0.0, off)
     ]
     assert said == pytest.approx(first + np.mean(second))
 
@@ -107,10 +110,10 @@ def test_displacements_have_the_mean_and_the_covariance_asked_for(count):
     quantities = [*["a", "b", "c", "d"][:count], "exact"]
     spread = {"a": 0.1, "b": 0.2, "c": 0.3, "d": 0.4}
     points = displacements(quantities, spread)
-    assert points.shape == (1 + 2 * count, count + 1)
+    assert points.shape == (2 + count, count + 1)
     np.testing.assert_array_equal(points[0], 0)
     np.testing.assert_allclose(points.mean(axis=0), 0, atol=1e-12)
-    covariance = points[1:].T @ points[1:] / (2 * count)
+    covariance = points.T @ points / (count + 2)
     np.testing.assert_allclose(covariance, np.diag([spread[q] ** 2 for q in quantities[:-1]] + [0]), atol=1e-12)
 
 

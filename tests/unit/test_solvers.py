@@ -83,7 +83,7 @@ def test_benchmark_minimum_is_found(name, function, half, count, close):
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_solver_is_as_good_as_a_brute_force_grid(name):
     given = approach_dribble((1.5, -1.0, 1.0))
-    settings = RefinementSettings(solver=name)
+    settings = RefinementSettings(solver=name, arrival_spread=())
     objective = SequenceObjective(given.within(2), given.variables, MODELS, settings)
     assert objective.ranges.count == 2
     axes = [np.linspace(lo, hi, 400) for lo, hi in zip(objective.ranges.lower, objective.ranges.upper, strict=True)]
