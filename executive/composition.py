@@ -14,6 +14,7 @@ from executive import domains
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
 from models.runtime import load_robot
+from schemas.errors import UsageError
 from schemas.settings import from_table
 
 SCENARIO_STREAM = 0  # of the seed; the simulator draws the same start from the same stream
@@ -54,6 +55,12 @@ def provenance(order: Order, context: Context) -> dict[str, Any]:
 
 
 def recompose(recorded: Mapping[str, Any]) -> Context:
-    """The context that a recording's provenance describes; raises UsageError if its models are not here."""
+    """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     order = from_table(Order, recorded["order"], "recording's provenance")
-    return compose(order, recorded["sender"], recorded["stamp_offset_ns"])
+    context = compose(order, recorded["sender"], recorded["stamp_offset_ns"])
+    here = provenance(order, context)["models"]
+    for name, sha256 in recorded["models"].items():
+        if here.get(name) != sha256:
+            found = str(here.get(name, "missing"))[:12]
+            raise UsageError(f"model {name} is {found} here, but the recording was made with {sha256[:12]}")
+    return context
