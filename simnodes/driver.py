@@ -53,7 +53,9 @@ class Driver:
         seen = (self.guard.mode, self.guard.reason)
         if seen == self._told and now_ns < self._tell_at_ns:
             return None
-        self._told, self._tell_at_ns = seen, now_ns + STATE_PERIOD_NS
+        self._told = seen
+        due_ns = self._tell_at_ns + STATE_PERIOD_NS  # from due time to due time, or the node's turns slow it down
+        self._tell_at_ns = due_ns if due_ns > now_ns else now_ns + STATE_PERIOD_NS
         guard = self.guard
         refused = {reason.value: count for reason, count in guard.refused.items()} | self._rejected
         return DriverState(
