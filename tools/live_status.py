@@ -99,12 +99,9 @@ def _news(message: Message) -> str:
         reason = f" ({message.reason})" if message.reason else ""
         return f"  {message.action} {message.outcome}{reason}: {took}"
     if isinstance(message, ExecStatus):
-        said = f"{message.mode} {message.reason}".strip()
-        return (
-            f"  {said}: {message.action}"
-            if message.action
-            else f"  {said}{': ' * bool(message.result)}{message.result}"
-        )
+        if message.result or message.action:
+            return f"  {message.result or message.action}"
+        return f"  {message.mode} {message.reason}".rstrip() if message.reason else ""
     if isinstance(message, Subgoals) and message.actions:
         chosen = [f"{p.name} {p.value:.2f}" for p in message.actions[0].parameters if not p.bound]
         return f"  {message.actions[0].action} with {', '.join(chosen)}" if chosen else ""
