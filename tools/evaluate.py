@@ -1,0 +1,58 @@
+"""Reproduce the paper's tables and figures, with its figures beside ours."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import itertools
+from typing import Any
+
+from schemas.errors import UsageError
+
+# name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
+EVALUATIONS: dict[str, tuple[str, str]] = {
+    "table1": ("tools.evaluations.table1", "duration models: episodes, mean duration, error on fresh episodes"),
+    "table2": ("tools.evaluations.table2", "failure model: confusion matrix over fresh approaches"),
+    "feature-spaces": ("tools.evaluations.feature_spaces", "Figure 6 b: error in three feature spaces"),
+    "duration-learners": ("tools.evaluations.duration_learners", "ours, boosting and WEKA's M5P on the same folds"),
+    "failure-learners": ("tools.evaluations.failure_learners", "trees, forest, network, SVM, boosting, J48"),
+    "table3": ("tools.evaluations.table3", "refined against greedy subgoals, paired"),
+    "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
+    "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
+}
+ALL = "all"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments; each evaluation declares its own flags."""
+    width = max(map(len, EVALUATIONS))
+    rows = [f"  {name:<{width}}  {text}" for name, (_, text) in EVALUATIONS.items()]
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.usage = "tailor evaluate NAME [NAME ...] [--json] [--report DIR] [...]"
+    parser.epilog = "\n".join(
+        ["evaluations:", *rows, f"  {ALL:<{width}}  the lot", "", "`tailor evaluate NAME --help` tells its own flags."]
+    )
+    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME", help="which evaluations, then their flags")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run each evaluation; the exit code is the worst of theirs."""
+    names, flags = _names_and_flags(arguments.words)
+    parsed = [_parsed(name, flags) for name in names]  # a wrong flag is told before anything runs
+    return max(int(module.run(settings)) for module, settings in parsed)
+
+
+def _names_and_flags(words: list[str]) -> tuple[list[str], list[str]]:
+    leading = list(itertools.takewhile(lambda word: word == ALL or word in EVALUATIONS, words))
+    names = list(EVALUATIONS) if ALL in leading else leading
+    if not names:
+        asked = f"evaluation '{words[0]}' is unknown" if words else "no evaluation named"
+        raise UsageError(f"{asked} (expected some of: {', '.join(EVALUATIONS)}, {ALL})")
+    return names, words[len(leading) :]
+
+
+def _parsed(name: str, flags: list[str]) -> tuple[Any, argparse.Namespace]:
+    module = importlib.import_module(EVALUATIONS[name][0])
+    parser = argparse.ArgumentParser(prog=f"tailor evaluate {name}", description=module.__doc__, allow_abbrev=False)
+    module.configure(parser)
+    return module, parser.parse_args(flags)
