@@ -15,7 +15,7 @@ from executive.refinement.sequence import ActionSequence, Failure
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.weighing import Weighing, accepting
 
-SLACK = 0.02  # above the least failure probability that was found; without it refinement had a single point to choose
+SLACK = 0.05  # above the least failure probability that was found; without it refinement had a single point to choose
 
 
 class Assertion:
@@ -65,6 +65,8 @@ class Assertion:
     def _examine(self, budget: Budget) -> bool | Failure:
         """Look for values with which the current action succeeds, and act on it; False: the budget is spent."""
         if self._examination is None:
+            if not self._depth():
+                self._sequence = accepting(self._sequence, self._position, self._settings.p_fail_assert)
             self._examination = Examination(self._sequence, self._position, self._models, self._settings, self._rng)
         succeeds = self._examination.advance(budget)
         if succeeds is None:
@@ -78,9 +80,6 @@ class Assertion:
         """Assert a subgoal, or settle for what is the best anywhere, or give up."""
         instance, depth = self._sequence.actions[self._position], self._depth()
         said = f"{instance.action.name} is predicted to fail (success {1 - least:.2f} at best)"
-        if not depth and least <= self._settings.p_fail_assert:
-            self._accept(least + SLACK)
-            return True
         if instance.action.detour not in self._sequence.library:
             return Failure(f"{said} and names no detour")
         if depth and not instance.asserted and least <= self._settings.p_fail_settle:

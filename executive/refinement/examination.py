@@ -14,7 +14,10 @@ SAMPLES_PER_CHECK = 256
 
 
 class Examination:
-    """Looks at one action of a sequence; `best_failure` is the least probability of failure seen so far."""
+    """Looks at one action of a sequence; `best_failure` is the least probability of failure seen so far.
+
+    The limit is the risk accepted for the action, or else the settings' `p_fail_max`.
+    """
 
     def __init__(
         self,
@@ -24,17 +27,18 @@ class Examination:
         settings: RefinementSettings,
         rng: np.random.Generator,
     ) -> None:
+        instance = sequence.actions[position]
+        self._limit = instance.risk if instance.risk is not None else settings.p_fail_max
         arrived = frozenset(sequence.actions[position - 1].variables) if position else frozenset()
         actions = sequence.actions[position : position + 1]
         self.best_failure = 1.0
         self._objective = SequenceObjective(actions, sequence.variables, models, settings, arrived)
-        self._settings = settings
         self._rng = rng
         self._left = settings.assertion_samples if self._objective.ids else 1
 
     def advance(self, budget: Budget) -> bool | None:
         """True: some value keeps the failure within the limit. False: none does. None: the budget is spent."""
-        while self.best_failure > self._settings.p_fail_max:
+        while self.best_failure > self._limit:
             if self._left <= 0:
                 return False
             if budget.spent():

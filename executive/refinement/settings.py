@@ -26,10 +26,11 @@ class RefinementSettings:
     horizon: int = 2  # actions looked ahead; more than two pays little (paper Table 4)
     solver: SolverName = "auto"
     k_std: float = 1.0  # durations count as mean + k standard deviations: guards against the optimiser's curse
-    p_fail_max: float = 0.05  # above it an action is INVALID (Algorithm 4)
-    p_fail_assert: float = 0.2  # below it no detour is made: what a subgoal was chosen for does not flicker on arrival
+    p_fail_max: float = 0.05  # above it an action after a detour is INVALID (Algorithm 4), wherever it may arrive
+    p_fail_assert: float = 0.2  # above it an action is predicted to fail and gets a detour; wider, so that a robot
+    # that has arrived beside its subgoal is not sent around again
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
-    risk_cost_s: float = 0.0
+    risk_cost_s: float = 6.0  # seconds that a failure costs: about one more approach
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
     batch: int = 256  # rows that one check of the chain solver asks of a model, about 0.1 ms with ten bagged trees

@@ -13,7 +13,7 @@ from executive.refinement.refinement import Refinement
 from executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import MODELS, approach_dribble
 
-SETTINGS = RefinementSettings(k_std=0.0, arrival_spread=())
+SETTINGS = RefinementSettings(k_std=0.0, arrival_spread=(), risk_cost_s=0.0)
 
 
 def test_alternatives_agree_with_the_choice():

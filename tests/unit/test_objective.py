@@ -15,6 +15,12 @@ from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tests.synthetic_models import MODELS, NotANumber, PoseDuration, approach_dribble
 
+
+def exact(**given) -> RefinementSettings:
+    """Arrivals hit, failures cost nothing, unless asked for."""
+    return RefinementSettings(**{"arrival_spread": (), "risk_cost_s": 0.0} | given)
+
+
 CANDIDATES = np.array([[0.0, 0.1], [0.5, 0.3], [-0.8, 0.0]])
 
 
@@ -30,7 +36,7 @@ def arguments(angle: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
-    said = objective(RefinementSettings(k_std=2.0, p_fail_max=1.0, arrival_spread=()))(CANDIDATES)
+    said = objective(exact(k_std=2.0, p_fail_max=1.0))(CANDIDATES)
     for value, (angle, speed) in zip(said, CANDIDATES, strict=True):
         approach, dribble = arguments(angle, speed)
         first = MODELS.durations["goToPose/duration"].predict(approach)
@@ -40,13 +46,13 @@ def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
 
 
 def test_horizon_one_is_the_first_action_alone():
-    said = objective(RefinementSettings(horizon=1, k_std=0.0))(CANDIDATES)
+    said = objective(exact(horizon=1, k_std=0.0))(CANDIDATES)
     first = MODELS.durations["goToPose/duration"].predict(arguments(*CANDIDATES[1])[0])[0]
     assert said[1] == pytest.approx(first[0])
 
 
 def test_likely_failure_is_invalid():
-    settings = RefinementSettings(p_fail_max=0.05)
+    settings = exact(p_fail_max=0.05)
     angles = np.linspace(-3, 3, 61)
     said = objective(settings)(np.column_stack([angles, np.zeros(61)]))
     failing = 1 - MODELS.successes["goToPose/success"].probability(np.vstack([arguments(a, 0)[0] for a in angles]))
@@ -57,14 +63,14 @@ def test_accepted_risk_of_an_action_replaces_the_limit():
     given = approach_dribble()
     risky = replace(given, actions=(replace(given.actions[0], risk=1.0), given.actions[1]))
     candidate = np.array([[2.0, 0.0]])
-    assert np.isinf(objective(RefinementSettings())(candidate))
-    assert np.isfinite(objective(RefinementSettings(), risky)(candidate))
+    assert np.isinf(objective(exact())(candidate))
+    assert np.isfinite(objective(exact(), risky)(candidate))
 
 
 def test_risk_costs_seconds():
     candidate = np.array([[0.95, 0.1]])
-    free = objective(RefinementSettings(p_fail_max=1.0))(candidate)
-    priced = objective(RefinementSettings(p_fail_max=1.0, risk_cost_s=10.0))(candidate)
+    free = objective(exact(p_fail_max=1.0))(candidate)
+    priced = objective(exact(p_fail_max=1.0, risk_cost_s=10.0))(candidate)
     failure = 1 - MODELS.successes["goToPose/success"].probability(arguments(0.95, 0.1)[0])
     assert priced - free == pytest.approx(10 * failure)
 
@@ -72,28 +78,26 @@ def test_risk_costs_seconds():
 def test_energy_is_weighed_when_asked_for():
     models = Models(MODELS.durations | {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()},
                     MODELS.successes)  # fmt: skip
-    plain = objective(RefinementSettings(k_std=0.0, arrival_spread=()))(CANDIDATES[:1])
-    priced = objective(RefinementSettings(k_std=0.0, energy_weight=0.1, arrival_spread=()), None, models)(
-        CANDIDATES[:1]
-    )
+    plain = objective(exact(k_std=0.0))(CANDIDATES[:1])
+    priced = objective(exact(k_std=0.0, energy_weight=0.1), None, models)(CANDIDATES[:1])
     energy = sum(PoseDuration().predict(one)[0] for one in arguments(*CANDIDATES[0]))
     assert priced - plain == pytest.approx(0.1 * energy)
 
 
 def test_no_number_is_invalid():
     models = Models({"goToPose/duration": NotANumber(), "dribbleBall/duration": PoseDuration()}, MODELS.successes)
-    said = objective(RefinementSettings(), None, models)(np.array([[0.2, 0.1], [-0.2, 0.1]]))
+    said = objective(exact(), None, models)(np.array([[0.2, 0.1], [-0.2, 0.1]]))
     assert np.isinf(said[0])
     assert np.isfinite(said[1])
 
 
 def test_missing_model_is_named():
     with pytest.raises(UsageError, match="dribbleBall/duration"):
-        objective(RefinementSettings(), None, Models({"goToPose/duration": PoseDuration()}, MODELS.successes))
+        objective(exact(), None, Models({"goToPose/duration": PoseDuration()}, MODELS.successes))
 
 
 def test_displaced_arrivals_average_the_second_action_only():
-    settings = RefinementSettings(k_std=0.0, arrival_spread=(("phi", 0.2),))
+    settings = exact(k_std=0.0, arrival_spread=(("phi", 0.2),))
     said = objective(settings)(CANDIDATES[:1])[0]
     angle, speed = CANDIDATES[0]
     first = MODELS.durations["goToPose/duration"].predict(arguments(angle, speed)[0])[0][0]
