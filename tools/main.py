@@ -24,6 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "info": ("tools.info", "what a recording holds"),
     "recover": ("tools.recover", "make a whole recording of a damaged one"),
     "cut": ("tools.cut", "cut a span of time or some topics out of a recording"),
+    "compare": ("tools.compare", "two recorded runs side by side"),
     "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
     "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
     "view": ("tools.view", "show a run as a page, of a recording or live"),

@@ -1,0 +1,48 @@
+"""Two runs over each other: every axis of the command over time, and the actions' durations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tools.comparison import Run
+
+COLOURS = ("#1f77b4", "#d62728")
+
+
+def draw_comparison(a: Run, b: Run, path: Path) -> None:
+    """Draw into a PNG; its folder is made."""
+    axes_count = max(a.commands.shape[1], b.commands.shape[1]) - 1
+    figure = Figure(figsize=(10, 2.2 * (axes_count + 1)), layout="constrained")
+    plots = figure.subplots(axes_count + 1, 1, squeeze=False)[:, 0]
+    for number, plot in enumerate(plots[:-1], start=1):
+        _draw_axis(plot, (a, b), number)
+    _draw_durations(plots[-1], (a, b))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=120)
+
+
+def _draw_axis(plot: Axes, runs: tuple[Run, Run], number: int) -> None:
+    for run, colour in zip(runs, COLOURS, strict=True):
+        if run.commands.shape[1] > number:
+            plot.plot(run.commands[:, 0], run.commands[:, number], color=colour, label=run.name, linewidth=1)
+    plot.set_ylabel(f"command {number}")
+    plot.set_xlabel("seconds since setting off")
+    plot.legend(loc="upper right", fontsize="small")
+    plot.grid(alpha=0.3)
+
+
+def _draw_durations(plot: Axes, runs: tuple[Run, Run]) -> None:
+    """One bar a run, one block an action, a mark where the model put its end."""
+    for row, (run, colour) in enumerate(zip(runs, COLOURS, strict=True)):
+        start_s = 0.0
+        for action in run.actions:
+            (bar,) = plot.barh(row, action.actual_s, left=start_s, color=colour, alpha=0.45, edgecolor="white")
+            plot.plot([start_s + action.predicted_s] * 2, [row - 0.4, row + 0.4], color="black", linewidth=1)
+            plot.text(start_s, row, f" {action.action}", va="center", fontsize="x-small", clip_path=bar)
+            start_s += action.actual_s
+    plot.set_yticks(range(len(runs)), [run.name for run in runs])
+    plot.invert_yaxis()
+    plot.set_xlabel("seconds of action (line: predicted end)")
