@@ -24,6 +24,8 @@ PROBLEM = """
 """
 SENDER = "ab" * 16
 TOLERANCE_M = 0.05
+CREEP_MPS = 0.01
+CLOSED = 9.0  # a shift that means: no place can be reached any more
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +36,15 @@ class LineBelief:
 
 
 def slide(memory, now_ns, belief, arguments):
-    """Go to arguments[1] at up to arguments[2] m/s; a goal beyond 90 fails."""
+    """Go to arguments[1] at up to arguments[2] m/s, creeping on arrival; goals beyond 90 fail, below -5 are nan."""
     goal, speed = arguments[1], arguments[2]
     error = goal - belief.x
     if goal > 90:
         return Control(memory, (0.0,), "failed", "too far")
+    if goal < -5:
+        return Control(memory, (float("nan"),))
     if abs(error) < TOLERANCE_M:
-        return Control(memory, (0.0,), "done")
+        return Control(memory, (CREEP_MPS,), "done")
     return Control(memory, (float(np.sign(error) * min(speed, abs(error) * 5)),))
 
 
@@ -93,7 +97,7 @@ class LineDomain:
         return (belief.x,)
 
     def anchor(self, belief, scenario, remembered):
-        return remembered
+        return frozenset(f for f in remembered if belief.shift != CLOSED or f[0] != "place")
 
     def value(self, quantity, label, holds, achieved, belief, scenario):
         if quantity != "x":

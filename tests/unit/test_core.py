@@ -6,6 +6,7 @@ import dataclasses
 
 import pytest
 
+from executive import planning
 from executive.budget import CheckBudget
 from executive.core.command_guard import checked
 from executive.core.context import Settings
@@ -14,7 +15,7 @@ from executive.core.state import Inputs, initial_state
 from executive.core.step import step
 from executive.library import Axis
 from schemas.messages import ActionFinished, ArmRequest, PlanReport, Subgoals, VelocityCommand
-from tests.toy_domain import SENDER, driver, inputs, line_context, odometry
+from tests.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
 
 TICK = 100_000_000
 GOAL = "(and (visited a) (visited b) (at b))"
@@ -141,7 +142,9 @@ def test_place_that_moves_redirects_the_running_action():
     run = list(drive(line_context(), goal="(visited a)", world=world))
     assert run[-1][0].task.result == "achieved"
     assert run[-1][2] == pytest.approx(0.8, abs=0.06)
-    assert len(messages(run, ActionFinished)) == 1
+    finished = messages(run, ActionFinished)
+    assert len(finished) == 1
+    assert finished[0].actual_s > 1.5, "its clock goes on"
 
 
 def test_stopping_brings_a_zero_command_and_lets_the_driver_go():
@@ -224,3 +227,85 @@ def test_action_that_gives_way_to_another_one_is_told_as_aborted():
     _, outputs = step(line_context(settings), state, 4 * TICK, moved, CheckBudget(2000))
     ended = [output.message for output in outputs if isinstance(output.message, ActionFinished)]
     assert [(f.action, f.outcome, f.action_index) for f in ended] == [("slide", "aborted", 0)]
+
+
+def test_a_stopped_driver_gets_no_commands_though_it_names_us():
+    def world(n, given, x):
+        state = dataclasses.replace(driver(n * TICK).message, mode="stopped")
+        return Inputs((odometry(n * TICK, x, n), dataclasses.replace(driver(n * TICK), message=state)), given.goal)
+
+    assert messages(list(drive(line_context(), world=world, ticks=5)), VelocityCommand) == []
+
+
+def test_after_a_stop_the_plan_is_made_anew_from_where_the_robot_is():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "stopped" if 6 <= n < 10 else "armed")), given.goal)
+
+    run = list(drive(line_context(), world=world))
+    assert run[5][0].task.running is None
+    ways = [
+        (output.message.way, state.tick) for state, outputs, _ in run for output in outputs if output.topic == "plan"
+    ]
+    assert ways[1] == ("searched", 10)
+    assert run[-1][0].task.result == "achieved"
+
+
+def test_arming_is_asked_for_again_only_while_the_same_start_of_the_driver_stays_silent():
+    def world(n, given, x):
+        state = driver(n * TICK, "disarmed", 7 if n < 14 else 8, accepted=0)
+        return Inputs((odometry(n * TICK, x, n), state), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=30))
+    asked = [state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)]
+    assert asked == [1, 7, 13]
+
+
+def test_robot_coasts_two_ticks_between_actions_and_then_stands():
+    context = line_context()
+    state, x, commands = initial_state(context), 0.0, []
+    for n in range(1, 40):
+        given = inputs(n * TICK, x, GOAL if n == 1 else "")
+        state, _ = step(context, state, n * TICK, given, CheckBudget(200 if n < 5 else 0))
+        commands.append(state.command[0])
+        x += 0.1 * state.command[0]
+    arrived = commands.index(CREEP_MPS)
+    assert commands[arrived : arrived + 4] == [CREEP_MPS, CREEP_MPS, CREEP_MPS, 0.0]
+
+
+def test_action_whose_support_is_gone_does_not_start():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n, CLOSED if n >= 2 else 0.0), driver(n * TICK)), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=6))
+    assert run[0][0].task.decision is not None
+    assert all(state.task.running is None for state, _, _ in run)
+    assert run[-1][0].task.result.startswith("failed: no plan")
+
+
+def test_a_better_subgoal_is_adopted_while_the_action_runs_only_if_it_gains_enough():
+    def announced(gain_s):
+        return len(messages(list(drive(line_context(Settings(adopt_gain_s=gain_s)), checks=1, ticks=40)), Subgoals))
+
+    assert announced(0.0) >= announced(1e9)
+
+
+def test_command_that_is_not_finite_fails_the_action_and_is_never_sent():
+    context = line_context(places={"home": {"x": 0.0}, "a": {"x": -6.0}, "b": {"x": 1.0}})
+    run = list(drive(context, goal="(visited a)", ticks=12))
+    assert [f.reason for f in messages(run, ActionFinished)] == ["command for v is nan"] * 2
+    assert all(command.v == 0.0 for command in messages(run, VelocityCommand))
+
+
+def test_unsound_plan_is_not_executed(monkeypatch):
+    class Broken:
+        def __init__(self, *arguments):
+            pass
+
+        def advance(self, budget):
+            plan = planning.Plan("p", (), (planning.Step(1, ("slide", "a", "b"), 1.0),))
+            return planning.Result("solved", plan, "", 1, 1)
+
+    monkeypatch.setattr(planning, "Search", Broken)
+    run = list(drive(line_context(), ticks=5))
+    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert all(state.command == (0.0,) for state, _, _ in run)
