@@ -2,56 +2,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from executive.library import Fact
 from executive.planning.ground_formula import World
 from executive.planning.ground_task import GroundTask
 from executive.planning.language import And, Atom, Formula, Literal, Not
-from executive.planning.orderings import GOAL as GOAL_NODE
+from executive.planning.orderings import Orderings
 from executive.planning.partial_plan import PartialPlan, first_node, step_of
 from executive.planning.plan import GOAL, Link, Plan, Step
+from executive.planning.problem import Problem
 from executive.planning.temporal_network import TemporalNetwork
 
 
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The steps of a finished plan by name, and where their nodes stand in its orderings."""
+
+    names: tuple[Fact, ...]
+    orderings: Orderings
+    first_node: int
+    moments: int  # nodes of a step
+    tick_s: float
+
+    def steps(self) -> tuple[Step, ...]:
+        """The steps by start time; of those that start together the newest first, as VHPOP prints them."""
+        times, temporal = self.orderings.earliest(), self.moments == 2
+        tick = self.tick_s if temporal else 1.0
+        steps = []
+        for number, name in enumerate(self.names, 1):
+            node = self.first_node + (number - 1) * self.moments
+            duration = round((times[node + 1] - times[node]) * tick, 9) if temporal else 1.0
+            steps.append(Step(number, name, round(times[node] * tick, 9), duration))
+        return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
+
+    def pairs(self) -> Iterator[tuple[int, int]]:
+        """The steps (i, j) of which i must end before j starts."""
+        late, count = self.orderings.late, len(self.names)
+        for i in range(count):
+            after = late[self.first_node + i * self.moments + self.moments - 1]
+            for j in range(count):
+                if i != j and after >> (self.first_node + j * self.moments) & 1:
+                    yield i + 1, j + 1
+
+    def bounds(self) -> tuple[tuple[int | None, ...], ...]:
+        """The temporal network's bounds without the nodes of the goal and of timed literals; () without durations."""
+        if not isinstance(self.orderings, TemporalNetwork):
+            return ()
+        bounds = self.orderings.bounds()  # the goal's row and column are left out already
+        kept = [0, *range(self.first_node - 1, len(bounds))]
+        return tuple(tuple(bounds[i][j] for j in kept) for i in kept)
+
+    def plan(self, problem: Problem, links: Iterable[Link], bindings: tuple[str, ...] = ()) -> Plan:
+        """The plan, each step as early as the orderings allow."""
+        durative = isinstance(self.orderings, TemporalNetwork)
+        return Plan(
+            problem.name,
+            problem.initial,
+            self.steps(),
+            tuple(links),
+            tuple(self.pairs()),
+            durative,
+            self.bounds(),
+            self.tick_s,
+            bindings,
+        )
+
+
 def extract(plan: PartialPlan, task: GroundTask, world: World) -> Plan:
-    """The plan in words, each step as early as the orderings allow."""
-    steps = _steps(plan, task)
-    orderings = plan.orderings
-    network = orderings if isinstance(orderings, TemporalNetwork) else None
-    return Plan(
-        task.problem.name,
-        task.problem.initial,
-        steps,
-        tuple(_links(plan, task, world, steps)),
-        tuple(_pairs(plan, task)),
-        network is not None,
-        _without_timed(network, task) if network else (),
-        task.tick_s,
-    )
-
-
-def _steps(plan: PartialPlan, task: GroundTask) -> tuple[Step, ...]:
-    """The steps by start time; of those that start together the newest first, as VHPOP prints them."""
-    times = plan.orderings.earliest()
-    first, moments, tick = first_node(task), task.moments, task.tick_s if task.temporal else 1.0
-    steps = []
-    for number, action in enumerate(plan.steps, 1):
-        node = first + (number - 1) * moments
-        duration = round((times[node + 1] - times[node]) * tick, 9) if task.temporal else 1.0
-        steps.append(Step(number, action.name, round(times[node] * tick, 9), duration))
-    return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
-
-
-def _pairs(plan: PartialPlan, task: GroundTask) -> Iterator[tuple[int, int]]:
-    late = plan.orderings.late
-    first, moments = first_node(task), task.moments
-    count = len(plan.steps)
-    for i in range(count):
-        end = late[first + i * moments + moments - 1]
-        for j in range(count):
-            if i != j and end >> (first + j * moments) & 1:
-                yield i + 1, j + 1
+    """The plan of a ground search in words."""
+    names = tuple(action.name for action in plan.steps)
+    frame = Frame(names, plan.orderings, first_node(task), task.moments, task.tick_s)
+    return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 
 def _links(plan: PartialPlan, task: GroundTask, world: World, steps: tuple[Step, ...]) -> Iterator[Link]:
@@ -88,11 +111,3 @@ def static_literals(formula: Formula, binding: dict[str, str], world: World) -> 
             if Literal(fact, positive) not in found:
                 found.append(Literal(fact, positive))
     return tuple(found)
-
-
-def _without_timed(network: TemporalNetwork, task: GroundTask) -> tuple[tuple[int | None, ...], ...]:
-    """The network's bounds without the nodes of timed literals."""
-    bounds = network.bounds()  # the goal is already gone
-    kept = [0, *range(first_node(task) - 1, len(bounds))]
-    assert GOAL_NODE == 1
-    return tuple(tuple(bounds[i][j] for j in kept) for i in kept)

@@ -3,131 +3,156 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from executive.planning.additive_heuristic import Value
 from executive.planning.flaw_orders import Criterion
-from executive.planning.ground_formula import Every, GroundCondition, Some
-from executive.planning.ground_task import GroundTask
-from executive.planning.open_conditions import reusable
-from executive.planning.partial_plan import Flaw, OpenCondition, PartialPlan, Threat, step_of
-from executive.planning.threats import choices
 
-Key = Callable[[PartialPlan, Flaw], float]  # the smallest is selected
+P = TypeVar("P")
+P_contra = TypeVar("P_contra", contravariant=True)
+C = TypeVar("C")  # open conditions
+T = TypeVar("T")  # threats
 
 
-class FlawSelection:
-    """One flaw order, ready to choose in the plans of one task."""
+class FlawMeasures(Protocol[P_contra, C, T]):
+    """What flaw orders ask about the flaws of a plan; lists of flaws begin with the newest."""
 
-    def __init__(self, criteria: tuple[Criterion, ...], task: GroundTask, rng: np.random.Generator) -> None:
-        self._task = task
+    def conditions(self, plan: P_contra) -> Iterator[C]:
+        """The open conditions."""
+        ...
+
+    def threats(self, plan: P_contra) -> Iterator[T]:
+        """The threats."""
+        ...
+
+    def separable(self, plan: P_contra, threat: T) -> bool:
+        """Whether separation may mend a threat."""
+        ...
+
+    def step(self, condition: C) -> int:
+        """The step that a condition belongs to."""
+        ...
+
+    def static(self, condition: C) -> bool:
+        """Whether no action touches the condition's predicate."""
+        ...
+
+    def unsafe(self, plan: P_contra, condition: C) -> bool:
+        """Whether some step may come before the consumer and undo the condition."""
+        ...
+
+    def condition_choices(self, plan: P_contra, condition: C) -> int:
+        """The number of ways to achieve a condition."""
+        ...
+
+    def threat_choices(self, plan: P_contra, threat: T) -> int:
+        """The number of ways to mend a threat."""
+        ...
+
+    def by_new_step(self, plan: P_contra, condition: C) -> bool:
+        """Whether a new step can achieve the condition."""
+        ...
+
+    def value(self, plan: P_contra, condition: C) -> Value:
+        """The heuristic's estimate without reuse of steps."""
+        ...
+
+    def provided(self, plan: P_contra, condition: C) -> bool:
+        """Whether a step of the plan may already achieve the condition."""
+        ...
+
+
+class FlawSelection(Generic[P, C, T]):
+    """One flaw order, ready to choose in the plans of one search."""
+
+    def __init__(
+        self, criteria: tuple[Criterion, ...], measures: FlawMeasures[P, C, T], rng: np.random.Generator
+    ) -> None:
+        self._measures = measures
         self._rng = rng
-        self._criteria = tuple((criterion, self._key(criterion)) for criterion in criteria)
+        self._criteria = tuple((c, self._threat_key(c), self._condition_key(c)) for c in criteria)
 
-    def choose(self, plan: PartialPlan) -> Flaw:
+    def choose(self, plan: P) -> C | T:
         """The flaw of a plan that has one."""
-        for criterion, key in self._criteria:
-            best: Flaw | None = None
+        for criterion, threat_key, condition_key in self._criteria:
+            best: list[C | T] = []
             least = 0.0
-            for flaw in self._candidates(plan, criterion):
-                if criterion.limit is not None and self.refinements(plan, flaw) > criterion.limit:
-                    continue
-                value = key(plan, flaw)
-                if best is None or value < least or (value == least and criterion.order == "FIFO"):
-                    best, least = flaw, value
-            if best is not None:
-                return best
+            for flaw, value in self._valued(plan, criterion, threat_key, condition_key):
+                if not best or value < least or (value == least and criterion.order == "FIFO"):
+                    best, least = [flaw], value
+            if best:
+                return best[0]
         raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
 
-    # --- which flaws -----------------------------------------------------------------------------
-    def _candidates(self, plan: PartialPlan, criterion: Criterion) -> Iterator[Flaw]:
-        """The flaws of the criterion's types, threats before open conditions, newest first."""
-        types = criterion.types
+    def _valued(
+        self,
+        plan: P,
+        criterion: Criterion,
+        threat_key: Callable[[P, T], float],
+        condition_key: Callable[[P, C], float],
+    ) -> Iterator[tuple[C | T, float]]:
+        """The flaws that a criterion applies to, threats first, with what orders them."""
+        measures, types, limit = self._measures, criterion.types, criterion.limit
         if "n" in types or "s" in types:
-            threat = plan.threats
-            while threat is not None:
-                if ("s" if threat.conditions else "n") in types:
-                    yield threat
-                threat = threat.rest
-        if types & {"o", "l", "u", "t"}:
-            yield from self._open(plan, types)
+            both = "n" in types and "s" in types
+            for threat in measures.threats(plan):
+                if (both or ("s" in types) == measures.separable(plan, threat)) and (
+                    limit is None or measures.threat_choices(plan, threat) <= limit
+                ):
+                    yield threat, threat_key(plan, threat)
+        if not types <= {"n", "s"}:
+            for condition in self._conditions(plan, types):
+                if limit is None or measures.condition_choices(plan, condition) <= limit:
+                    yield condition, condition_key(plan, condition)
 
-    def _open(self, plan: PartialPlan, types: frozenset[str]) -> Iterator[OpenCondition]:
-        local = step_of(self._task, plan.open.first) if plan.open else 0
-        cell = plan.open
-        while cell is not None:
+    def _conditions(self, plan: P, types: frozenset[str]) -> Iterator[C]:
+        measures = self._measures
+        local = None
+        for condition in measures.conditions(plan):
+            step = measures.step(condition)
+            local = step if local is None else local  # the first is the newest
             if (
                 "o" in types
-                or ("l" in types and step_of(self._task, cell.first) == local)
-                or ("u" in types and _unsafe(plan, cell))
-            ):  # no ground condition is static: those are folded away
-                yield cell
-            cell = cell.rest
+                or ("l" in types and step == local)
+                or ("u" in types and measures.unsafe(plan, condition))
+                or ("t" in types and measures.static(condition))
+            ):
+                yield condition
 
-    def refinements(self, plan: PartialPlan, flaw: Flaw) -> int:
-        """The number of ways to mend a flaw."""
-        if isinstance(flaw, Threat):
-            return choices(plan, flaw)
-        condition = flaw.condition
-        if not isinstance(condition, int):
-            return len(condition.parts) if isinstance(condition, Some) else 1
-        old = reusable(plan, flaw).bit_count()
-        return len(self._task.achievers[condition]) + old + (condition in self._task.initial)
+    # --- which comes first: the smallest key -----------------------------------------------------
+    def _threat_key(self, criterion: Criterion) -> Callable[[P, T], float]:
+        choices = self._measures.threat_choices
+        keys: dict[str, Callable[[P, T], float]] = {
+            "LR": choices,
+            "MR": lambda plan, threat: -choices(plan, threat),
+            "R": lambda plan, threat: float(self._rng.random()),
+        }
+        return keys.get(criterion.order, lambda plan, threat: 0)
 
-    # --- which comes first -----------------------------------------------------------------------
-    def _key(self, criterion: Criterion) -> Key:
-        match criterion.order:
-            case "LIFO" | "FIFO":
-                return lambda plan, flaw: 0
-            case "R":
-                return lambda plan, flaw: self._rng.random()
-            case "LR":
-                return self.refinements
-            case "MR":
-                return lambda plan, flaw: -self.refinements(plan, flaw)
-            case "NEW":
-                return lambda plan, flaw: 0 if self._by_new_step(flaw) else 1
-            case "REUSE":
-                return lambda plan, flaw: 1 if self._by_new_step(flaw) else 0
-            case _:
-                return self._estimated(criterion)
+    def _condition_key(self, criterion: Criterion) -> Callable[[P, C], float]:
+        measures = self._measures
+        keys: dict[str, Callable[[P, C], float]] = {
+            "LIFO": lambda plan, condition: 0,
+            "FIFO": lambda plan, condition: 0,
+            "R": lambda plan, condition: float(self._rng.random()),
+            "LR": measures.condition_choices,
+            "MR": lambda plan, condition: -measures.condition_choices(plan, condition),
+            "NEW": lambda plan, condition: not measures.by_new_step(plan, condition),
+            "REUSE": measures.by_new_step,
+        }
+        return keys.get(criterion.order) or self._estimated(criterion)
 
-    def _by_new_step(self, flaw: Flaw) -> bool:
-        assert isinstance(flaw, OpenCondition)
-        return isinstance(flaw.condition, int) and bool(self._task.achievers[flaw.condition])
-
-    def _estimated(self, criterion: Criterion) -> Key:
-        """Least or most cost or work; with makespan, of the time at which the condition can hold."""
-        sign = -1 if criterion.order[0] == "M" else 1
-        quantity: Callable[[Value], float] = {
-            "C": lambda value: value.cost,
-            "W": lambda value: value.work,
-        }[criterion.order[1]]
-        if criterion.heuristic == "makespan":
-            quantity = _makespan
+    def _estimated(self, criterion: Criterion) -> Callable[[P, C], float]:
+        """Least or most cost or work; with makespan, the time at which the condition can hold."""
+        measures, sign = self._measures, -1 if criterion.order[0] == "M" else 1
+        field = {"C": 0, "W": 1}[criterion.order[1]] if criterion.heuristic != "makespan" else 2
         reuse = criterion.heuristic == "addr"
 
-        def key(plan: PartialPlan, flaw: Flaw) -> float:
-            assert isinstance(flaw, OpenCondition)
-            if reuse and isinstance(flaw.condition, int) and reusable(plan, flaw):
-                return sign * (0 if criterion.order[1] == "C" else 1)
-            return sign * quantity(self._task.estimates.of(flaw.condition))
+        def key(plan: P, condition: C) -> float:
+            if reuse and measures.provided(plan, condition):
+                return sign * field  # no cost, one unit of work
+            return sign * measures.value(plan, condition)[field]
 
         return key
-
-
-def _makespan(value: Value) -> float:
-    return value.makespan
-
-
-def _unsafe(plan: PartialPlan, flaw: OpenCondition) -> bool:
-    """Whether some step may come before the consumer and undo the condition."""
-    late, masks = plan.orderings.late, plan.effects.masks()
-    return any(masks[literal ^ 1] & ~late[flaw.last] & ~(1 << flaw.first) for literal in _literals(flaw.condition))
-
-
-def _literals(condition: GroundCondition) -> tuple[int, ...]:
-    if isinstance(condition, int):
-        return (condition,)
-    return tuple(part for part in condition.parts if isinstance(part, int)) if isinstance(condition, Every) else ()

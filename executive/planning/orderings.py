@@ -9,11 +9,23 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from executive.planning.ground_action import GroundAction
-
 INITIAL = 0  # node of the initial state: before all others
 GOAL = 1  # node of the goal: after all others
 FIRST = 2  # node of the first step, or of the first timed literal
+
+
+class Lasting(Protocol):
+    """What takes time, in ticks; `longest` is None without an upper limit."""
+
+    @property
+    def shortest(self) -> int:
+        """The shortest duration."""
+        ...
+
+    @property
+    def longest(self) -> int | None:
+        """The longest duration."""
+        ...
 
 
 class Orderings(Protocol):
@@ -24,7 +36,7 @@ class Orderings(Protocol):
         """By node, the mask of the nodes that cannot come before it."""
         ...
 
-    def with_step(self, action: GroundAction) -> Orderings:
+    def with_step(self, action: Lasting) -> Orderings:
         """The orderings with the nodes of one more step, after the initial state and before the goal."""
         ...
 
@@ -42,7 +54,7 @@ class Closure(NamedTuple):
 
     late: tuple[int, ...] = (0b11, 0b10)
 
-    def with_step(self, action: GroundAction) -> Closure:
+    def with_step(self, action: Lasting) -> Closure:
         """See `Orderings`; such a step has one node."""
         late = self.late
         bit = 1 << len(late)

@@ -9,13 +9,15 @@ import numpy as np
 from executive.planning.extraction import extract
 from executive.planning.flaw_orders import parse_flaw_order
 from executive.planning.flaw_selection import FlawSelection
+from executive.planning.ground_estimates import GroundEstimates
+from executive.planning.ground_flaws import GroundFlaws
 from executive.planning.ground_formula import World
 from executive.planning.ground_task import GroundTask
 from executive.planning.open_conditions import refine_open
 from executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
 from executive.planning.plan import Plan
-from executive.planning.ranking import DEFAULT_RANKINGS, MAKESPAN_RANKINGS, Rank, Ranking
-from executive.planning.settings import Settings
+from executive.planning.ranking import Rank, Ranking
+from executive.planning.settings import Settings, rankings_for
 from executive.planning.threats import refine_threat
 
 P = TypeVar("P")
@@ -45,21 +47,16 @@ class PlanSpace(Protocol[P]):
         ...
 
 
-def rankings_for(settings: Settings, metric: str) -> tuple[str, ...]:
-    """The rankings that the settings name, or those that go with the problem's metric."""
-    if settings.rankings:
-        return settings.rankings
-    return MAKESPAN_RANKINGS if metric == "makespan" else DEFAULT_RANKINGS
-
-
 class GroundSpace:
     """The plans of a ground task."""
 
     def __init__(self, task: GroundTask, world: World, settings: Settings, rng: np.random.Generator) -> None:
         self._task = task
         self._world = world
-        self._ranking = Ranking(rankings_for(settings, task.problem.metric), task, settings.weight)
-        self._orders = [FlawSelection(parse_flaw_order(order.text), task, rng) for order in settings.flaw_orders]
+        names = rankings_for(settings, task.problem.metric)
+        self._ranking = Ranking(names, GroundEstimates(task), settings.weight)
+        flaws = GroundFlaws(task)
+        self._orders = [FlawSelection(parse_flaw_order(order.text), flaws, rng) for order in settings.flaw_orders]
         self.rank = self._ranking.rank
 
     def initial(self) -> PartialPlan:

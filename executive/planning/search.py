@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -12,9 +13,11 @@ from executive.planning.deepening import Deepening
 from executive.planning.ground_task import make_task
 from executive.planning.grounding import GroundActions, TooManyBindings, ground_actions, shuffled, world_of
 from executive.planning.language import Domain
-from executive.planning.partial_plan import PartialPlan
+from executive.planning.lifted.schema import UnsupportedLifted
+from executive.planning.lifted.space import LiftedSpace
+from executive.planning.lifted.task import lifted_task
 from executive.planning.plan import Result
-from executive.planning.plan_space import GroundSpace, PlanSpace
+from executive.planning.plan_space import GroundSpace, P, PlanSpace
 from executive.planning.problem import Problem
 from executive.planning.settings import DEFAULT, Settings
 
@@ -47,7 +50,7 @@ class Search:
         self._problem = problem
         self._settings = settings
         self._cache = ground if ground is not None else GroundCache()
-        self._algorithm: BestFirst[PartialPlan] | Deepening[PartialPlan] | None = None
+        self._algorithm: BestFirst[Any] | Deepening[Any] | None = None
         self._work = self._run()
         self._result: Result | None = None
 
@@ -75,9 +78,20 @@ class Search:
         if settings.random_open_conditions:
             grounded = shuffled(grounded, rng)
         task = make_task(self._problem, grounded, settings.action_cost)
-        space: PlanSpace[PartialPlan] = GroundSpace(task, grounded.world, settings, rng)
-        self._algorithm = BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
-        yield from self._algorithm.run()
+        try:
+            if settings.ground:
+                yield from self._explore(GroundSpace(task, grounded.world, settings, rng))
+            else:
+                yield from self._explore(LiftedSpace(lifted_task(task, grounded.world), settings, rng))
+        except UnsupportedLifted as feature:
+            yield Result("unsupported", None, f"lifted planning does not support {feature}; ground planning does", 0, 0)
+
+    def _explore(self, space: PlanSpace[P]) -> Iterator[Result | None]:
+        algorithm = (
+            BestFirst(space, self._settings) if self._settings.search == "A" else Deepening(space, self._settings)
+        )
+        self._algorithm = algorithm
+        yield from algorithm.run()
 
     def _ground(self) -> Iterator[None]:
         """Grounds the problem's world unless the cache has it."""

@@ -46,5 +46,14 @@ class Settings:
             raise UsageError(f"planner settings: expected a tolerance in (0, 1000] s, found {self.tolerance_s}")
 
 
+DEFAULT_RANKINGS = ("ADDR", "ADDR_WORK", "BUC", "LIFO")
+MAKESPAN_RANKINGS = ("ADDR", "MAKESPAN", "LIFO")
 DEFAULT = Settings()
-MATCHING = Settings(("ADDR", "ADDR_WORK", "BUC", "LIFO"), (FlawOrder("MW-Loc"),))  # the reference's `g-mwloc`
+MATCHING = Settings(DEFAULT_RANKINGS, (FlawOrder("MW-Loc"),))  # the reference's `g-mwloc`
+
+
+def rankings_for(settings: Settings, metric: str) -> tuple[str, ...]:
+    """The rankings that the settings name, or those that go with the problem's metric."""
+    if settings.rankings:
+        return settings.rankings
+    return MAKESPAN_RANKINGS if metric == "makespan" else DEFAULT_RANKINGS

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from executive.planning.ground_action import GroundAction
-from executive.planning.orderings import GOAL, INITIAL
+from executive.planning.orderings import GOAL, INITIAL, Lasting
 
 UNBOUNDED = 10**12  # ticks; sums of two stay far above any real bound
 Row = tuple[int, ...]
@@ -31,7 +30,7 @@ class TemporalNetwork(NamedTuple):
         )
         return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
 
-    def with_step(self, action: GroundAction) -> TemporalNetwork:
+    def with_step(self, action: Lasting) -> TemporalNetwork:
         """Two more nodes, start and end, as far apart as the action's duration allows."""
         start = len(self.rows)
         longest = UNBOUNDED if action.longest is None else action.longest

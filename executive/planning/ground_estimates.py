@@ -1,0 +1,62 @@
+"""What the additive heuristic says about the open conditions of a ground plan."""
+
+from __future__ import annotations
+
+from executive.planning.ground_task import GroundTask
+from executive.planning.makespan import makespan_estimate
+from executive.planning.partial_plan import PartialPlan
+from executive.planning.ranking import Estimate
+
+
+class GroundEstimates:
+    """See `PlanEstimates`."""
+
+    def __init__(self, task: GroundTask) -> None:
+        self._task = task
+
+    def plain(self, plan: PartialPlan) -> Estimate:
+        """See `PlanEstimates`."""
+        cost: float = 0
+        work: float = 0
+        cell = plan.open
+        while cell is not None:
+            value = self._task.estimates.of(cell.condition)
+            cost += value.cost
+            work += value.work
+            cell = cell.rest
+        return cost, work
+
+    def reusing(self, plan: PartialPlan) -> Estimate:
+        """See `PlanEstimates`; the hottest loop of the planner, hence without calls."""
+        estimates = self._task.estimates
+        costs, works = estimates.cost, estimates.work
+        late, effects = plan.orderings.late, plan.effects
+        known, bits, node = effects.known, effects.bits, effects.node
+        cost: float = 0
+        work: float = 0
+        cell = plan.open
+        while cell is not None:
+            condition, first, _, cell = cell
+            if isinstance(condition, int):
+                mask = known[condition]
+                if bits is not None and condition in bits:
+                    mask |= bits[condition] << node
+                if mask & ~late[first]:
+                    work += 1
+                else:
+                    cost += costs[condition]
+                    work += works[condition]
+            else:
+                value = estimates.of(condition)
+                cost += value.cost
+                work += value.work
+        return cost, work
+
+    def makespan(self, plan: PartialPlan) -> float:
+        """See `makespan`."""
+        conditions = []
+        cell = plan.open
+        while cell is not None:
+            conditions.append((cell.first, self._task.estimates.of(cell.condition).makespan))
+            cell = cell.rest
+        return makespan_estimate(plan.orderings, conditions)

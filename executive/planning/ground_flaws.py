@@ -1,0 +1,77 @@
+"""What flaw orders ask about the flaws of a ground plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from executive.planning.additive_heuristic import Value, literals_of
+from executive.planning.ground_formula import Some
+from executive.planning.ground_task import GroundTask
+from executive.planning.open_conditions import reusable
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, step_of
+from executive.planning.threats import choices
+
+
+class GroundFlaws:
+    """See `FlawMeasures`; of a compound condition the parts count as its refinements."""
+
+    def __init__(self, task: GroundTask) -> None:
+        self._task = task
+
+    def conditions(self, plan: PartialPlan) -> Iterator[OpenCondition]:
+        """See `FlawMeasures`."""
+        cell = plan.open
+        while cell is not None:
+            yield cell
+            cell = cell.rest
+
+    def threats(self, plan: PartialPlan) -> Iterator[Threat]:
+        """See `FlawMeasures`."""
+        cell = plan.threats
+        while cell is not None:
+            yield cell
+            cell = cell.rest
+
+    def separable(self, plan: PartialPlan, threat: Threat) -> bool:
+        """Only a conditional effect can be separated."""
+        return bool(threat.conditions)
+
+    def step(self, condition: OpenCondition) -> int:
+        """See `FlawMeasures`."""
+        return step_of(self._task, condition.first)
+
+    def static(self, condition: OpenCondition) -> bool:
+        """Never: grounding has folded static conditions away."""
+        return False
+
+    def unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+        """See `FlawMeasures`."""
+        late, masks = plan.orderings.late, plan.effects.masks()
+        if isinstance(condition.condition, Some):
+            return False
+        literals = literals_of(condition.condition)
+        return any(masks[x ^ 1] & ~late[condition.last] & ~(1 << condition.first) for x in literals)
+
+    def condition_choices(self, plan: PartialPlan, condition: OpenCondition) -> int:
+        """See `FlawMeasures`."""
+        literal = condition.condition
+        if not isinstance(literal, int):
+            return len(literal.parts) if isinstance(literal, Some) else 1
+        old = reusable(plan, condition).bit_count()
+        return len(self._task.achievers[literal]) + old + (literal in self._task.initial)
+
+    def threat_choices(self, plan: PartialPlan, threat: Threat) -> int:
+        """See `FlawMeasures`."""
+        return choices(plan, threat)
+
+    def by_new_step(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+        """See `FlawMeasures`."""
+        return isinstance(condition.condition, int) and bool(self._task.achievers[condition.condition])
+
+    def value(self, plan: PartialPlan, condition: OpenCondition) -> Value:
+        """See `FlawMeasures`."""
+        return self._task.estimates.of(condition.condition)
+
+    def provided(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+        """See `FlawMeasures`."""
+        return isinstance(condition.condition, int) and bool(reusable(plan, condition))

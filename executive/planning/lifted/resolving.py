@@ -1,0 +1,53 @@
+"""Refining a lifted threat: separation by bindings, promotion, demotion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from executive.planning.lifted.achieving import is_threat
+from executive.planning.lifted.bindings import Bindings
+from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat
+from executive.planning.lifted.task import LiftedTask
+
+
+def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> list[LiftedPlan]:
+    """All plans that mend the threat; only one, that forgets it, when it is none any more."""
+    rest = plan._replace(threats=_without(plan.threats, threat), threat_count=plan.threat_count - 1)
+    if not is_threat(task, plan, threat):
+        return [rest]
+    children = [rest._replace(bindings=bindings) for bindings in separations(plan, threat)]
+    for before, after in ((threat.link.last, threat.node), (threat.node, threat.link.producer)):
+        orderings = plan.orderings.ordered(before, after)
+        if orderings is not None:
+            children.append(rest._replace(orderings=orderings))
+    return children
+
+
+def separations(plan: LiftedPlan, threat: LiftedThreat) -> Iterator[Bindings]:
+    """Bindings that keep the effect from touching the link: one pair of terms differs."""
+    for a, b in plan.bindings.differing(zip(threat.effect.terms, threat.link.literal.terms, strict=True)):
+        bindings = plan.bindings.separated(a, b)
+        if bindings is not None:
+            yield bindings
+
+
+def choices(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
+    """The number of refinements of a threat."""
+    if not is_threat(task, plan, threat):
+        return 1
+    late, link, node = plan.orderings.late, threat.link, threat.node
+    promotion = not late[node] >> link.last & 1
+    demotion = not late[link.producer] >> node & 1
+    return promotion + demotion + sum(1 for _ in separations(plan, threat))
+
+
+def _without(threats: LiftedThreat | None, gone: LiftedThreat) -> LiftedThreat | None:
+    before = []
+    while threats is not gone:
+        assert threats is not None
+        before.append(threats)
+        threats = threats.rest
+    rest = gone.rest
+    for cell in reversed(before):
+        rest = cell._replace(rest=rest)
+    return rest
