@@ -5,21 +5,48 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from sklearn.calibration import CalibratedClassifierCV
+from sklearn.ensemble import GradientBoostingClassifier, GradientBoostingRegressor
+from sklearn.neural_network import MLPClassifier, MLPRegressor
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
+from sklearn.svm import SVC
+
+from models.borrowed import BorrowedClassifier, BorrowedRegressor
+from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from schemas.errors import UsageError
 
 COST_RATIO = 5.0  # a missed failure costs five false alarms, as WEKA's cost matrix in the paper does
+BOOSTING = {"n_estimators": 300, "max_depth": 4, "learning_rate": 0.05, "subsample": 0.7}
+NETWORK = {"hidden_layer_sizes": (40, 40), "alpha": 1e-2, "max_iter": 1500, "early_stopping": True}
+
+
+def _network(kind: type, seed: int) -> Any:
+    return make_pipeline(StandardScaler(), kind(**NETWORK, random_state=seed))
+
+
+def _svm(seed: int) -> Any:
+    machine = CalibratedClassifierCV(SVC(C=10.0, random_state=seed), ensemble=False)
+    return make_pipeline(StandardScaler(), machine)
+
 
 DURATION: Mapping[str, Callable[[int], Any]] = {
     "bag": lambda seed: BaggedModelTrees(random_state=seed),
+    "distilled": lambda seed: DistilledModelTree(random_state=seed),
     "linear": lambda seed: ModelTreeRegressor("linear", random_state=seed),
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
+    "boosting": lambda seed: BorrowedRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
+    "network": lambda seed: BorrowedRegressor(_network(MLPRegressor, seed)),
 }
 SUCCESS: Mapping[str, Callable[[int], Any]] = {
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
+    "boosting": lambda seed: BorrowedClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
+    "network": lambda seed: BorrowedClassifier(_network(MLPClassifier, seed), COST_RATIO),
+    "svm": lambda seed: BorrowedClassifier(_svm(seed), COST_RATIO),
 }
 
 

@@ -20,8 +20,8 @@ class TreeSettings:
     """What the two flavours of model trees can be told."""
 
     max_leaves: int = 64
-    min_rows: float = 80.0  # weighted rows in a leaf; at 20 rows an episode: four episodes
-    smoothing: float = 40.0  # rows that an ancestor's formula counts for (M5's k)
+    min_rows: float = 40.0  # weighted rows on each side of a split
+    smoothing: float = 0.0  # rows that an ancestor's formula counts for (M5's k)
     ridge: float = 1e-4  # on standardised features
     bins: int = 64  # candidate thresholds per feature
     clip: bool = True  # keep each leaf within what was seen in it

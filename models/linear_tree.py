@@ -6,7 +6,7 @@ Everything is single precision: what the ONNX runtime computes is what is comput
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,10 @@ class LinearTree:
         slopes, *rest, rows = zip(*leaves, strict=True)
         numbers = (np.asarray(column, np.float32) for column in rest)
         return cls(SplitTree.of(nodes), np.asarray(slopes, np.float32), *numbers, np.asarray(rows))
+
+    def with_spread(self, spread: Floats) -> LinearTree:
+        """The same tree with other spreads, (l,)."""
+        return replace(self, spread=spread)
 
     @property
     def leaves(self) -> int:

@@ -3,36 +3,57 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
-import numpy as np
 import onnx
 
+from models.borrowed import BorrowedClassifier, BorrowedRegressor
 from models.failure_tree import FailureModel
 from models.features import FeatureSpace
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_features import add_features
+from models.onnx_features import add_features, without_one
 from models.onnx_graph import Graph
-from models.onnx_trees import add_bag, add_steps, add_tree
+from models.onnx_trees import add_bag, add_probability, add_tree
 
 
-def export_duration(
-    learner: ModelTreeRegressor | BaggedModelTrees, space: FeatureSpace, notes: Mapping[str, str]
-) -> onnx.ModelProto:
-    """Double `arguments` (n, k) to float `mean_s` and `std_s`, (n,); `notes` become the file's metadata."""
+def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
+    """Double `arguments` (n, k) to float `mean_s` and `std_s`, (n,); `notes` become the file's metadata.
+
+    Raises:
+      TypeError: The learner is none of ours.
+    """
     graph = Graph()
     features = add_features(graph, space, "arguments")
-    if isinstance(learner, BaggedModelTrees):
-        mean, spread = add_bag(graph, features, learner.trees_)
-    else:
-        mean, spread = add_tree(graph, features, learner.tree_)
+    match learner:
+        case BaggedModelTrees():
+            mean, spread = add_bag(graph, features, learner.trees_)
+        case ModelTreeRegressor():
+            mean, spread = add_tree(graph, features, learner.tree_)
+        case BorrowedRegressor():
+            from models.onnx_borrowed import add_regressor
+
+            plain = without_one(graph, features, len(space.features))
+            mean, spread = add_regressor(graph, plain, learner.inner_, learner.low_, learner.high_, learner.spread_)
+        case _:
+            raise TypeError(f"no export for {type(learner).__name__}")
     return graph.model(len(space.arguments), {"mean_s": mean, "std_s": spread}, notes)
 
 
-def export_success(learner: FailureModel, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
-    """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata."""
+def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
+    """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata.
+
+    Raises:
+      TypeError: The learner is none of ours.
+    """
     graph = Graph()
     features = add_features(graph, space, "arguments")
-    count = len(learner.steps_)
-    column = add_steps(graph, features, [(tree, values / np.float32(count)) for tree, values in learner.steps_])
-    success = graph.add("Reshape", column, graph.constant(np.array([-1])))
+    match learner:
+        case FailureModel():
+            success = add_probability(graph, features, learner.steps_)
+        case BorrowedClassifier():
+            from models.onnx_borrowed import add_classifier
+
+            success = add_classifier(graph, without_one(graph, features, len(space.features)), learner.inner_)
+        case _:
+            raise TypeError(f"no export for {type(learner).__name__}")
     return graph.model(len(space.arguments), {"success": success}, notes)

@@ -85,3 +85,8 @@ def append_one(sink: Sink, features: str, count: int, transpose: bool = False) -
     copy = sink.constant(np.eye(count, count + 1, dtype=np.float32))
     one = sink.constant(np.eye(count + 1, dtype=np.float32)[-1])
     return str(sink.add("Gemm", features, copy, one, transA=int(transpose)))
+
+
+def without_one(sink: Sink, features: str, count: int) -> str:
+    """Features with a one, (n, f + 1), without it: (n, f)."""
+    return str(sink.add("Gemm", features, sink.constant(np.eye(count + 1, count, dtype=np.float32))))

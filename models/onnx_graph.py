@@ -48,6 +48,22 @@ class Graph:
             self._tensors.append(numpy_helper.from_array(value, self._constants[key]))
         return self._constants[key]
 
+    def embed(self, model: onnx.ModelProto, feed: str) -> list[str]:
+        """Copy another model's graph in, its one input fed from `feed`; returns the names of its outputs here."""
+        prefix = f"inner_{len(self._nodes)}_"
+        names = {model.graph.input[0].name: feed, "": ""}
+        for tensor in model.graph.initializer:
+            names[tensor.name] = self.constant(numpy_helper.to_array(tensor))
+        for node in model.graph.node:
+            copy = onnx.NodeProto()
+            copy.CopyFrom(node)
+            for side in (copy.input, copy.output):
+                for k, name in enumerate(side):
+                    side[k] = names.setdefault(name, prefix + name)
+            copy.name = ""
+            self._nodes.append(copy)
+        return [names[output.name] for output in model.graph.output]
+
     def model(self, width: int, outputs: Mapping[str, str], notes: Mapping[str, str]) -> onnx.ModelProto:
         """The finished model: double `arguments` (n, width) to float vectors (n,).
 

@@ -34,6 +34,12 @@ def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArra
     return str(sink.add("TreeEnsembleRegressor", features, domain=ML, n_targets=1, post_transform="NONE", **rows))
 
 
+def add_probability(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]]) -> str:
+    """The mean of trees with a probability in each leaf: features (n, f) to (n,)."""
+    parts = [(tree, values / np.float32(len(steps))) for tree, values in steps]
+    return _flat(sink, add_steps(sink, features, parts))
+
+
 def add_tree(sink: Sink, features: str, tree: LinearTree) -> tuple[str, str]:
     """One model tree: mean and spread, shapes (n,), of features with a one (n, f + 1)."""
     leaf = _leaf(sink, features, tree, 0)

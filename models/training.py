@@ -18,7 +18,7 @@ from schemas.errors import UsageError
 Array = NDArray[np.float64]
 
 TEST_SHARE = 0.25  # paper 5.1: three quarters for training
-FIRST_TICKS = (5, 10, 20, 40)  # candidates for n_i
+FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
 FOLDS = 4
 CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes
 LEAST = 40  # episodes: fewer cannot be split four ways

@@ -1,0 +1,159 @@
+"""List, show, explain, draw and check action models."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from models.card import Card
+from models.runtime import ZOO, OnnxDuration, OnnxSuccess, load_model
+from schemas.errors import UsageError
+
+EPILOG = """\
+examples:
+  tailor models list
+  tailor models show agilo/goToPose/duration
+  tailor models rules agilo/goToPose
+  tailor models plot agilo/goToPose --data data/agilo --out out/models
+  tailor models check
+
+MODEL is ROBOT/ACTION/KIND; KIND (duration or success) may be left out for duration, and everything for all models."""
+VERBS = ("list", "show", "rules", "plot", "check")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    parser.add_argument("verb", choices=VERBS, help="what to do")
+    parser.add_argument("models", nargs="*", metavar="MODEL", help="which models (default: all)")
+    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
+    parser.add_argument("--data", type=Path, help="plot: folder with the data sets (default: data/ROBOT)")
+    parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
+    parser.add_argument("--json", action="store_true", help="list, show, check: print JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it; exit code 0, or 1 when a check fails."""
+    names = [_full(name) for name in arguments.models] or _all(arguments.zoo)
+    if arguments.verb == "check":
+        return _check(names, arguments)
+    loaded = [load_model(name, arguments.zoo) for name in names]
+    if arguments.verb == "list":
+        _list([model.card for model in loaded], arguments.json)
+    elif arguments.verb == "show":
+        for model in loaded:
+            _show(model.card, arguments.json)
+    elif arguments.verb == "rules":
+        for model in loaded:
+            print(rules(model))
+    else:
+        from tools.figures import learned
+
+        for model in loaded:
+            for path in learned.draw(model, arguments.data, arguments.out):
+                print(path)
+    return 0
+
+
+def rules(model: OnnxDuration | OnnxSuccess) -> str:
+    """A model as rules: those of a tree that says what the model says."""
+    from models.asking import distilled, space_of
+    from models.rules import duration_rules, success_rules
+
+    tree, off = distilled(model, np.random.default_rng(0))
+    quantities = space_of(model.card).features
+    card = model.card
+    name = f"{card['robot']}/{card['action']}/{card['kind']}"
+    if isinstance(model, OnnxDuration):
+        said, unit = duration_rules(tree, quantities), " s"
+    else:
+        at_mean = [tree.intercept[k] for k in range(tree.leaves)]
+        said, unit = success_rules(tree.splits, np.clip(np.array(at_mean, np.float32), 0, 1), quantities), ""
+    head = f"{name}: {tree.leaves} rules, which differ from the model by {off:.3f}{unit} on average"
+    return "\n\n".join([head, *said])
+
+
+def _full(name: str) -> str:
+    return name if name.count("/") != 1 else f"{name}/duration"
+
+
+def _all(zoo: Path) -> list[str]:
+    found = sorted("/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in zoo.glob("*/*/*.card.json"))
+    if not found:
+        raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` makes them)")
+    return found
+
+
+def _quality(card: Card) -> str:
+    test = card["test"]
+    if card["kind"] == "duration":
+        return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
+    return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
+
+
+def _list(cards: list[Card], as_json: bool) -> None:
+    rows = [
+        {
+            "model": f"{card['robot']}/{card['action']}/{card['kind']}",
+            "learner": card["learner"]["name"],
+            "features": card["features"],
+            "episodes": card["episodes"]["count"],
+            "test": _quality(card),
+            "sha256": card["sha256"][:12],
+        }
+        for card in cards
+    ]
+    if as_json:
+        print(json.dumps(rows))
+        return
+    table = Table(*rows[0])
+    for row in rows:
+        table.add_row(*map(str, row.values()))
+    Console().print(table)
+
+
+def _show(card: Card, as_json: bool) -> None:
+    if as_json:
+        print(json.dumps(card))
+        return
+    console = Console(highlight=False)
+    console.rule(f"{card['robot']}/{card['action']}/{card['kind']}")
+    for key, value in card.items():
+        if key == "golden":
+            console.print(f"[bold]golden[/bold]: {len(value['arguments'])} inputs and outputs")
+        elif key == "arguments":
+            said = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
+            console.print(f"[bold]arguments[/bold]: {said}")
+        else:
+            console.print(f"[bold]{key}[/bold]: {_brief(value)}")
+
+
+def _brief(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_brief(item)}" for key, item in value.items())
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_brief, value)) + "]"
+    return str(value)
+
+
+def _check(names: list[str], arguments: argparse.Namespace) -> int:
+    failed = {}
+    for name in names:
+        try:
+            load_model(name, arguments.zoo)
+        except UsageError as error:
+            failed[name] = str(error)
+        if not arguments.json:
+            print(f"{name}: {failed.get(name, 'sound')}")
+    if arguments.json:
+        print(json.dumps({"checked": names, "failed": failed}))
+    return 1 if failed else 0
