@@ -1,0 +1,124 @@
+"""What recording costs and what it keeps: CPU and memory, loss after kill -9, replay's lateness, verify's speed."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from runtime.processes import Child, stopped_in_order, tailor
+from runtime.recording import open_recording
+from runtime.session import Session, open_router
+from schemas.errors import UsageError
+from tools.benchmarks.traffic import traffic
+from tools.system import free_endpoint
+
+RATE_HZ = 400.0
+START_S = 15.0
+CLOCK_HZ = os.sysconf("SC_CLK_TCK")
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print one row a figure."""
+    table = Table("figure", "value", title="recording")
+    with tempfile.TemporaryDirectory() as folder:
+        place, endpoint = Path(folder), free_endpoint()
+        with open_router(endpoint) as session:
+            _cost(table, session, endpoint, place, 10 if quick else 60)
+            _loss(table, session, endpoint, place, 5 if quick else 20)
+            for rate in (1, 4):
+                _replay(table, session, endpoint, place / "cost.mcap", rate)
+        _soccer(table, place / "soccer.mcap")
+    console.print(table)
+
+
+def _recorder(session: Session, endpoint: str, path: Path) -> Child:
+    """A recorder that listens already."""
+    child = Child("record", tailor("record", "--quiet", "-o", str(path), "--connect", endpoint))
+    probe, deadline = session.player("bench/probe", ""), time.monotonic() + START_S
+    while not probe.matched():
+        if time.monotonic() > deadline:
+            raise RuntimeError("the recorder did not start")
+        time.sleep(0.02)
+    return child
+
+
+def _cost(table: Table, session: Session, endpoint: str, place: Path, seconds: float) -> None:
+    path = place / "cost.mcap"
+    with stopped_in_order([_recorder(session, endpoint, path)]) as (child,), traffic(session, RATE_HZ):
+        time.sleep(1.0)
+        cpu_s, began = _cpu_s(child.pid), time.monotonic()
+        time.sleep(seconds)
+        share = (_cpu_s(child.pid) - cpu_s) / (time.monotonic() - began)
+        memory = _memory_mb(child.pid)
+    kept = list(open_recording(path).messages())
+    table.add_row(f"recorder at {RATE_HZ:.0f} msg/s: CPU share of one core", f"{share:.1%}")
+    table.add_row("  memory", f"{memory:.0f} MB")
+    table.add_row("  file", f"{path.stat().st_size / len(kept):.0f} bytes a message of {len(kept[0].data)}")
+    missing = sum(_missing(kept, key) for key in {message.key for message in kept})
+    table.add_row("  lost", f"{missing} of {len(kept) + missing}")
+
+
+def _missing(kept: list, key: str) -> int:
+    numbers = [message.sequence for message in kept if message.key == key]
+    return max(numbers) - min(numbers) + 1 - len(numbers)
+
+
+def _loss(table: Table, session: Session, endpoint: str, place: Path, tries: int) -> None:
+    losses, phases = [], np.random.default_rng(0)
+    with traffic(session, RATE_HZ):
+        for number in range(tries):
+            path = place / f"loss{number}.mcap"
+            child = _recorder(session, endpoint, path)
+            time.sleep(2.0 + phases.uniform(0.0, 1.0))
+            killed_ns = time.time_ns()
+            child.kill()
+            losses.append((killed_ns - max(message.log_ns for message in open_recording(path).messages())) / 1e9)
+    table.add_row(
+        f"lost by kill -9 of the recorder, {tries} tries", f"max {max(losses):.2f} s, mean {np.mean(losses):.2f} s"
+    )
+
+
+def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int) -> None:
+    command = tailor("replay", str(path), "--rate", str(rate), "--duration", str(10 * rate), "--wait", "0", "--json")
+    said = subprocess.run([*command, "--connect", endpoint], capture_output=True, text=True, check=True).stdout
+    late = json.loads(said)["lateness"]
+    table.add_row(
+        f"replay at rate {rate}, {RATE_HZ * rate:.0f} msg/s: late",
+        f"p50 {late['p50_ms']:.2f} ms, p99 {late['p99_ms']:.2f} ms, max {late['max_ms']:.2f} ms",
+    )
+
+
+def _soccer(table: Table, path: Path) -> None:
+    """One recorded run of the real system: its size, and how fast it is verified."""
+    command = tailor("up", "soccer", "--connect", free_endpoint(), "--record", str(path), "--once")
+    with tempfile.TemporaryFile("w") as log:
+        Child("up", command, log).wait(120.0)
+    try:
+        messages = list(open_recording(path).messages())
+    except UsageError as error:
+        table.add_row("soccer run", f"did not happen: {error}")
+        return
+    seconds = (messages[-1].log_ns - messages[0].log_ns) / 1e9
+    table.add_row("size of a soccer run", f"{path.stat().st_size / 1e6 / seconds * 60:.2f} MB a minute")
+    began = time.monotonic()
+    verified = subprocess.run(tailor("verify", str(path)), capture_output=True, text=True, check=False)
+    took = time.monotonic() - began
+    table.add_row("verify, with start-up", f"{seconds / took:.0f} times real time (exit {verified.returncode})")
+
+
+def _cpu_s(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / CLOCK_HZ
+
+
+def _memory_mb(pid: int) -> float:
+    status = Path(f"/proc/{pid}/status").read_text()
+    return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("VmRSS")) / 1000
