@@ -8,11 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.meaning import state
+from executive.domains.arm.meaning import named
 from executive.library import Action, Array
 from schemas.messages import Message
 
 STATE = ("a", "wa", "b", "wb")
+WA, WB, WAG, WBG = 1, 3, 5, 7
+A, B, AG, BG = 0, 2, 4, 6
+AT_REST = 0.2  # so many reaches start at rest, and so many end at rest: every stroke has one of each
+DISTANCE_RAD = (0.05, 2.2)  # evenly: drawn in a rectangle, short reaches would be few, and words are full of them
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +24,20 @@ class ArmTrials:
     """See tools.lockstep.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments, shape (8,), uniform over the action's ranges."""
-        arguments: Array = rng.uniform([p.lower for p in action.parameters], [p.upper for p in action.parameters])
+        """Controller arguments, shape (8,): all uniform, distances too, but for those at rest."""
+        lower = np.array([p.lower for p in action.parameters])
+        upper = np.array([p.upper for p in action.parameters])
+        distance = rng.uniform(*DISTANCE_RAD)
+        while True:
+            arguments: Array = rng.uniform(lower, upper)
+            direction = rng.uniform(-np.pi, np.pi)
+            arguments[AG] = arguments[A] + distance * np.cos(direction)
+            arguments[BG] = arguments[B] + distance * np.sin(direction)
+            if np.all((lower <= arguments) & (arguments <= upper)):
+                break
+        for velocities in ([WA, WB], [WAG, WBG]):
+            if rng.random() < AT_REST:
+                arguments[velocities] = 0.0
         return arguments
 
     def start(self, action: Action, arguments: Array) -> dict[str, float]:
@@ -34,7 +50,7 @@ class ArmTrials:
 
     def arguments_now(self, belief: ArmBelief, arguments: Array) -> list[float]:
         """The controller arguments with the believed state in place of the start: an example to learn from."""
-        return [*state(belief).values(), *arguments[len(STATE) :].tolist()]
+        return [*named(belief.angles, belief.velocities).values(), *arguments[len(STATE) :].tolist()]
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """Nothing goes wrong in the air."""

@@ -8,24 +8,40 @@ from executive.domains.arm.robot import JOINTS
 from schemas.messages import JointState, Sample
 
 MOTION_LIMIT_S = 0.5  # without encoders for longer, the last velocity says nothing
+PERIOD_S = 0.1  # of the executive
+
+Joints = tuple[float, ...]  # in the order of JOINTS
 
 
 @dataclass(frozen=True, slots=True)
 class ArmBelief:
-    """Angles (rad) and velocities (rad/s) in the order of JOINTS, at `time_ns`; `seen_ns` is the last encoder's."""
+    """Angles (rad) and velocities (rad/s) at `time_ns`; `seen_ns` is when the encoders were last heard.
+
+    `command` (rad/s) is what was sent last, `acceleration` (rad/s²) what it changes from the one before.
+    """
 
     time_ns: int = 0
-    angles: tuple[float, ...] = (0.0, 0.0)
-    velocities: tuple[float, ...] = (0.0, 0.0)
+    angles: Joints = (0.0, 0.0)
+    velocities: Joints = (0.0, 0.0)
     seen_ns: int | None = None
+    command: Joints = (0.0, 0.0)
+    acceleration: Joints = (0.0, 0.0)
 
 
-def update(belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...]) -> ArmBelief:
+def update(belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: Joints) -> ArmBelief:
     """Take the newest joint state over, then predict to now at its velocities."""
     for sample in samples:
         if isinstance(sample.message, JointState):
             belief = _read(belief, sample.arrival_ns, sample.message)
-    return _predicted(belief, now_ns)
+    change = tuple((new - old) / PERIOD_S for new, old in zip(command, belief.command, strict=True))
+    return replace(_predicted(belief, now_ns), command=command, acceleration=change)
+
+
+def ahead(belief: ArmBelief) -> tuple[Joints, Joints]:
+    """Angles and velocities one period from now, if the arm goes on as it does: there the next action will begin."""
+    rows = tuple(zip(belief.angles, belief.velocities, belief.acceleration, strict=True))
+    angles = tuple(q + PERIOD_S * (v + 0.5 * PERIOD_S * a) for q, v, a in rows)
+    return angles, tuple(v + PERIOD_S * a for _, v, a in rows)
 
 
 def _read(belief: ArmBelief, arrival_ns: int, state: JointState) -> ArmBelief:
@@ -33,8 +49,8 @@ def _read(belief: ArmBelief, arrival_ns: int, state: JointState) -> ArmBelief:
     if any(name not in state.names for name in JOINTS) or arrival_ns < (belief.seen_ns or 0):
         return belief
     at = [state.names.index(name) for name in JOINTS]
-    angles = tuple(state.positions[i] for i in at)
-    return ArmBelief(arrival_ns, angles, tuple(state.velocities[i] for i in at), arrival_ns)
+    angles, velocities = tuple(state.positions[i] for i in at), tuple(state.velocities[i] for i in at)
+    return replace(belief, time_ns=arrival_ns, angles=angles, velocities=velocities, seen_ns=arrival_ns)
 
 
 def _predicted(belief: ArmBelief, now_ns: int) -> ArmBelief:

@@ -36,8 +36,8 @@ class ArmDomain:
     def update(
         self, belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
     ) -> ArmBelief:
-        """Read the encoders; the command is not needed."""
-        return believing.update(belief, now_ns, samples)
+        """Read the encoders, and what the arm was last told."""
+        return believing.update(belief, now_ns, samples, command)
 
     def ready(self, belief: ArmBelief) -> bool:
         """Whether the encoders have been heard."""
@@ -45,7 +45,7 @@ class ArmDomain:
 
     def belief_values(self, belief: ArmBelief) -> tuple[float, ...]:
         """As named in `belief_names`."""
-        return tuple(meaning.state(belief).values())
+        return tuple(meaning.named(belief.angles, belief.velocities).values())
 
     def anchor(self, belief: ArmBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
         """What was drawn cannot be seen: the abstract state is what is remembered."""
