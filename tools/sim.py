@@ -21,7 +21,10 @@ from simnodes.world import Event, World
 from tools.deployment import configure_bus, deployment
 
 # robot -> (module and class of its body, the domain whose scenarios it plays)
-ROBOTS = {"agilo": ("simnodes.agilo.body", "AgiloBody", "soccer")}
+ROBOTS = {
+    "agilo": ("simnodes.agilo.body", "AgiloBody", "soccer"),
+    "powercube": ("simnodes.powercube.body", "PowerCubeBody", "arm"),
+}
 SCENARIO_STREAM = 0  # of the seed; the executive draws the same scenario from the same stream
 MOST_SPEED = 10.0
 
