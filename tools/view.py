@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from runtime.clock import MonotonicClock
+from runtime.intake import Intake
 from runtime.session import open_client
 from runtime.stopping import stop_on_signals
 from schemas import codec
@@ -36,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--port", type=int, default=PORT, help="of the live page; 0 finds a free one (default %(default)s)"
     )
-    parser.add_argument("--robot", default="", help="live: follow this robot even before an executive names it")
+    parser.add_argument("--robot", default="", help="show only this robot (default: the one that the executive names)")
     parser.add_argument("--sender", default="", metavar="ID", help="show only executives whose id begins so")
     parser.add_argument("--no-models", action="store_true", help="do not load models to predict the alternatives")
     configure_bus(parser)
@@ -57,7 +58,7 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     output: Path = arguments.output or recording.with_suffix(".html")
     console = Console(stderr=True)
     with console.status(f"reading {recording}"):
-        rows = recorded_rows(recording, Story(explainer), arguments.sender)
+        rows = recorded_rows(recording, Story(explainer, arguments.robot), arguments.sender)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     try:
@@ -76,7 +77,10 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     feed = Feed()
     with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
         codec.prime()
-        listener = Listener(session, Story(explainer), feed, arguments.robot)
+        intake = Intake()
+        listener = Listener(intake, Story(explainer, arguments.robot), feed, arguments.sender)
+        tap = session.tap("**", intake.put)
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
+        tap.undeclare()
     return 0

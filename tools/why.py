@@ -19,7 +19,7 @@ from tools.figures.alternatives import draw_alternatives
 from tools.figures.page import image, page
 from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
 from tools.viewer.explainer import Explainer, fields_of
-from tools.viewer.explanation import Alternatives, Explanation
+from tools.viewer.explanation import Explanation, FreeParameter
 from tools.viewer.recorded import timed
 
 NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
@@ -93,7 +93,7 @@ def _show(reasons: Sequence[Reason]) -> None:
             continue
         console.print(f"[bold]{reason.title}[/bold]", highlight=False)
         console.print(durations(reason.explanation))
-        for of in reason.explanation.alternatives:
+        for of in reason.explanation.parameters:
             console.print(f"  {in_words(of)}", highlight=False)
         console.print(f"  {effort(reason.decision)}\n", highlight=False)
 
@@ -110,17 +110,17 @@ def durations(said: Explanation) -> Table:
     return table
 
 
-def in_words(of: Alternatives) -> str:
+def in_words(of: FreeParameter) -> str:
     """One free parameter: chosen, greedy's, its range, the best value, and what is about as good."""
-    variable, best = of.variable, of.cost.min()
-    near = of.values[of.cost <= best * NEAR]
+    variable, cost = of.variable, of.alternatives.total_s
+    best = cost.min()
     said = f"{variable.quantity} at {variable.label}: {_value(of.chosen, variable.unit)}"
     said += f", greedy {_value(of.greedy, variable.unit)}"
     said += f", free in {_value(variable.lower, variable.unit)} to {_value(variable.upper, variable.unit)}"
     if not math.isfinite(best):
-        return f"{said}; predicted to fail everywhere"
-    share = f"{100 * len(near) / len(of.values):.0f} % of the range is within 2 % of the best"
-    worst = of.cost[of.cost < math.inf].max()
+        return f"{said}; every other value that was tried is predicted to fail"
+    share = f"{100 * (cost <= best * NEAR).mean():.0f} % of the range is within 2 % of the best"
+    worst = cost[cost < math.inf].max()
     return f"{said}; {share}, the worst valid value costs {worst - best:+.2f} s"
 
 
@@ -131,8 +131,8 @@ def effort(decision: Decision) -> str:
     if report is not None:
         state = "finished" if report.finished else "cut short"
         said.append(
-            f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks over "
-            f"{decision.ticks} tick{'s' * (decision.ticks != 1)}, {1000 * decision.work_s:.0f} ms of thinking, {state}; "
+            f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks, "
+            f"{1000 * decision.work_s:.0f} ms of thinking in {decision.ticks} ticks, {state}; "
             f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
         )
     if decision.finished is not None:

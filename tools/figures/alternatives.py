@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from tools.figures.paths import COLOURS
-from tools.viewer.explanation import Alternatives, Explanation
+from tools.viewer.explanation import Explanation, FreeParameter
 
 SIZE_IN = 2.9  # of one plot
+SUM = "#2f8f6b"
 
 
 def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Path) -> None:
@@ -22,7 +24,7 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
       explanations: Titles and explanations.
       path: Where to; its folder is made.
     """
-    rows = [(title, said, of) for title, said in explanations for of in said.alternatives]
+    rows = [(title, said, of) for title, said in explanations for of in said.parameters]
     columns = max((len(of.touched) + 1 for _, _, of in rows), default=1)
     figure = Figure(figsize=(SIZE_IN * columns, SIZE_IN * max(1, len(rows)) + 0.4), layout="constrained")
     for row, (title, said, of) in enumerate(rows):
@@ -31,26 +33,29 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
             shape = {"projection": "polar"} if of.variable.periodic else {}
             axis = figure.add_subplot(len(rows), columns, place, **shape)
             _draw(axis, of, seconds, colour)
-            head = f"{title}\n{of.variable.quantity} at {of.variable.label}\n" if column == 0 else ""
+            head = f"{title}\n{of.variable.quantity} at {of.variable.label}\n" if column == 0 else "\n\n"
             axis.set_title(f"{head}{name}", fontsize="small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=120)
 
 
-def _curves(said: Explanation, of: Alternatives) -> list[tuple[str, Any, str]]:
-    actions = [(said.actions[i], of.durations_s[i], COLOURS[i % len(COLOURS)]) for i in of.touched]
-    return [*actions, ("sum", of.total_s, "#2f8f6b")]
+def _curves(said: Explanation, of: FreeParameter) -> list[tuple[str, Any, str]]:
+    seconds = of.alternatives.durations_s
+    actions = [(said.actions[i], seconds[i], COLOURS[i % len(COLOURS)]) for i in of.touched]
+    return [*actions, ("sum", seconds.sum(axis=0), SUM)]
 
 
-def _draw(axis: Any, of: Alternatives, seconds: Any, colour: str) -> None:
+def _draw(axis: Any, of: FreeParameter, seconds: Any, colour: str) -> None:
     """One curve, pale where it is INVALID, with the chosen value (full line) and greedy's (dashed)."""
-    valid = np.where(np.isfinite(of.cost), seconds, np.nan)
-    axis.plot(of.values, seconds, color=colour, alpha=0.3, linewidth=1, linestyle=":")
-    axis.plot(of.values, valid, color=colour, linewidth=1.8)
+    values = of.alternatives.values
+    valid = np.where(np.isfinite(of.alternatives.total_s), seconds, np.nan)
+    axis.plot(values, seconds, color=colour, alpha=0.3, linewidth=1, linestyle=":")
+    axis.plot(values, valid, color=colour, linewidth=1.8)
     axis.set_ylim(0, 1.08 * np.nanmax(seconds))
     for value, style in ((of.greedy, "--"), (of.chosen, "-")):
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
-    predicted = np.interp(of.chosen, of.values, seconds)
+    predicted = np.interp(of.chosen, values, seconds)
     axis.plot([of.chosen], [predicted], "o", color="black", markersize=4)
     axis.set_xlabel(f"chosen: {predicted:.1f} s", fontsize="small")
+    axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

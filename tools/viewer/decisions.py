@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from schemas.messages import ActionFinished, ExecStatus, Provenance, RefinementReport, Subgoals, TickReport
 from tools.viewer.recorded import Timed
@@ -41,7 +42,10 @@ def decisions_of(messages: Iterable[Timed]) -> Run:
         if isinstance(message, Provenance):
             run.provenance = run.provenance or message.json
         elif isinstance(message, RefinementReport):
-            search = [*search, message] if search and message.checks > search[-1].checks else [message]
+            goes_on = bool(search) and message.checks > search[-1].checks
+            search = [*search, message] if goes_on else [message]
+            if goes_on and run.decisions and run.decisions[-1].report is search[-2]:
+                run.decisions[-1] = replace(run.decisions[-1], **_effort(search, work_s))
         elif isinstance(message, Subgoals):
             run.decisions.append(_decided(t.at_s, message, search, work_s))
         elif isinstance(message, ExecStatus):
@@ -69,9 +73,15 @@ def acted_on(decisions: Iterable[Decision]) -> Iterator[Decision]:
 
 
 def _decided(at_s: float, subgoals: Subgoals, search: list[RefinementReport], work_s: dict[int, float]) -> Decision:
+    """A decision of the search that reported last, if it did so in the tick before or in the same one."""
+    fresh = bool(search) and search[-1].tick >= subgoals.tick - 1
+    return Decision(at_s, subgoals, **_effort(search if fresh else [], work_s))
+
+
+def _effort(search: list[RefinementReport], work_s: dict[int, float]) -> dict[str, Any]:
     ticks = {report.tick for report in search}
-    report = search[-1] if search else None
-    return Decision(at_s, subgoals, report, sum(work_s.get(tick, 0.0) for tick in ticks), len(ticks))
+    spent_s = sum(work_s.get(tick, 0.0) for tick in ticks)
+    return {"report": search[-1] if search else None, "work_s": spent_s, "ticks": len(ticks)}
 
 
 def _thinking_s(report: TickReport) -> float:

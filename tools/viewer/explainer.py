@@ -12,7 +12,7 @@ from executive.composition import recompose
 from executive.core.context import Context
 from schemas.errors import UsageError
 from schemas.messages import Subgoals
-from tools.viewer.explanation import Alternatives, Explanation, explain
+from tools.viewer.explanation import Explanation, FreeParameter, explain
 from tools.viewer.rows import Fields, number
 
 STREAM = 5  # of the seed; the executive's own draws come from others
@@ -57,23 +57,23 @@ def fields_of(explanation: Explanation) -> Fields:
         "chosen": [number(s) for s in explanation.chosen_s],
         "greedy": [number(s) for s in explanation.greedy_s],
         "cost": [number(explanation.chosen_cost), number(explanation.greedy_cost)],
-        "alternatives": [_alternatives(a) for a in explanation.alternatives],
+        "parameters": [_parameter(parameter) for parameter in explanation.parameters],
     }
 
 
-def _alternatives(said: Alternatives) -> Fields:
-    variable = said.variable
+def _parameter(told: FreeParameter) -> Fields:
+    variable, said = told.variable, told.alternatives
     return {
         "id": variable.id,
         "place": variable.label,
         "quantity": variable.quantity,
         "unit": variable.unit,
         "periodic": variable.periodic,
-        "chosen": number(said.chosen),
-        "greedy": number(said.greedy),
-        "touched": list(said.touched),
+        "chosen": number(told.chosen),
+        "greedy": number(told.greedy),
+        "touched": list(told.touched),
         "values": [number(v) for v in said.values],
-        "seconds": [[number(s) for s in said.durations_s[i]] for i in said.touched],  # the others do not change
-        "total": [number(s) for s in said.total_s],
-        "cost": [number(s) for s in said.cost],
+        "seconds": [[number(s) for s in said.durations_s[i]] for i in told.touched],  # the others do not change
+        "total": [number(s) for s in said.durations_s.sum(axis=0)],
+        "cost": [number(s) for s in said.total_s],
     }

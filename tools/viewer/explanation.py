@@ -11,36 +11,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from executive.library import Action, Array, Models
+from executive.refinement.alternatives import Alternatives, alternatives
 from executive.refinement.greedy import greedy
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
 from executive.refinement.settings import RefinementSettings
 from schemas import messages as m
 
-SWEEP = 73  # values of one parameter: every five degrees of a turn, both ends included
-
 
 @dataclass(frozen=True, slots=True)
-class Alternatives:
-    """Predictions over one free parameter, the others as chosen.
+class FreeParameter:
+    """A free parameter: what was chosen, what greedy chooses, and the predictions over its range, the others as chosen.
 
-    `values` has shape (n,); `durations_s` one row of n for each action within the horizon, NaN where a model gives no
-    number; `cost` is the objective, +inf where it is INVALID; `touched` says which actions depend on the parameter.
+    `touched` are the places of the actions that depend on it, among those within the horizon.
     """
 
     variable: Variable
     chosen: float
     greedy: float
-    values: Array
-    durations_s: Array
-    cost: Array
+    alternatives: Alternatives
     touched: tuple[int, ...]
-
-    @property
-    def total_s(self) -> Array:
-        """Summed durations, shape (n,)."""
-        total: Array = self.durations_s.sum(axis=0)
-        return total
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +42,7 @@ class Explanation:
     greedy_s: tuple[float, ...]
     chosen_cost: float
     greedy_cost: float
-    alternatives: tuple[Alternatives, ...]  # one for each free parameter
+    parameters: tuple[FreeParameter, ...]  # the free ones
 
 
 def explain(
@@ -85,7 +75,7 @@ def explain(
         _durations(objective, lone),
         float(objective(picked[None])[0]),
         float(objective(lone[None])[0]),
-        tuple(_alternatives(objective, sequence.variables[i], picked, lone) for i in objective.ids),
+        tuple(_parameter(sequence, objective, place, picked, lone, models, settings) for place in range(len(picked))),
     )
 
 
@@ -128,18 +118,20 @@ def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, .
     return tuple(float(said.duration_s[0]) for said in objective.predict(candidate))
 
 
-def _alternatives(objective: SequenceObjective, variable: Variable, picked: Array, lone: Array) -> Alternatives:
-    column = objective.ids.index(variable.id)
-    values = np.linspace(variable.lower, variable.upper, SWEEP)
-    candidates = np.tile(picked, (SWEEP, 1))
-    candidates[:, column] = values
-    predicted = [stage.predict(candidates[:, stage.columns]).duration_s for stage in objective.stages]
-    return Alternatives(
-        variable,
-        float(picked[column]),
-        float(lone[column]),
-        values,
-        np.array(predicted),
-        objective(candidates),
-        tuple(i for i, stage in enumerate(objective.stages) if column in stage.columns),
+def _parameter(
+    sequence: ActionSequence,
+    objective: SequenceObjective,
+    place: int,
+    picked: Array,
+    lone: Array,
+    models: Models,
+    settings: RefinementSettings,
+) -> FreeParameter:
+    identifier = objective.ids[place]
+    return FreeParameter(
+        sequence.variables[identifier],
+        float(picked[place]),
+        float(lone[place]),
+        alternatives(sequence, objective.values(picked), models, settings, identifier),
+        tuple(i for i, stage in enumerate(objective.stages) if place in stage.columns),
     )

@@ -30,6 +30,11 @@ class Subscription:
         except Full:
             self.lost = True
 
+    def let_go(self) -> None:
+        """Wake whoever waits for a batch, to find that there will be no more."""
+        self.lost = True
+        self.put("[]")
+
     def next(self, timeout_s: float) -> str | None:
         """The next batch, a JSON array of rows; None when there is none in time."""
         try:
@@ -62,6 +67,12 @@ class Feed:
             self._forget(rows[-1].at_s)
             for page in self._pages:
                 page.put(batch)
+
+    def close(self) -> None:
+        """Let every page go."""
+        with self._lock:
+            for page in self._pages:
+                page.let_go()
 
     @contextmanager
     def subscribe(self) -> Iterator[Subscription]:

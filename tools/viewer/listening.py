@@ -1,66 +1,50 @@
-"""A running system into rows: a plain subscriber that looks twenty times a second and publishes nothing."""
+"""A running system into rows: a plain subscriber with its own queue, that publishes nothing and delays nobody."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
 
-from runtime.clock import Clock
+from runtime.attachment import unpack
+from runtime.clock import Clock, wall_ns
+from runtime.inbox import Raw
+from runtime.intake import Intake
 from runtime.loop import Loop
-from schemas.messages import Provenance, Sample
-from schemas.topics import TOPICS
-from tools.viewer.about import about
+from schemas.codec import decode
+from schemas.errors import Rejected
+from schemas.messages import Message
+from schemas.typesystem import type_of
 from tools.viewer.feed import Feed
-from tools.viewer.story import Story
+from tools.viewer.recorded import EXECUTIVE
+from tools.viewer.story import Row, Story
 
-LOOK_NS = 50_000_000  # twice the executive's rate: no state is overwritten before it was seen
-EXECUTIVE = tuple(name for name, topic in TOPICS.items() if topic.key.startswith("exec/"))
-
-
-class Inbox(Protocol):
-    """What arrives."""
-
-    def drain(self) -> tuple[Sample, ...]:
-        """New samples, oldest first."""
-        ...
-
-
-class Bus(Protocol):
-    """What makes inboxes: a `runtime.session.Session`."""
-
-    def inbox(self, names: tuple[str, ...], robot: str) -> Inbox:
-        """The new samples of these topics."""
-        ...
-
-
-def robot_topics() -> tuple[str, ...]:
-    """Everything that a robot and its simulator say, and what they are told by the executive."""
-    return tuple(name for name, topic in TOPICS.items() if "{robot}" in topic.key and topic.source != "people")
+LOOK_NS = 50_000_000  # so often the page moves
+ENCODING = "application/cdr;"
 
 
 class Listener:
-    """Follows the executive, and the robot that its provenance names as soon as it is known."""
+    """Turns what has arrived into rows.
 
-    def __init__(self, bus: Bus, story: Story, feed: Feed, robot: str = "") -> None:
-        self._bus = bus
+    Args:
+      intake: Filled by the bus's thread.
+      story: Keeps what has been told.
+      feed: Where the rows go.
+      sender: Leave out executives whose id does not begin with this.
+    """
+
+    def __init__(self, intake: Intake, story: Story, feed: Feed, sender: str = "") -> None:
+        self._intake = intake
         self._story = story
         self._feed = feed
-        self._robot = ""
+        self._sender = sender
         self._began_ns: int | None = None
-        self._inboxes = [bus.inbox((*EXECUTIVE, "estop"), robot)]
-        self._follow(robot)
 
     def look(self) -> None:
         """Take what has arrived and hand it on."""
-        samples = sorted((s for inbox in self._inboxes for s in inbox.drain()), key=lambda s: s.arrival_ns)
-        rows = []
-        for sample in samples:
-            if self._began_ns is None:
-                self._began_ns = sample.arrival_ns
-            if isinstance(sample.message, Provenance):
-                self._follow(about(sample.message.json).get("robot", ""))
-            at_s = max(0.0, (sample.arrival_ns - self._began_ns) / 1e9)
-            rows += self._story.tell(at_s, sample.key, sample.message)
+        rows: list[Row] = []
+        for raw in self._intake.take():
+            message = _read(raw)
+            if message is not None and self._wanted(raw):
+                rows += self._story.tell(self._at_s(raw), raw.key, message)
         self._feed.publish(rows)
 
     def run(self, clock: Clock, stopped: Callable[[], bool]) -> None:
@@ -70,7 +54,23 @@ class Listener:
             loop.next_turn()
             self.look()
 
-    def _follow(self, robot: str) -> None:
-        if robot and robot != self._robot:
-            self._robot = robot
-            self._inboxes[1:] = [self._bus.inbox(robot_topics(), robot)]
+    def _at_s(self, raw: Raw) -> float:
+        """Seconds since the first message was received, by the wall clock that recordings have too."""
+        received_ns = raw.received_wall_ns or wall_ns()
+        self._began_ns = received_ns if self._began_ns is None else self._began_ns
+        return max(0.0, (received_ns - self._began_ns) / 1e9)
+
+    def _wanted(self, raw: Raw) -> bool:
+        if not self._sender or not raw.key.startswith(EXECUTIVE):
+            return True
+        origin = unpack(raw.attachment)
+        return not isinstance(origin, Rejected) and origin.sender.startswith(self._sender)
+
+
+def _read(raw: Raw) -> Message | None:
+    """The value of a publication of our types; None for others, and for what is damaged."""
+    kind = type_of(raw.encoding.removeprefix(ENCODING))
+    if kind is None or not raw.is_put:
+        return None
+    message = decode(kind, raw.payload)
+    return None if isinstance(message, Rejected) else message

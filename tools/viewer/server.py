@@ -13,6 +13,7 @@ from tools.viewer.feed import Feed
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here
 MOST_PAGES = 8
+RETRY_MS = 1000  # after which a page whose connection broke comes again
 BEAT_S = 2.0  # a comment so often tells a page that has gone
 
 
@@ -34,6 +35,7 @@ def serving(document: str, feed: Feed, port: int) -> Iterator[int]:
     try:
         yield server.server_address[1]
     finally:
+        feed.close()
         server.shutdown()
         server.server_close()
 
@@ -74,7 +76,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
         self.close_connection = True
         try:
-            self._say("event: reset\ndata:\n\n")
+            self._say(f"retry: {RETRY_MS}\nevent: reset\ndata: all\n\n")
             with self.feed.subscribe() as page:
                 while not page.lost:
                     batch = page.next(BEAT_S)

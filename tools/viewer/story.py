@@ -1,4 +1,4 @@
-"""A run as the rows that the page is told: each thing once, when it changes, and states at most ten times a second."""
+"""A run as the rows that the page is told: each thing once, when it changes, and states not too often."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tools.viewer.explainer import Explainer
 from tools.viewer.plan_graph import plan_graph
 from tools.viewer.rows import Fields
 
-STATE_GAP_S = 0.095  # the executive's 10 Hz, with room for jitter
+STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.
 SILENT = (m.ArmRequest, m.BallPercept)
 
@@ -35,9 +35,11 @@ class Story:
 
     Args:
       explainer: Computes the alternatives of subgoals from the action models; None: they are not shown.
+      robot: The only robot to tell of; empty: the one that the executive names, and any until it does.
     """
 
-    def __init__(self, explainer: Explainer | None = None) -> None:
+    def __init__(self, explainer: Explainer | None = None, robot: str = "") -> None:
+        self._robot = robot
         self._explainer = explainer
         self._names: tuple[str, ...] = ()
         self._action = (-1, "")
@@ -46,6 +48,9 @@ class Story:
 
     def tell(self, at_s: float, key: str, message: m.Message) -> list[Row]:
         """The rows that follow from one message."""
+        owner, _, rest = key.partition("/")
+        if rest and self._robot and owner not in ("exec", self._robot):
+            return []
         return [Row(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
 
     def _rows(self, at_s: float, key: str, message: m.Message) -> list[tuple[str, Fields]]:
@@ -85,6 +90,7 @@ class Story:
         self._last["provenance"] = message.json
         facts = about(message.json)
         self._names = tuple(facts.get("beliefNames", ()))
+        self._robot = self._robot or facts.get("robot", "")
         if self._explainer is not None:
             self._explainer.learn(message.json)
         return [("about", facts)]

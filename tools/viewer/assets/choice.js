@@ -23,12 +23,13 @@ class ChoicePanel {
 
   search(report) {
     const state = report.finished ? "search finished" : "still searching";
-    return `${report.evaluations} evaluations in ${report.checks} checks, ${report.solver}, ${state}`;
+    const found = report.greedy === null || report.best === null ? "" : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
+    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}`;
   }
 
   /** With the models at hand: chosen against greedy, and the alternatives. */
   explained(why) {
-    const free = why.alternatives;
+    const free = why.parameters;
     const key = (a) => `${a.place} ${a.quantity}`;
     const shown = free.find((a) => key(a) === this.picked) ?? free.find((a) => a.periodic) ?? free[0];
     const chips = free.map((a) => html("button", { type: "button", "aria-pressed": a === shown, onclick: () => { this.picked = key(a); this.again(); } },

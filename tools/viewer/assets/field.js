@@ -29,6 +29,7 @@ class Field {
     const parts = [clip, svg("g", {}, ...this.gridLines(width, height)), svg("g", { "clip-path": "url(#fieldclip)" }, ...this.standing(), this.moving)];
     const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "the robot's path seen from above" }, ...parts);
     this.panel.body.replaceChildren(drawing);
+    this.panel.title.textContent = "Field";
     this.panel.note.replaceChildren(this.legend());
   }
 
@@ -106,7 +107,7 @@ class Field {
     const heading = place.free.find((p) => p.quantity === "phi");
     const parts = [];
     if (heading) {
-      const said = why?.alternatives.find((a) => a.place === place.label && a.quantity === "phi");
+      const said = why?.parameters.find((a) => a.place === place.label && a.quantity === "phi");
       parts.push(...(said ? this.petals(place, said) : [this.arc(place, heading)]));
       for (const phi of earlierHeadings(this.run, at, place.label)) parts.push(this.arrow(place, phi, "place free before", 0.3));
       if (said) parts.push(this.arrow(place, said.greedy, "place lone", 0.34));

@@ -6,15 +6,18 @@ function actionLane(run, x, top) {
   for (const action of run.actions()) {
     const [left, right] = [x(action.begin), x(action.until)];
     if (right < x.low || left > x.high) continue;
-    const bar = (kind, until, y) => svg("rect", { class: `bar ${kind} ${colour(action.index)}`, x: left, y, width: Math.max(1.5, x(until) - left - 1), height: 9, rx: 2 });
+    const bar = (kind, until, y) => {
+      const [begin, end] = [Math.max(x.low, left), Math.min(x.high, x(until))];
+      return svg("rect", { class: `bar ${kind} ${colour(action.index)}`, x: begin, y, width: Math.max(1.5, end - begin - 1), height: 9, rx: 2 });
+    };
     parts.push(bar("predicted", action.begin + action.predicted, top + 16));
     parts.push(bar(action.ended && action.ended.outcome !== "done" ? "actual failed" : "actual", action.until, top + 27));
     const words = action.ended
       ? `${action.action}  ${action.ended.actual.toFixed(1)} s (${signed(action.ended.actual - action.predicted)})`
       : action.action;
-    const room = Math.max(right, x(action.begin + action.predicted)) - left;
+    const room = Math.max(right, x(action.begin + action.predicted)) - Math.max(x.low, left);
     const short = room > 6.2 * words.length ? words : room > 6.2 * action.action.length ? action.action : "";
-    const label = svg("text", { class: "ink", x: left, y: top + 11, text: short });
+    const label = svg("text", { class: "ink", x: Math.max(x.low, left), y: top + 11, text: short });
     const reason = action.ended?.reason ? `, ${action.ended.outcome}: ${action.ended.reason}` : "";
     parts.push(svg("g", {}, svg("title", { text: `${action.action}: predicted ${seconds(action.predicted)}, took ${seconds(action.until - action.begin)}${reason}` }), label, ...parts.splice(-2)));
   }
@@ -38,7 +41,7 @@ function eventLane(run, x, top) {
 /** Curves with an axis: [{points: [[at, value]], kind}]. */
 function curveLane(x, top, height, lines, [low, high], unit) {
   const y = scale(low, high, top + height - 4, top + 8);
-  const labels = ticks(low, high, 2).flatMap((v) => [
+  const labels = ticks(low, high, 3).flatMap((v) => [
     svg("line", { class: "grid", x1: x.low, x2: x.high, y1: y(v), y2: y(v) }),
     svg("text", { x: x.low - 6, y: y(v) + 4, "text-anchor": "end", text: String(v) }),
   ]);

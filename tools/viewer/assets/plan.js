@@ -30,6 +30,7 @@ class PlanGraph {
     const left = ids(now);
     const achieved = this.run.last("state", at)?.result === "achieved";
     const done = new Set([...ids(base)].filter((id) => achieved || !left.has(id)));
+    if (achieved) done.add("goal");
     const acting = (this.run.last("action", at)?.index ?? -1) >= 0;
     const running = acting ? this.run.last("subgoals", at)?.actions[0]?.step ?? null : null;
     return { base, done, running };

@@ -62,7 +62,7 @@ class Timeline {
     if (run.all("tick").length) {
       lanes.push({ name: "tick ms", height: 74, draw: (x, top) => tickLane(run, x, top, 74, times) });
       const checks = run.all("tick").map((row) => [row.at, row.checks]);
-      lanes.push({ name: "checks", height: 42, draw: (x, top) => curveLane(x, top, 42, [{ points: checks, kind: "trace c2" }], extent([0, ...checks.map((c) => c[1])], 0.02), "granted") });
+      lanes.push({ name: "checks", height: 42, draw: (x, top) => curveLane(x, top, 42, [{ points: checks, kind: "trace c2" }], [0, Math.max(1, extent(checks.map((c) => c[1]), 0.02)[1])], "granted") });
     }
     return lanes;
   }

@@ -1,0 +1,263 @@
+"""The pages in a real headless browser: what is drawn, how it moves, and how a live page follows."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from schemas import messages as m
+from tests import synthetic_run
+from tests.browser import PROGRAM, Browser
+from tests.synthetic_models import LIBRARY, MODELS
+from tools.viewer import story as story_module
+from tools.viewer.explainer import Explainer
+from tools.viewer.feed import Feed
+from tools.viewer.page import page
+from tools.viewer.server import serving
+from tools.viewer.story import Row, Story
+
+pytestmark = [
+    pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),
+    pytest.mark.xdist_group("browser"),
+]
+AT = "Number(document.documentElement.dataset.at)"
+NAMES = ["x (m)", "y (m)", "phi (rad)", "v (m/s)", "omega (rad/s)", "ball_x (m)", "ball_y (m)"]
+
+
+# How many lines across the heading the paths of a kind have.
+LINES = """[...document.querySelectorAll('#scene .strokes{}')]
+  .map((path) => path.getAttribute('d').split('M').length - 1).reduce((a, b) => a + b, 0)"""
+BOX = """(({left, top, width, height}) => [left, top, width, height])(
+  document.querySelector('#timeline svg .hit').getBoundingClientRect())"""
+# The least contrast of words on a panel, by the formula of WCAG 2.
+WORST_CONTRAST = """(() => {
+  const linear = (v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const light = (colour) => {
+    const [r, g, b] = colour.match(/[0-9.]+/g).map((v) => linear(v / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const panel = light(getComputedStyle(document.querySelector('.panel')).backgroundColor);
+  const words = [...document.querySelectorAll('h1, th, td, .panel h2 small, figcaption')];
+  return Math.min(...words.map((element) => {
+    const [dark, bright] = [light(getComputedStyle(element).color), panel].sort((a, b) => a - b);
+    return (bright + 0.05) / (dark + 0.05);
+  }));
+})()"""
+
+
+class Context:
+    """As much of an executive's context as an explanation needs."""
+
+    class domain:  # noqa: N801
+        actions = LIBRARY
+
+    class settings:  # noqa: N801
+        seed = 3
+        refinement = synthetic_run.SETTINGS
+
+    models = MODELS
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with Browser() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def soccer(tmp_path_factory) -> str:
+    """Address of the page of a soccer run."""
+    facts = {
+        "times": {"period": 100, "budget": 60, "end": 80},
+        "robot": "agilo",
+        "beliefNames": NAMES,
+        "domain": "soccer",
+    }
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(story_module, "about", lambda provenance: facts)
+        rows = rows_of(synthetic_run.soccer_run(), Story(Explainer(lambda recorded: Context)))
+    return written(tmp_path_factory.mktemp("view") / "soccer.html", rows)
+
+
+def rows_of(run, story: Story) -> list[Row]:
+    return [row for t in run for row in story.tell(t.time_ns / 1e9, t.key, t.message)]
+
+
+def written(path: Path, rows: list[Row]) -> str:
+    path.write_text(page(path.stem, rows))
+    return path.as_uri()
+
+
+def count(browser: Browser, selector: str) -> int:
+    return browser.value(f"document.querySelectorAll({selector!r}).length")
+
+
+def text(browser: Browser, selector: str) -> str:
+    return browser.value(f"document.querySelector({selector!r}).textContent")
+
+
+def at(browser: Browser) -> float:
+    return browser.value(AT)
+
+
+def opened(browser: Browser, address: str, at_s: float | None = None) -> None:
+    browser.errors.clear()
+    browser.send("Page.navigate", url="about:blank")
+    browser.open(address + (f"#t={at_s}" if at_s is not None else ""))
+    browser.frame()
+
+
+def test_the_path_is_drawn_with_lines_across_the_heading_up_to_the_moment(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    whole = browser.value(LINES.format(".ahead"))
+    until_now = browser.value(LINES.format(":not(.ahead)"))
+    assert whole == pytest.approx(110, abs=5), "one line for each of the executive's ticks"
+    assert until_now == pytest.approx(38, abs=2)
+    assert count(browser, "#scene .ball") == 1
+    assert browser.errors == []
+
+
+def test_the_subgoal_shows_choice_greedy_and_alternatives(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    assert count(browser, "#scene .place.lone") == 1
+    assert count(browser, "#scene .petal") == 73
+    assert count(browser, "#choice figure") == 3, "action 1, action 2 and their sum, as in Figure 11"
+    assert "better than greedy" in text(browser, "#choice .verdict")
+    browser.value("document.querySelectorAll('#choice .chips button')[1].click()")
+    browser.frame()
+    assert count(browser, "#choice .plots") == 0, "a speed is no angle"
+    assert count(browser, "#choice figure") == 1
+
+
+def test_the_plan_shows_what_runs_what_is_done_and_what_links(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    assert text(browser, "#plan .running") == "approachball pos1 pos2"
+    assert count(browser, "#plan .done") == 0
+    assert "(atball pos2)" in text(browser, "#plan svg")
+    opened(browser, soccer, 8.0)
+    assert text(browser, "#plan .running") == "dribbleball pos2 pos3"
+    assert text(browser, "#plan .done") == "approachball pos1 pos2"
+
+
+def test_the_timeline_shows_predicted_against_actual_and_every_tick(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer)
+    assert count(browser, "#timeline .bar.predicted") == 2
+    assert count(browser, "#timeline .bar.actual") == 2
+    assert count(browser, "#timeline .limit") == 2
+    ticks = sum(isinstance(t.message, m.TickReport) for t in synthetic_run.soccer_run())
+    assert text(browser, "#timeline small").startswith(f"{ticks} ticks ")
+
+
+def test_keys_move_play_and_jump(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    assert at(browser) == 4.0
+    browser.press("ArrowRight")
+    browser.press("ArrowRight", shift=True)
+    assert at(browser) == pytest.approx(5.1)
+    browser.press("ArrowLeft")
+    assert at(browser) == pytest.approx(5.0)
+    browser.press("Home")
+    assert at(browser) == 0
+    browser.press("]")
+    first = at(browser)
+    assert first == pytest.approx(0.2), "the plan was found then"
+    browser.press(" ")
+    browser.wait(f"{AT} > {first + 0.2}")
+    browser.press(" ")
+    paused = at(browser)
+    time.sleep(0.2)
+    assert at(browser) == paused
+    browser.press("End")
+    assert at(browser) == browser.value("Number(document.querySelector('footer input').max)")
+
+
+def test_a_click_on_the_timeline_goes_there(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 0.0)
+    browser.value("window.scrollTo(0, 1e6)")
+    browser.frame()
+    left, top, width, height = browser.value(BOX)
+    browser.click(left + width / 2, top + height / 2)
+    end = browser.value("Number(document.querySelector('footer input').max)")
+    assert at(browser) == pytest.approx(end / 2, abs=0.1)
+
+
+def test_a_robot_that_is_no_point_on_the_plane_gets_plots_over_time(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, written(tmp_path / "arm.html", rows_of(synthetic_run.arm_run(), Story())), 6.0)
+    assert text(browser, "#scene h2 span") == "State"
+    assert count(browser, "#scene .trace") == 4
+    assert count(browser, "#timeline .bar.actual") == 4
+    assert browser.errors == []
+
+
+def test_an_empty_run_is_a_page_and_not_an_error(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, written(tmp_path / "empty.html", []))
+    assert "Nothing chosen yet" in text(browser, "#choice .body")
+    assert browser.errors == []
+
+
+def test_hostile_strings_are_shown_and_never_run(browser: Browser, tmp_path: Path) -> None:
+    evil = '<img src=x onerror="window.hit=1"></script><script>window.hit=1</script>'
+    plan = synthetic_run.PLAN.replace("pos2", "<b>pos2</b>")
+    messages = [
+        synthetic_run.Told(
+            0, "exec/status", m.ExecStatus(0, 1, "FAULT", evil, evil, evil, f"failed: {evil}", evil, 0, 0.0, 1.0)
+        ),
+        synthetic_run.Told(0, "exec/plan", m.PlanReport(0, "solved", evil, plan, 1, 1, evil)),
+        synthetic_run.Told(0, "exec/finished", m.ActionFinished(0, 1, evil, 0, "failed", evil, 1.0, 1.0)),
+    ]
+    opened(browser, written(tmp_path / "evil.html", rows_of(messages, Story())))
+    assert evil in text(browser, "#heading")
+    assert browser.value("window.hit") is None
+    assert count(browser, "main img, main b, main script") == 0
+
+
+def test_both_colour_schemes_have_readable_ink(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    for dark in (False, True):
+        browser.dark(dark)
+        browser.frame()
+        assert browser.value(WORST_CONTRAST) >= 4.5, "WCAG AA"
+    browser.dark(False)
+
+
+def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) -> None:
+    rows = rows_of(synthetic_run.soccer_run(), Story())
+    half = len(rows) // 2
+    feed = Feed()
+    with serving(page("live", [], live=True), feed, 0) as port:
+        feed.publish(rows[:half])
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait(f"Math.abs({AT} - {rows[half - 1].at_s}) < 0.01")
+        browser.press("Home")
+        feed.publish(rows[half:])
+        browser.wait(f"Number(document.documentElement.dataset.rows) >= {len(rows)}")
+        assert at(browser) == 0, "whoever looks at the past is left there"
+        browser.press("l")
+        assert at(browser) == pytest.approx(rows[-1].at_s, abs=0.01)
+    again = Feed()
+    again.publish(rows[:5])
+    with serving(page("live", [], live=True), again, port):
+        browser.wait(f"Math.abs(Number(document.querySelector('footer input').max) - {rows[4].at_s}) < 0.01", 20)
+    assert browser.errors == []
+
+
+def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> None:
+    rows = rows_of(synthetic_run.soccer_run(), Story())
+    feed = Feed()
+    with serving(page("live", [], live=True), feed, 0) as port:
+        opened(browser, f"http://127.0.0.1:{port}/")
+
+        def feeding() -> None:
+            for k in range(0, 150, 5):
+                feed.publish(rows[k : k + 5])
+                time.sleep(0.1)
+
+        thread = threading.Thread(target=feeding)
+        thread.start()
+        thread.join()
+        browser.wait("Number(document.documentElement.dataset.rows) >= 150", 2)
+        assert browser.errors == []

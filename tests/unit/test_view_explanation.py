@@ -1,0 +1,92 @@
+"""An explanation made from a message says what the refinement that made the message said."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from executive.budget import CheckBudget
+from executive.refinement.refinement import Refinement
+from schemas.errors import UsageError
+from schemas.messages import Subgoals
+from tests import synthetic_run
+from tests.synthetic_models import LIBRARY, MODELS, approach_dribble
+from tools.viewer.explainer import Explainer, fields_of
+from tools.viewer.explanation import explain, sequence_of
+
+SETTINGS = synthetic_run.SETTINGS
+
+
+@pytest.fixture(scope="module")
+def refined():
+    sequence = approach_dribble(robot=(-1.2, -0.6, 2.4))
+    search = Refinement(sequence, MODELS, SETTINGS, np.random.default_rng(3))
+    search.advance(CheckBudget(60))
+    return sequence, search.choice
+
+
+def told(sequence, choice) -> Subgoals:
+    return synthetic_run.subgoals(2, sequence, choice, 0)
+
+
+def explained(message: Subgoals):
+    return explain(message, LIBRARY, MODELS, SETTINGS, np.random.default_rng(0))
+
+
+def test_the_sequence_is_rebuilt_from_its_message(refined) -> None:
+    rebuilt = sequence_of(told(*refined), LIBRARY)
+    for old, new in zip(refined[0].variables, rebuilt.variables, strict=True):
+        assert (new.lower, new.upper, new.periodic, new.value) == (old.lower, old.upper, old.periodic, old.value)
+    assert [a.variables for a in rebuilt.actions] == [a.variables for a in refined[0].actions]
+
+
+def test_the_explained_choice_is_the_choice(refined) -> None:
+    said = explained(told(*refined))
+    assert said.chosen_s == pytest.approx(refined[1].predicted_s)
+    assert said.chosen_cost == pytest.approx(refined[1].total_s)
+    assert said.greedy_cost >= said.chosen_cost
+
+
+def test_greedy_makes_the_first_action_shorter_and_the_whole_longer(refined) -> None:
+    said = explained(told(*refined))
+    assert said.greedy_s[0] < said.chosen_s[0]
+    assert sum(said.greedy_s) > sum(said.chosen_s)
+
+
+def test_alternatives_cover_the_range_and_name_the_actions_that_they_touch(refined) -> None:
+    angle = next(p for p in explained(told(*refined)).parameters if p.variable.quantity == "phi")
+    assert angle.touched == (0, 1)
+    assert angle.alternatives.values[[0, -1]] == pytest.approx([-np.pi, np.pi])
+    assert np.nanmin(angle.alternatives.total_s) >= 0.98 * refined[1].total_s, "the choice is (almost) the best of them"
+
+
+def test_nothing_free_and_unknown_actions_have_no_explanation(refined) -> None:
+    message = told(*refined)
+    bound = tuple(replace(a, parameters=tuple(replace(p, bound=True) for p in a.parameters)) for a in message.actions)
+    assert explained(replace(message, actions=bound)) is None
+    assert explained(replace(message, actions=())) is None
+    assert explain(message, {}, MODELS, SETTINGS, np.random.default_rng(0)) is None
+
+
+def test_a_risk_that_was_accepted_is_explained_and_not_called_invalid(refined) -> None:
+    strict = replace(SETTINGS, p_fail_max=0.0)
+    said = explain(told(*refined), LIBRARY, MODELS, strict, np.random.default_rng(0))
+    assert np.isfinite(said.chosen_cost)
+
+
+def test_fields_are_json_even_where_everything_is_invalid(refined) -> None:
+    said = explained(told(*refined))
+    assert json.dumps(fields_of(replace(said, greedy_cost=float("inf"))), allow_nan=False)
+
+
+def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -> None:
+    def missing(recorded):
+        raise UsageError("no model agilo/goToPose/duration")
+
+    explainer = Explainer(missing)
+    explainer.learn("{}")
+    assert explainer.fields(told(*refined)) is None
+    assert explainer.missing == "no model agilo/goToPose/duration"
