@@ -24,7 +24,7 @@ def rows(quick: bool = False) -> list[dict[str, object]]:
     """One row for each case and solver: mean gap in percent at each moment, and the worst of all tasks."""
     models = Models(*load_robot("agilo"))
     table = []
-    for name, tasks in cases(2 if quick else 5).items():
+    for name, tasks in cases(models, 2 if quick else 5).items():
         races = [_race(task, models, seed) for seed, task in enumerate(tasks)]
         table += [_row(name, solver, [race[solver] for race in races]) for solver in races[0]]
     return table
@@ -33,8 +33,8 @@ def rows(quick: bool = False) -> list[dict[str, object]]:
 def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
     """By solver, the gap to the best known value at each moment, in percent."""
     limit_ms = MOMENTS_MS[-1]
-    found = {name: run(task.objective(models), seed, limit_ms) for name, run in runners()}
-    long = [ours("chain")(task.objective(models), 100 + again, LONG_MS) for again in range(2)]
+    found = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
+    long = [ours("chain")(task.objective(models), task.starts, 100 + again, LONG_MS) for again in range(2)]
     best = min(_at(one, LONG_MS) for one in [*long, *found.values()])
     return {name: [100 * (_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in found.items()}
 

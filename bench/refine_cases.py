@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from executive import domains
+from executive.budget import CheckBudget
 from executive.library import Action, Models
-from executive.refinement.detour import with_detour
+from executive.refinement.assertion import Assertion
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
 from executive.refinement.settings import RefinementSettings
@@ -22,19 +23,20 @@ class Case:
     name: str
     actions: tuple[InstantiatedAction, ...]
     variables: tuple[Variable, ...]
+    starts: tuple[Mapping[int, float], ...] = ()
 
     def objective(self, models: Models) -> SequenceObjective:
         return SequenceObjective(self.actions, self.variables, models, RefinementSettings())
 
 
-def cases(count: int) -> dict[str, list[Case]]:
+def cases(models: Models, count: int) -> dict[str, list[Case]]:
     """`count` drawn tasks for each case."""
     library = domains.load("soccer").actions
     made = {
         name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
         for name, legs in LEGS.items()
     }
-    made["6 free, detour"] = [_detour(library, np.random.default_rng([6, i])) for i in range(count)]
+    made["5 free, detour"] = [_detour(library, models, np.random.default_rng([6, i])) for i in range(count)]
     return made
 
 
@@ -45,13 +47,17 @@ def _waypoints(action: Action, legs: int, rng: np.random.Generator) -> Case:
     return _chain("waypoints", [action] * legs, places)
 
 
-def _detour(library: Mapping[str, Action], rng: np.random.Generator) -> Case:
-    """An approach of the ball that must go round it, then the dribble."""
+def _detour(library: Mapping[str, Action], models: Models, rng: np.random.Generator) -> Case:
+    """An approach of the ball for which assertion finds that it must go round, then the dribble."""
     actions = [library["approachBall"], library["dribbleBall"]]
-    places = [_place(rng, {"phi": rng.uniform(-3, 3), "v": 0.0}), _place(rng, {}), _place(rng, {"phi": 1.0, "v": 0.0})]
-    case = _chain("detour", actions, places)
-    sequence = with_detour(ActionSequence(case.actions, case.variables, library), 0)
-    return replace(case, actions=sequence.actions, variables=sequence.variables)
+    while True:
+        turned = {"phi": rng.uniform(-3, 3), "v": 0.0}
+        drawn = _chain("detour", actions, [_place(rng, turned), _place(rng, turned), _place(rng, turned)])
+        free = [replace(v, value=None, lower=0.0, upper=0.3) if v.id == 7 else v for v in drawn.variables]
+        given = ActionSequence(drawn.actions, tuple(free), library)
+        asserted = Assertion(given, models, RefinementSettings(), rng).advance(CheckBudget(1000))
+        if isinstance(asserted, ActionSequence) and len(asserted.actions) == 3:
+            return Case("detour", asserted.actions, asserted.variables, asserted.starts)
 
 
 def _place(rng: np.random.Generator, known: dict[str, float]) -> dict[str, float]:

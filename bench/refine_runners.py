@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from executive.refinement.settings import RefinementSettings
 OURS = ("chain", "genetic", "differential")
 
 Found = list[tuple[float, float]]  # (milliseconds, best value so far), in order of time
-Runner = Callable[[SequenceObjective, int, float], Found]
+Starts = Sequence[Mapping[int, float]]  # known beforehand; foreign optimisers cannot take them
+Runner = Callable[[SequenceObjective, Starts, int, float], Found]
 
 
 def runners() -> Iterator[tuple[str, Runner]]:
@@ -35,11 +36,11 @@ def runners() -> Iterator[tuple[str, Runner]]:
 def ours(name: str) -> Runner:
     """One of the executive's own solvers."""
 
-    def run(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+    def run(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
         settings = RefinementSettings(solver=name, patience=10**6, checks_max=10**6)  # type: ignore[arg-type]
         rng = np.random.default_rng(seed)
         began, found = time.perf_counter(), []
-        solver = solver_for(objective, settings, rng, np.empty((0, len(objective.ids))))
+        solver = solver_for(objective, settings, rng, objective.vectors(starts))
         while (elapsed := 1e3 * (time.perf_counter() - began)) < limit_ms and not solver.finished:
             solver.advance(CheckBudget(1))
             found.append((1e3 * (time.perf_counter() - began), solver.value))
@@ -71,7 +72,7 @@ class _Timed:
         return np.where(np.isfinite(costs), costs, 1e6)
 
 
-def _scipy(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+def _scipy(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
     from scipy.optimize import differential_evolution
 
     timed = _Timed(objective, limit_ms)
@@ -82,7 +83,7 @@ def _scipy(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
     return timed.found
 
 
-def _cma(objective: SequenceObjective, seed: int, limit_ms: float) -> Found:
+def _cma(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
     import cma
 
     timed, ranges = _Timed(objective, limit_ms), objective.ranges

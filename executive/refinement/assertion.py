@@ -72,6 +72,7 @@ class Assertion:
         if succeeds is None:
             return False
         if succeeds:
+            self._sequence = self._sequence.starting_from(self._examination.starts)
             self._look_at(self._position + 1)
             return True
         return self._predicted_to_fail(self._examination.best_failure)
@@ -102,6 +103,8 @@ class Assertion:
         plain, position, least = self._plain
         if least <= risk:
             self._sequence, self._position = plain, position
+        elif self._examination is not None:
+            self._sequence = self._sequence.starting_from(self._examination.starts)
         self._accept(risk)
 
     def _accept(self, risk: float) -> None:

@@ -11,6 +11,8 @@ from executive.refinement.sequence import ActionSequence
 from executive.refinement.settings import RefinementSettings
 
 SAMPLES_PER_CHECK = 256
+STARTS = 6  # of the values that succeed are handed on to refinement
+NEAR = 0.05  # of the least failure probability
 
 
 class Examination:
@@ -32,6 +34,7 @@ class Examination:
         arrived = frozenset(sequence.actions[position - 1].variables) if position else frozenset()
         actions = sequence.actions[position : position + 1]
         self.best_failure = 1.0
+        self.starts: list[dict[int, float]] = []  # values by variable id that keep the limit, the surest first
         self._objective = SequenceObjective(actions, sequence.variables, models, settings, arrived)
         self._rng = rng
         self._left = settings.assertion_samples if self._objective.ids else 1
@@ -44,8 +47,11 @@ class Examination:
             if budget.spent():
                 return None
             count = min(SAMPLES_PER_CHECK, self._left)
-            said = self._objective.stages[0].predict(self._objective.ranges.draw(count, self._rng))
+            drawn = self._objective.ranges.draw(count, self._rng)
+            said = self._objective.stages[0].predict(drawn)
             failure = np.where(np.isfinite(said.worst_failure + said.duration_s), said.worst_failure, 1.0)
+            order = np.argsort(failure, kind="stable")[:STARTS]
             self.best_failure = min(self.best_failure, float(failure.min()))
+            self.starts = [self._objective.values(drawn[i]) for i in order if failure[i] <= self.best_failure + NEAR]
             self._left -= count
         return True

@@ -34,7 +34,7 @@ def greedy(sequence: ActionSequence, models: Models, settings: RefinementSetting
     for unit in sequence.units()[: settings.horizon]:
         objective = SequenceObjective(unit, sequence.variables, models, settings, arrived)
         if objective.ids:
-            solver = solver_for(objective, settings, rng, np.empty((0, len(objective.ids))))
+            solver = solver_for(objective, settings, rng, objective.vectors(sequence.starts))
             solver.advance(CheckBudget(settings.greedy_checks))
             chosen = objective.vector({}) if solver.best is None else solver.best
             values |= objective.values(chosen)

@@ -64,6 +64,10 @@ class SequenceObjective:
         middle = (self.ranges.lower + self.ranges.upper) / 2
         return np.array([values.get(i, default) for i, default in zip(self.ids, middle, strict=True)])
 
+    def vectors(self, starts: Sequence[Mapping[int, float]]) -> Array:
+        """Free vectors, shape (s, d), for several starts."""
+        return np.array([self.vector(start) for start in starts]).reshape(len(starts), len(self.ids))
+
     def values(self, candidate: Array) -> dict[int, float]:
         """Values by variable id for a candidate of shape (d,)."""
         return {identifier: float(value) for identifier, value in zip(self.ids, candidate, strict=True)}

@@ -127,8 +127,9 @@ class Refinement:
         assert self._choice is not None
         self._greedy_s = self._choice.total_s
         if self._objective.ids:
-            seeds = [seed] if self._start is None else [seed, self._objective.vector(self._start)]
-            self._solver = solver_for(self._objective, self._settings, self._rng, np.array(seeds))
+            starts = [self._greedy.values] if self._start is None else [self._greedy.values, self._start]
+            seeds = self._objective.vectors([*starts, *self._sequence.starts])
+            self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
 
     def _adopt(self, candidate: Array) -> None:
         """Make a candidate the answer, unless the one so far is better."""

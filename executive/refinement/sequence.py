@@ -6,7 +6,7 @@ actions (paper 6.2.2, Figure 12). A variable whose value is not known is *free* 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from executive.library import Action
@@ -54,12 +54,14 @@ class InstantiatedAction:
 class ActionSequence:
     """Actions in the order of execution, and the table of their variables: `variables[i].id == i`.
 
-    `library` holds the executable actions by name, from which assertion takes its detours.
+    `library` holds the executable actions by name, from which assertion takes its detours. `starts` are values by
+    variable id for which success was predicted: where a search may begin.
     """
 
     actions: tuple[InstantiatedAction, ...]
     variables: tuple[Variable, ...]
     library: Mapping[str, Action] = field(default_factory=dict)
+    starts: tuple[Mapping[int, float], ...] = ()
 
     def free(self) -> tuple[Variable, ...]:
         """The variables that are still to be chosen, by id."""
@@ -72,6 +74,15 @@ class ActionSequence:
             for variable in self.variables
         )
         return replace(self, variables=variables)
+
+    def starting_from(self, starts: Sequence[Mapping[int, float]]) -> ActionSequence:
+        """The sequence with more known of where to start: each start joined with one that it had."""
+        if not starts:
+            return self
+        had = self.starts or ({},)
+        count = max(len(had), len(starts))
+        joined = tuple({**had[i % len(had)], **starts[i % len(starts)]} for i in range(count))
+        return replace(self, starts=joined)
 
     def within(self, horizon: int) -> tuple[InstantiatedAction, ...]:
         """The next `horizon` actions; a detour counts together with the action that it leads to."""

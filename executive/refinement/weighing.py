@@ -47,7 +47,7 @@ class Weighing:
         self._solvers = []
         for sequence, end in stretches:
             objective = SequenceObjective(sequence.actions[position:end], sequence.variables, models, limited, arrived)
-            self._solvers.append(solver_for(objective, limited, rng, np.empty((0, len(objective.ids)))))
+            self._solvers.append(solver_for(objective, limited, rng, objective.vectors(sequence.starts)))
 
     def advance(self, budget: Budget) -> bool | None:
         """Whether the detour costs less than the risk; None when the budget was spent before it is clear."""
