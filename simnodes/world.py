@@ -30,7 +30,7 @@ class World:
         self.body = body
         self.time_ns = 0
         self._start, self._seed = dict(start), seed
-        self._events = tuple(sorted(events, key=lambda event: event.at_s))
+        self.events = tuple(sorted(events, key=lambda event: event.at_s))
         self._pending: list[Event] = []
         self._begun_ns: int | None = None
         self.reset()
@@ -40,7 +40,7 @@ class World:
         noise = np.random.default_rng([self._seed if seed is None else seed, NOISE_STREAM])
         self.body.reset(noise, self._start if start is None else start)
         self.time_ns = 0
-        self._pending = list(self._events)
+        self._pending = list(self.events)
         self._begun_ns = None
 
     def begin(self) -> None:

@@ -1,0 +1,72 @@
+"""Every soccer scenario from start to goal: real core, models, controllers, physics, driver and guard, in lock-step."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from executive import domains
+from executive.composition import Order, compose
+from executive.core.context import Settings
+from schemas.messages import PlanReport
+from simnodes.agilo.body import AgiloBody
+from tools.episodes import SENDER, run_episode
+from tools.sim import make_world
+
+BODY = AgiloBody()
+
+
+def play(scenario, seed, horizon=2):
+    settings = Settings(seed=seed)
+    settings = dataclasses.replace(settings, refinement=dataclasses.replace(settings.refinement, horizon=horizon))
+    context = compose(Order("soccer", scenario, settings), SENDER)
+    _, start = domains.load_scenario("soccer", scenario, np.random.default_rng([seed, 0]))
+    return run_episode(context, BODY, start, seed, make_world("agilo", scenario, seed).events)
+
+
+def done(episode):
+    return [finished.action for finished in episode.finished if finished.outcome == "done"]
+
+
+def plans(episode):
+    return [message.way for message in episode.messages if isinstance(message, PlanReport)]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("horizon", [1, 2])
+def test_ball_is_approached_and_dribbled_to_its_target(seed, horizon):
+    episode = play("approach-dribble", seed, horizon)
+    assert episode.result == "achieved"
+    assert done(episode)[-1] == "dribbleBall"
+    target = next(p for p in episode.subgoals[0].actions[-1].parameters if p.name == "xg")
+    assert episode.truth[-1].ball_x == pytest.approx(target.value, abs=0.4)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_four_waypoints_are_passed_with_speeds_that_were_chosen(seed):
+    episode = play("waypoints", seed)
+    assert episode.result == "achieved"
+    assert done(episode) == ["goToPose"] * 4
+    assert plans(episode).count("searched") == 1, "the rest are suffixes of the first plan"
+    free = {p.name for s in episode.subgoals for a in s.actions for p in a.parameters if not p.bound}
+    assert free == {"phi", "v", "phig", "vg"}
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_goal_is_reached_though_the_ball_was_moved_on_the_way(seed):
+    episode = play("moved-ball", seed)
+    assert episode.result == "achieved"
+    assert len(plans(episode)) > len(plans(play("approach-dribble", seed))), "it had to think again"
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_goal_is_reached_though_the_ball_was_kicked_away(seed):
+    episode = play("kicked-ball", seed)
+    assert episode.result == "achieved"
+    assert max(np.hypot(t.ball_vx, t.ball_vy) for t in episode.truth) > 1.0, "the kick"
+
+
+def test_same_seed_gives_the_same_episode_bit_for_bit():
+    assert play("approach-dribble", 5).messages == play("approach-dribble", 5).messages
