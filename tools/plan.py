@@ -32,10 +32,12 @@ from executive.planning import (
 )
 from executive.planning.flaw_orders import NAMED
 from executive.planning.ranking import NAMES
+from executive.planning.s_expressions import MAX_CHARACTERS
 from runtime.planner_process import PlannerProcess
 from schemas.errors import UsageError
 from tools.plan_drawing import to_dot, to_svg
 
+MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # a search that gets there has used about 1 GB
 _POLL_S = 0.002  # how often a child planner is looked at
 
@@ -59,7 +61,7 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("-h", "--heuristic", metavar="RANKING", default="",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
     add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
-        help="flaw order by name or as {n,s}LR/{l}MW_add; several take turns (default MW-Loc and LCFR-Loc-Conf)")  # fmt: skip
+        help="flaw order: a name or {n,s}LR/{l}MW_add; several take turns (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
         help="plans that the flaw order before it may generate, or 'unlimited'; without one: all")  # fmt: skip
     add("-s", "--search-algorithm", dest="search", choices=("A", "IDA"), default="A", help="A* (default) or IDA*")
@@ -141,6 +143,10 @@ def run(args: argparse.Namespace) -> int:
 
 def _read(path: Path) -> str:
     try:
+        if path.stat().st_size > MAX_BYTES:
+            raise UsageError(
+                f"{path}: {path.stat().st_size} bytes are more than the {MAX_BYTES} that a PDDL file may have"
+            )
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None

@@ -10,6 +10,7 @@ from executive.planning.language import Domain, Typed
 from executive.planning.s_expressions import Form, Node, Word, form_of, read_form, word_of
 from executive.planning.typed_lists import read_typed, variables_of
 
+MAX_TYPES = 500  # the largest competition domain has 30
 SUPPORTED = frozenset(
     {
         ":strips", ":typing", ":equality", ":negative-preconditions", ":disjunctive-preconditions",
@@ -40,7 +41,7 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     """
     form = read_form(text, source)
     name = define_name(form, "domain")
-    domain = Domain(name, {"object": ()}, (), {"=": ()}, {}, ())
+    domain = Domain(name, {"object": ()}, {"object": frozenset({"object"})}, (), {}, {}, ())
     for part in form.items[2:]:
         domain = _declare(form_of(part, "a part such as (:action ...)"), domain)
     actions = tuple(read_action(part, domain) for part in form.items[2:] if isinstance(part, Form) and _is_action(part))
@@ -70,7 +71,8 @@ def _declare(form: Form, domain: Domain) -> Domain:
             check_requirements(rest)
             return domain
         case ":types":
-            return replace(domain, types=_types(rest))
+            types = _types(form)
+            return replace(domain, types=types, ancestors=_ancestors(types))
         case ":constants":
             return replace(domain, constants=read_typed(rest, domain.types))
         case ":predicates":
@@ -93,15 +95,30 @@ def check_requirements(nodes: list[Node]) -> None:
             raise node.place.unsupported(f"the requirement {word}")
 
 
-def _types(nodes: list[Node]) -> Mapping[str, tuple[str, ...]]:
+def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
     types: dict[str, tuple[str, ...]] = {"object": ()}
-    for typed in read_typed(nodes, None):
+    for typed in read_typed(form.items[1:], None):
         if typed.name != "object":
             types[typed.name] = typed.types
     for parents in list(types.values()):
         for parent in parents:  # a parent that is only ever named behind a dash is a type as well
             types.setdefault(parent, ("object",))
+    if len(types) > MAX_TYPES:
+        raise form.place.error(f"more than {MAX_TYPES} types")
     return types
+
+
+def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[str]]:
+    """By type, itself and all types above it; types may go round in a circle and are then the same."""
+    ancestors = {}
+    for kind in types:
+        found, pending = {kind, "object"}, [kind]
+        while pending:
+            more = [parent for parent in types[pending.pop()] if parent not in found]
+            found.update(more)
+            pending += more
+        ancestors[kind] = frozenset(found)
+    return ancestors
 
 
 def _signatures(nodes: list[Node], domain: Domain) -> Mapping[str, tuple[Typed, ...]]:
@@ -130,6 +147,8 @@ def _without_types(nodes: list[Node]) -> list[Node]:
 
 
 def _refuse_twins(form: Form, names: list[str]) -> None:
+    seen: set[str] = set()
     for name in names:
-        if names.count(name) > 1:
+        if name in seen:
             raise form.place.error(f"the action '{name}' is declared twice")
+        seen.add(name)

@@ -28,17 +28,32 @@ class Some:
 
 
 GroundCondition = int | Every | Some
+MAX_FORMULAS = 150_000  # half a second of grounding; the competition problems at hand need 20 000
 TRUE = Every(())
 FALSE = Some(())
 
 
-class Facts:
-    """Numbers fluent facts in the order in which they are met; only ever grows."""
+class TooMuchToGround(Exception):
+    """Grounding has met more bindings or formulas than it was allowed to."""
 
-    def __init__(self, known: Iterable[Fact] = ()) -> None:
+
+class Facts:
+    """Numbers fluent facts in the order in which they are met; only ever grows, and up to a limit of work."""
+
+    def __init__(self, known: Iterable[Fact] = (), limit: int = MAX_FORMULAS) -> None:
+        """Starts with known facts; `limit` bounds the formulas that may be grounded."""
         self._numbers: dict[Fact, int] = {}
+        self._left = limit
         for fact in known:
             self.literal(fact)
+
+    def spend(self) -> None:
+        """One more formula is grounded."""
+        self._left -= 1
+        if self._left < 0:
+            raise TooMuchToGround(
+                "grounding met more formulas than its limit; are there quantifiers over many objects?"
+            )
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -87,6 +102,7 @@ def ground(formula: Formula, binding: Binding, world: World, facts: Facts, posit
       facts: Numbers for fluent facts; new ones are added.
       positive: False for the formula's negation.
     """
+    facts.spend()
     match formula:
         case Atom(predicate, terms):
             fact = (predicate, *(binding.get(term, term) for term in terms))

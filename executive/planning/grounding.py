@@ -19,6 +19,7 @@ from executive.planning.ground_formula import (
     Binding,
     Facts,
     GroundCondition,
+    TooMuchToGround,
     World,
     bindings,
     conjuncts,
@@ -27,11 +28,8 @@ from executive.planning.ground_formula import (
 from executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
 from executive.planning.problem import Problem
 
+MAX_ACTIONS = 20_000  # of a ground task; the competition problems at hand have 756 at most
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
-
-
-class TooManyBindings(Exception):
-    """Grounding has tried more bindings than it was allowed to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,18 +49,19 @@ def world_of(problem: Problem) -> World:
     touched |= {timed.literal.fact[0] for timed in problem.timed}
     static = frozenset(set(domain.predicates) - touched)
     ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
-    objects = {
-        kind: tuple(t.name for t in ordered if any(domain.is_a(own, kind) for own in t.types)) for kind in domain.types
-    }
+    objects: dict[str, list[str]] = {kind: [] for kind in domain.types}
+    for item in ordered:
+        for kind in frozenset[str]().union(*(domain.ancestors[own] for own in item.types)):
+            objects[kind].append(item.name)
     facts = frozenset(fact for fact in problem.initial if fact[0] in static)
-    return World(domain, objects, static, facts, dict(problem.values))
+    return World(domain, {kind: tuple(names) for kind, names in objects.items()}, static, facts, dict(problem.values))
 
 
 def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
     """Grounds step by step: yields None every few bindings, and the ground actions at last.
 
     Raises:
-      TooManyBindings: More than `limit` bindings of parameters were tried.
+      TooMuchToGround: More than `limit` bindings of parameters were tried.
     """
     facts = Facts()
     actions: list[GroundAction] = []
@@ -71,12 +70,14 @@ def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundAc
         for binding in _schema_bindings(schema, world):
             tried += 1
             if tried > limit:
-                raise TooManyBindings(f"grounding tried more than {limit} bindings, the last of '{schema.name}'")
+                raise TooMuchToGround(f"grounding tried more than {limit} bindings, the last of '{schema.name}'")
             if tried % CHECK_EVERY == 0:
                 yield None
             if binding is not None:
                 action = _instance(len(actions), schema, binding, world, facts, tick_s)
                 actions += [action] if action else []
+                if len(actions) > MAX_ACTIONS:
+                    raise TooMuchToGround(f"more than {MAX_ACTIONS} ground actions")
     yield GroundActions(world, tick_s, tuple(facts), tuple(actions))
 
 

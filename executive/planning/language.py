@@ -156,11 +156,13 @@ class Action:
 class Domain:
     """A planning domain.
 
-    `types` maps each type to its parents ("object" has none); `predicates` and `functions` to parameters.
+    `types` maps each type to its parents ("object" has none), `ancestors` to itself and all types above it;
+    `predicates` and `functions` map names to parameters.
     """
 
     name: str
     types: Mapping[str, tuple[str, ...]]
+    ancestors: Mapping[str, frozenset[str]]
     constants: tuple[Typed, ...]
     predicates: Mapping[str, tuple[Typed, ...]]
     functions: Mapping[str, tuple[Typed, ...]]
@@ -173,12 +175,4 @@ class Domain:
 
     def is_a(self, kind: str, ancestor: str) -> bool:
         """Whether every object of type `kind` is one of type `ancestor`."""
-        pending, seen = [kind], set[str]()
-        while pending:
-            current = pending.pop()
-            if current == ancestor:
-                return True
-            if current not in seen:
-                seen.add(current)
-                pending += self.types.get(current, ())
-        return ancestor == "object"
+        return ancestor in self.ancestors[kind]

@@ -13,6 +13,8 @@ from executive.planning.problem import Problem, TimedLiteral
 from executive.planning.s_expressions import Form, Node, Word, form_of, read_form, word_of
 from executive.planning.typed_lists import read_typed
 
+MAX_OBJECTS = 10_000
+MAX_TIMED = 200  # each is a node of every temporal network
 _METRICS = {"total-time", "makespan"}
 
 
@@ -58,6 +60,8 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
             check_requirements(rest)
         case ":objects":
             draft.objects = read_typed(rest, domain.types)
+            if len(draft.objects) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} objects")
             _refuse_constants(form, draft.objects, domain)
         case ":init":
             scope = Scope.of(domain, draft.objects)
@@ -99,6 +103,8 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
         time_s = number_of(form.items[1])
         if time_s < 0:
             raise form.items[1].place.error("expected a time of at least 0")
+        if len(draft.timed) == MAX_TIMED:
+            raise form.place.error(f"more than {MAX_TIMED} timed literals")
         draft.timed.append(TimedLiteral(time_s, _literal(form_of(form.items[2], "a literal"), scope)))
     else:
         literal = _literal(form, scope)

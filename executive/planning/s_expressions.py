@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from executive.planning.errors import PddlError, Unsupported, error_at
 
-MAX_CHARACTERS = 2_000_000  # read in under a second; the largest competition problems stay below 1 MB
+MAX_CHARACTERS = 1_000_000  # read in under a second; the problems at hand have 10 000 at most
 MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20
 
 _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")

@@ -10,8 +10,9 @@ import numpy as np
 from executive.budget import Budget
 from executive.planning.best_first import BestFirst
 from executive.planning.deepening import Deepening
+from executive.planning.ground_formula import TooMuchToGround
 from executive.planning.ground_task import make_task
-from executive.planning.grounding import GroundActions, TooManyBindings, ground_actions, shuffled, world_of
+from executive.planning.grounding import GroundActions, ground_actions, shuffled, world_of
 from executive.planning.language import Domain
 from executive.planning.lifted.schema import UnsupportedLifted
 from executive.planning.lifted.space import LiftedSpace
@@ -67,17 +68,17 @@ class Search:
 
     def _run(self) -> Iterator[Result | None]:
         settings = self._settings
+        rng = np.random.default_rng(settings.seed)
         try:
             yield from self._ground()
-        except TooManyBindings as reason:
+            grounded = self._cache.last
+            assert grounded is not None
+            if settings.random_open_conditions:
+                grounded = shuffled(grounded, rng)
+            task = make_task(self._problem, grounded, settings.action_cost)
+        except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), 0, 0)
             return
-        grounded = self._cache.last
-        assert grounded is not None
-        rng = np.random.default_rng(settings.seed)
-        if settings.random_open_conditions:
-            grounded = shuffled(grounded, rng)
-        task = make_task(self._problem, grounded, settings.action_cost)
         try:
             if settings.ground:
                 yield from self._explore(GroundSpace(task, grounded.world, settings, rng))

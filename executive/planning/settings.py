@@ -32,7 +32,7 @@ class Settings:
     weight: float = 1.0
     action_cost: OneOf["unit", "duration", "relative"] = "unit"
     node_limit: int = 100_000
-    ground_limit: int = 200_000
+    ground_limit: int = 100_000
     tolerance_s: float = 0.01
     seed: int = 0
     random_open_conditions: bool = False

@@ -64,7 +64,8 @@ def _alternatives(node: Form) -> list[Node]:
 def variables_of(form: Form, known: Mapping[str, tuple[str, ...]]) -> tuple[Typed, ...]:
     """A typed list of variables, each beginning with "?"."""
     variables = read_typed(form.items, known)
+    names = {variable.name for variable in variables}
     for item in form.items:
-        if isinstance(item, Word) and item.text in {v.name for v in variables} and item.text[0] != "?":
+        if isinstance(item, Word) and item.text in names and item.text[0] != "?":
             raise item.place.error(f"expected a variable such as ?{item.text}, found '{item.text}'")
     return variables

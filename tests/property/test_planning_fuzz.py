@@ -1,0 +1,205 @@
+"""Whatever stands in a PDDL file or in a planner's output, reading it ends in a value or in one clear error."""
+
+import random
+import time
+
+import pytest
+
+from executive.budget import CheckBudget
+from executive.planning import (
+    PddlError,
+    PlanTextError,
+    Search,
+    Settings,
+    format_links,
+    format_plan,
+    parse_domain,
+    parse_plan,
+    parse_problem,
+    validate,
+)
+from tests.planning_problems import DATA, OWN, read, solve
+from tests.unit.test_planning_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
+
+RICH = SWITCHES.replace("{unlock}", "(or (on a) (not (on b)))").replace("{finish}", "(exists (?l - lamp) (on ?l))")
+PAIRS = [
+    (RICH.replace("{effect}", "(forall (?l - lamp) (when (on ?l) (not (on ?l))))"), LAMPS.replace("{goal}", "(done)")),
+    (WORKSHOP, IRON.replace("{more}", "")),
+    (WORKSHOP, TIMED),
+    *(
+        (
+            (DATA / "own" / f"{name.rsplit('-', 1)[0]}-domain.pddl").read_text(),
+            (DATA / "own" / f"{name}.pddl").read_text(),
+        )
+        for name in OWN
+    ),
+]
+WORDS = [
+    *(
+        [
+            "(",
+            ")",
+            "and",
+            "or",
+            "not",
+            "when",
+            "forall",
+            "exists",
+            "-",
+            "=",
+            "?x",
+            "?duration",
+            "at",
+            "start",
+            "end",
+            "over",
+            "all",
+            "1",
+            "-1",
+            "1e9",
+            "0",
+        ]
+    ),
+    *(["object", "either", ":init", ":goal", ":effect", ":condition", "p1", "table1", "a", "b"]),
+]
+
+
+def mutated(text, rng):
+    """The text with a few of its tokens dropped, doubled, swapped or replaced."""
+    text = "\n".join(line.partition(";")[0] for line in text.splitlines())
+    tokens = text.replace("(", " ( ").replace(")", " ) ").split()
+    for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
+        i, j = rng.randrange(len(tokens)), rng.randrange(len(tokens))
+        match rng.randrange(6):
+            case 0 if len(tokens) > 2:
+                del tokens[i]
+            case 1:
+                tokens.insert(i, tokens[j])
+            case 2:
+                tokens[i], tokens[j] = tokens[j], tokens[i]
+            case 3:
+                tokens[i] = rng.choice(WORDS)
+            case 4:
+                tokens[i] = tokens[i][::-1] + chr(rng.randrange(1, 0x3000))
+            case _:
+                tokens[i:i] = tokens[j : j + rng.randrange(12)]
+    return " ".join(tokens)
+
+
+def survives(domain_text, problem_text, ground):
+    """Reads, plans a little and checks; returns how far it came."""
+    try:
+        domain, problem = read(domain_text, problem_text)
+    except PddlError as error:
+        return "refused" if "\n" not in str(error) else "told in several lines"
+    settings = Settings(node_limit=60, ground_limit=4000, ground=ground)
+    result = Search(domain, problem, settings).advance(CheckBudget(10_000))
+    if result is None or result.plan is None:
+        return "no plan"
+    format_plan(result.plan)
+    assert parse_plan(format_links(result.plan)).steps == result.plan.steps
+    fault = validate(result.plan, domain, problem)
+    assert fault == "", f"{fault}\n{domain_text}\n{problem_text}\n{format_plan(result.plan)}"
+    return "plan"
+
+
+def fuzz(count, seed):
+    rng = random.Random(seed)
+    seen = {"refused": 0, "no plan": 0, "plan": 0}
+    for _ in range(count):
+        domain, problem = rng.choice(PAIRS)
+        which = rng.randrange(3)
+        domain = mutated(domain, rng) if which != 1 else domain
+        problem = mutated(problem, rng) if which != 0 else problem
+        seen[survives(domain, problem, rng.random() < 0.8)] += 1
+    assert min(seen.values()) > 0, seen
+    return seen
+
+
+def test_600_mutated_files_end_in_a_plan_a_verdict_or_an_error():
+    fuzz(600, seed=1)
+
+
+@pytest.mark.slow
+def test_10000_mutated_files_end_in_a_plan_a_verdict_or_an_error():
+    fuzz(10_000, seed=2)
+
+
+def test_2000_mutated_plan_texts_are_read_or_refused():
+    rng = random.Random(3)
+    texts = [path.read_text() for path in sorted((DATA / "vhpop-output").glob("*.txt"))]
+    for _ in range(2000):
+        text = list(rng.choice(texts))
+        for _ in range(rng.randrange(1, 8)):
+            i = rng.randrange(len(text))
+            text[i : i + rng.randrange(4)] = rng.choice(
+                ["(", ")", "\n", ":", "-> ", "9", "x", "<", "", "[", "inf", "0"]
+            )
+        try:
+            plan = parse_plan("".join(text))
+        except PlanTextError:
+            continue
+        format_links(plan)
+
+
+# --- bombs ---------------------------------------------------------------------------------------
+WIDE = """(define (domain wide) (:predicates (p ?a ?b ?c ?d ?e ?f) (q))
+  (:action a :parameters (?a ?b ?c ?d ?e ?f) :precondition (q) :effect (p ?a ?b ?c ?d ?e ?f)))"""
+MANY = "(define (problem many) (:domain wide) (:objects {}) (:init (q)) (:goal (p o0 o0 o0 o0 o0 o0)))"
+DEEP_QUANTIFIERS = """(define (domain deep) (:predicates (p ?a ?b))
+  (:action a :parameters (?a ?b) :effect (p ?a ?b)))"""
+
+
+def objects(count):
+    return " ".join(f"o{n}" for n in range(count))
+
+
+BOMBS = {
+    "a million ground actions": lambda: solve(*read(WIDE, MANY.format(objects(10)))),
+    "a thousand million ground actions": lambda: solve(*read(WIDE, MANY.format(objects(32)))),
+    "quantifiers over everything": lambda: solve(
+        *read(
+            DEEP_QUANTIFIERS,
+            f"""(define (problem x) (:domain deep) (:objects {objects(60)}) (:init)
+            (:goal (forall (?a ?b ?c ?d) (or (p ?a ?b) (p ?c ?d)))))""",
+        )
+    ),
+    "nesting of 100 000": lambda: parse_domain("(" * 100_000),
+    "nested goal": lambda: read(WIDE, MANY.replace("(p o0", "(not " * 100_000 + "(p o0").format("o0")),
+    "10 MB": lambda: parse_domain("(define (domain d) " + "(:predicates (p)) " * 600_000),
+    "types in a long chain": lambda: parse_domain(
+        f"(define (domain d) (:types {' '.join(f't{n} - t{n + 1}' for n in range(60_000))}))"
+    ),
+    "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_bombs_end_in_a_limit_within_a_second(name):
+    started = time.process_time()
+    try:
+        result = BOMBS[name]()
+        assert name == "circle of types" or result.status == "limit"
+    except PddlError:
+        pass
+    assert time.process_time() - started < 1.0
+
+
+@pytest.mark.slow
+def test_bombs_stay_within_512_mb():
+    import subprocess
+    import sys
+
+    code = "from tests.property.test_planning_fuzz import *\nfor bomb in BOMBS.values():\n"
+    code += " try: bomb()\n except PddlError: pass\n"
+    code += "import resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    kilobytes = int(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True).stdout)
+    assert kilobytes < 512 * 1024
+
+
+def test_unreadable_goals_are_refused_when_they_come_from_the_bus():
+    _, problem = read(*PAIRS[-1])
+    for goal in ("", "(", "(nothing)", "(and (ball-at b1 nowhere))", "x", "(:goal (p))", "(forall (?x) )"):
+        with pytest.raises(PddlError):
+            problem.with_goal(goal)
+    assert parse_problem(PAIRS[-1][1], problem.domain) == problem
