@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from executive.actions.dubins import shortest
+from executive.actions.dubins import DubinsPath, shortest
 from executive.actions.fetch_ball import FetchBall, Stage
-from executive.actions.path_follower import Pace, Progress, project, pursuit_curvature, speed_limit
+from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
@@ -27,10 +27,11 @@ class BallBelief(PlanarBelief, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Pushing:
-    """Memory while the ball is in the rail: where on the path, the last commanded speed (m/s), a slip to mend."""
+    """Memory while the ball is in the rail: where on the path, the last command (m/s, rad/s), a slip to mend."""
 
     progress: Progress
     v: float
+    omega: float
     slipping: bool = False
 
 
@@ -43,23 +44,25 @@ class Fetching:
 
 @dataclass(frozen=True, slots=True)
 class DribbleBall:
-    """Pure pursuit of a Dubins path, gentle enough for the rail, with feedback from the ball's slip in it."""
+    """Follows a Dubins path, gentle enough for the rail, with feedback from the ball's slip in it."""
 
     fetch: FetchBall
     in_rail_m: float  # axle to ball
-    radius_m: float = 0.55
+    radii_m: tuple[float, ...] = (0.42, 0.55, 0.75)  # of bends: the tighter, the slower
     v_max_mps: float = 0.75
-    bend_radps: float = 0.63  # what bends are planned for
+    bend_radps: float = 0.64  # what bends are planned for
     omega_max_radps: float = 0.70  # the rest is for corrections; the rail holds 0.75 for ever
+    yaw_radps2: float = 1.0  # the ball must follow
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
-    braking_mps2: float = 0.30  # the ball must not roll out of the rail: it slows by 0.53 by itself
+    braking_mps2: float = 0.35  # the ball must not roll out of the rail: it slows by 0.53 by itself
     bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
     bending_radps: float = 0.15  # turning faster than this counts as a bend
-    lookahead_m: float = 0.28
+    preview_s: float = 0.3  # turning lags so far behind the command
+    settle_m: float = 0.5
     run_out_m: float = 0.15  # straight end of every path
-    slip_aside_m: float = 0.025  # so far aside or ahead of the rail's bottom the ball is slipping out
-    slip_ahead_m: float = 0.06  # the camera sees how far aside it is twice as well
+    slip_aside_m: float = 0.05  # so far aside or ahead of the rail's bottom the ball is slipping out
+    slip_ahead_m: float = 0.09  # the camera sees how far aside it is twice as well
     mended_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
     chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
@@ -68,7 +71,7 @@ class DribbleBall:
     seated_aside_m: float = 0.035
     off_path_m: float = 0.35  # plan a new path
     near_m: float = 0.25
-    reached_m: float = 0.03
+    reached_m: float = 0.05
     heading_rad: float = 0.45
     speed_mps: float = 0.10
 
@@ -84,33 +87,49 @@ class DribbleBall:
         if not isinstance(memory, Pushing) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
             return self._retrieve(memory.stage if isinstance(memory, Fetching) else "chase", belief, ball)
         if not isinstance(memory, Pushing):
-            memory = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v))
+            memory = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v), belief.omega)
         return self._push(memory, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
-        """A new path that can be driven from this speed on; its end lies before the goal and is run out straight."""
+        """The quickest path, of several radii, that can be driven from this speed on.
+
+        Its end lies before the goal and is run out straight.
+        """
         x, y, phi = goal[0], goal[1], goal[2]
         end = (x - self.run_out_m * math.cos(phi), y - self.run_out_m * math.sin(phi), phi)
-        radius = max(self.radius_m, v / self.bend_radps)
-        return Progress(shortest((pose.x, pose.y, pose.phi), end, radius).extended(self.run_out_m), 0.0)
+        start = (pose.x, pose.y, pose.phi)
+        tightest = v / self.bend_radps
+        radii = [radius for radius in self.radii_m if radius >= tightest] or [tightest]
+        paths = [shortest(start, end, radius) for radius in radii]
+        return Progress(min(paths, key=self._driving_s).extended(self.run_out_m), 0.0)
+
+    def _driving_s(self, path: DubinsPath) -> float:
+        """Roughly how long a path takes."""
+        bend, straight = self.bend_radps * path.radius, 0.85 * self.v_max_mps
+        return sum(length / (bend if turn else straight) for turn, length in path.pieces)
 
     def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
-        progress, aside = project(memory.progress, pose, 0.3)
+        progress, off = project(memory.progress, pose, 0.3)
         if self._arrived(progress, belief, goal):
             return Control(memory, (goal[3], 0.0), "done")
         slipping = self._slips(ball, memory.slipping)
-        if abs(aside) > self.off_path_m or self._missed(progress, pose, goal):
+        if abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
             progress = self._plan(pose, memory.v, goal)
         pace = self._pace(progress.path.radius)
         limit = speed_limit(progress, goal[3], pace)
-        omega = pursuit_curvature(progress, pose, self.lookahead_m) * max(belief.v, 0.1)
+        speed = max(belief.v, 0.1)
+        omega = speed * tracking_curvature(progress, off, speed * self.preview_s, self.settle_m)
         if slipping:
             limit = min(self.v_max_mps, limit + self.catch_up_mps)
             omega = self.chase_radps * math.atan2(ball.left, ball.ahead)
         v = self._ramp(memory.v, limit, abs(belief.omega) > self.bending_radps)
         bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
-        return Control(Pushing(progress, v, slipping), (v, max(-bound, min(bound, omega))))
+        omega = max(-bound, min(bound, omega))
+        if not slipping:
+            step = self.yaw_radps2 * TICK_S
+            omega = max(memory.omega - step, min(memory.omega + step, omega))
+        return Control(Pushing(progress, v, omega, slipping), (v, omega))
 
     def _slips(self, ball: BallTrack, before: bool) -> bool:
         """Whether the ball is leaving the rail, or has been and is not back at the bottom."""

@@ -1,4 +1,4 @@
-"""Pure pursuit along a bounded-curvature path: where on it the robot is, where to steer, how fast it may go."""
+"""Following a bounded-curvature path: where on it the robot is, how to steer, how fast it may go."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from executive.actions.dubins import DubinsPath
+from executive.belief.angles import difference
 from executive.belief.planar_ekf import Pose
 
 BEND_RESERVE_M = 0.15  # braking ends so far before a bend
@@ -24,25 +25,37 @@ class Progress:
         return self.path.length - self.s
 
 
-def project(progress: Progress, pose: Pose, reach_m: float) -> tuple[Progress, float]:
-    """Move the progress to where the robot is now, at most `reach_m` on; and how far it is aside, m, left positive."""
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Where the robot is against the path: m aside, left positive, and rad turned left of the path's heading."""
+
+    aside_m: float
+    turned: float
+
+
+def project(progress: Progress, pose: Pose, reach_m: float) -> tuple[Progress, Deviation]:
+    """Move the progress to where the robot is now, at most `reach_m` on."""
     s = progress.s
-    aside = 0.0
     for _ in range(2):  # the path is smooth: two tangent steps are within a millimetre
         x, y, heading, _ = progress.path.at(s)
-        c, si = math.cos(heading), math.sin(heading)
-        dx, dy = pose.x - x, pose.y - y
-        s += max(-reach_m, min(reach_m, c * dx + si * dy))
-        aside = c * dy - si * dx
-    return Progress(progress.path, max(progress.s, s)), aside
+        along = math.cos(heading) * (pose.x - x) + math.sin(heading) * (pose.y - y)
+        s = max(progress.s, min(progress.s + reach_m, s + along))
+    x, y, heading, _ = progress.path.at(s)
+    aside = math.cos(heading) * (pose.y - y) - math.sin(heading) * (pose.x - x)
+    return Progress(progress.path, s), Deviation(aside, difference(pose.phi, heading))
 
 
-def pursuit_curvature(progress: Progress, pose: Pose, lookahead_m: float) -> float:
-    """Curvature (1/m, left positive) of the arc from the pose to the path's point `lookahead_m` further on."""
-    x, y, _, _ = progress.path.at(progress.s + lookahead_m)
-    dx, dy = x - pose.x, y - pose.y
-    left = math.cos(pose.phi) * dy - math.sin(pose.phi) * dx
-    return 2.0 * left / max(dx * dx + dy * dy, 0.25 * lookahead_m * lookahead_m)
+def tracking_curvature(progress: Progress, deviation: Deviation, preview_m: float, settle_m: float) -> float:
+    """Curvature (1/m, left positive) that follows the path and takes deviations back critically damped.
+
+    Args:
+      progress: Where on the path the robot is.
+      deviation: How far off it is.
+      preview_m: How far the robot goes until its turning has followed.
+      settle_m: Length over which a deviation decays.
+    """
+    ahead = progress.path.at(progress.s + preview_m)[3]
+    return ahead - deviation.aside_m / settle_m**2 - 2.0 * deviation.turned / settle_m
 
 
 @dataclass(frozen=True, slots=True)

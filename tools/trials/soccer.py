@@ -25,8 +25,8 @@ BELIEF_SIGMA_RAD = 0.015
 BALL_SIGMA_M = 0.02
 DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
 DRIBBLE_Y_M = 1.8
-DRIBBLE_M = (0.8, 3.2)  # from the ball to its target
-DRIBBLE_ASIDE_RAD = 1.8  # the target's heading off the line to it
+DRIBBLE_M = (0.6, 2.7)  # from the ball to its target
+DRIBBLE_ASIDE_RAD = 1.5  # the target's heading off the line to it
 
 
 @dataclass(frozen=True, slots=True)
