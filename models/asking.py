@@ -1,17 +1,18 @@
-"""Asks loaded models: random arguments in a card's ranges, and a distilled tree of what any model says."""
+"""Asks loaded models: random arguments in a card's ranges, and a tree distilled from what any model says."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
+from sklearn.tree import DecisionTreeRegressor
 
 from models.card import Card
 from models.distilling import distil
+from models.failure_tree import splits_of
 from models.features import SPACES, FeatureSpace
 from models.linear_tree import LinearTree
 from models.runtime import OnnxDuration, OnnxSuccess
+from models.split_tree import SplitTree
 
 Array = NDArray[np.float64]
 ROWS = 30_000
@@ -28,21 +29,21 @@ def random_arguments(card: Card, count: int, rng: np.random.Generator) -> Array:
     return rng.uniform(lower, upper, (count, len(lower)))
 
 
-def distilled(model: OnnxDuration | OnnxSuccess, rng: np.random.Generator) -> tuple[LinearTree, float]:
-    """A tree of at most 64 leaves that says what the model says, and by how much it differs on fresh arguments.
-
-    For a success model the "seconds" of the tree are probabilities.
-    """
-    arguments = random_arguments(model.card, ROWS, rng)
-    features = space_of(model.card)(arguments)
-    tree = distil(lambda _: _answers(model, arguments), features)
-    fresh = random_arguments(model.card, ROWS // 10, rng)
-    off = np.abs(tree.predict(space_of(model.card)(fresh)) - _answers(model, fresh)[0])
-    return tree, float(np.nanmean(off))
+def distilled_duration(model: OnnxDuration, rng: np.random.Generator) -> tuple[LinearTree, float]:
+    """A tree of at most 64 leaves that says what the model says, and by how many seconds it differs elsewhere."""
+    space = space_of(model.card)
+    arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
+    tree = distil(lambda _: model.predict(arguments), space(arguments))
+    return tree, float(np.nanmean(np.abs(tree.predict(space(fresh)) - model.predict(fresh)[0])))
 
 
-def _answers(model: OnnxDuration | OnnxSuccess, arguments: Array) -> tuple[NDArray[Any], NDArray[Any]]:
-    if isinstance(model, OnnxDuration):
-        return model.predict(arguments)
-    probability = model.probability(arguments)
-    return probability, np.sqrt(probability * (1 - probability))
+def distilled_success(model: OnnxSuccess, rng: np.random.Generator) -> tuple[SplitTree, NDArray[np.float32], float]:
+    """A decision tree of at most 24 leaves with their probabilities, and how much it differs elsewhere."""
+    space = space_of(model.card)
+    arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
+    grown = DecisionTreeRegressor(max_leaf_nodes=24, min_samples_leaf=100, random_state=0)
+    grown.fit(space(arguments), model.probability(arguments))
+    splits = splits_of(grown)
+    success = grown.tree_.value[grown.tree_.children_left == -1, 0, 0].astype(np.float32)
+    off = np.abs(success[splits.leaf_of(space(fresh))] - model.probability(fresh))
+    return splits, success, float(np.nanmean(off))

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, ClassifierMixin
-from sklearn.tree import DecisionTreeClassifier
+from sklearn.tree import BaseDecisionTree, DecisionTreeClassifier
 from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
@@ -132,7 +132,7 @@ def _calibrated(
     return ((fresh[0] + PRIOR_ROWS * prior) / (fresh[1] + PRIOR_ROWS)).astype(np.float32)
 
 
-def splits_of(grown: DecisionTreeClassifier) -> SplitTree:
+def splits_of(grown: BaseDecisionTree) -> SplitTree:
     """scikit-learn's tree in our form; its double thresholds rounded down are exact on single precision rows."""
     tree = grown.tree_
     inner = tree.children_left != LEAF

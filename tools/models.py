@@ -64,20 +64,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 def rules(model: OnnxDuration | OnnxSuccess) -> str:
     """A model as rules: those of a tree that says what the model says."""
-    from models.asking import distilled, space_of
+    from models.asking import distilled_duration, distilled_success, space_of
     from models.rules import duration_rules, success_rules
 
-    tree, off = distilled(model, np.random.default_rng(0))
-    quantities = space_of(model.card).features
-    card = model.card
-    name = f"{card['robot']}/{card['action']}/{card['kind']}"
+    quantities, rng = space_of(model.card).features, np.random.default_rng(0)
     if isinstance(model, OnnxDuration):
-        said, unit = duration_rules(tree, quantities), " s"
+        tree, off = distilled_duration(model, rng)
+        said, differ = duration_rules(tree, quantities), f"{off:.3f} s"
     else:
-        at_mean = [tree.intercept[k] for k in range(tree.leaves)]
-        said, unit = success_rules(tree.splits, np.clip(np.array(at_mean, np.float32), 0, 1), quantities), ""
-    head = f"{name}: {tree.leaves} rules, which differ from the model by {off:.3f}{unit} on average"
-    return "\n\n".join([head, *said])
+        splits, success, off = distilled_success(model, rng)
+        said, differ = success_rules(splits, success, quantities), f"{100 * off:.1f} %"
+    name = "/".join(model.card[key] for key in ("robot", "action", "kind"))
+    return "\n\n".join([f"{name}: {len(said)} rules, which differ from the model by {differ} on average", *said])
 
 
 def _full(name: str) -> str:

@@ -1,0 +1,56 @@
+"""Failure models by other learners (the paper's outlook, section 8): trees, forest, network, SVM, boosting, and J48."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import numpy as np
+
+from models import learners, scores
+from models.examples import success_examples
+from models.features import SPACES
+from models.training import fit
+from tools.evaluations import fresh, weka
+from tools.evaluations.learned import PAPER_EPISODES, configure_learned
+from tools.evaluations.report import Report, tell
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate failure-learners`."""
+    configure_learned(parser, 1000)
+    parser.add_argument("--action", default="goToPose", help="which action (default %(default)s)")
+    parser.add_argument("--train", type=int, default=PAPER_EPISODES, help="episodes learned from (default %(default)s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; exit code 0."""
+    common = arguments.robot, arguments.action
+    more = arguments.seed, arguments.jobs, arguments.store
+    train = success_examples(fresh.training(*common, arguments.train, *more).episodes, 1)
+    test = success_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
+    space = SPACES["projective"]
+    observed = test.targets > 0.5
+    rows = []
+    for name in learners.SUCCESS:
+        model = fit("success", name, train, space, arguments.seed)
+        rows.append(_row(name, model.predict_proba(space(test.arguments))[:, 1], model.threshold_, observed))
+    if weka.installed():
+        predicted = weka.j48(space(train.arguments), train.targets > 0.5, space(test.arguments), learners.COST_RATIO)
+        rows.append(_row("WEKA J48", predicted.astype(float), 0.5, observed))
+    remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; cost ratio 5; fresh runs"]
+    tell(Report("failure-learners", "Failure learners", rows, remarks), arguments.json, arguments.report)
+    return 0
+
+
+def _row(name: str, probability: Any, threshold: float, observed: Any) -> dict[str, Any]:
+    table = scores.confusion(probability >= threshold, observed)
+    return {
+        "learner": name,
+        "accuracy_pct": table.accuracy,
+        "missed_failures_pct": table.success_fail,
+        "false_alarms_pct": table.fail_success,
+        "even_cost_accuracy_pct": scores.confusion(probability >= 0.5, observed).accuracy,
+        "brier": float(np.mean((probability - observed) ** 2)),
+        "n": table.n,
+    }

@@ -1,0 +1,45 @@
+"""The paper's Figure 6 b: the same learner in three feature spaces; the fewer dimensions, the smaller the error."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import numpy as np
+
+from models import scores
+from models.examples import duration_examples
+from models.features import SPACES
+from models.training import fit
+from tools.evaluations import fresh
+from tools.evaluations.learned import PAPER_EPISODES, configure_learned
+from tools.evaluations.report import Report, tell
+
+ORDER = ("direct", "relative", "projective", "projective-turn")
+N_I = 5
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate feature-spaces`."""
+    configure_learned(parser, 1000)
+    parser.add_argument("--action", default="goToPose", help="which action (default %(default)s)")
+    parser.add_argument("--learner", default="linear", help="see `tailor train` (default %(default)s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; 0 when the order is the paper's: direct, relative, projective."""
+    common = arguments.robot, arguments.action
+    more = arguments.seed, arguments.jobs, arguments.store
+    train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)
+    test = duration_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
+    rows: list[dict[str, Any]] = []
+    for name in ORDER:
+        space = SPACES[name]
+        learner = fit("duration", arguments.learner, train, space, arguments.seed)
+        off = np.abs(learner.predict(space(test.arguments)) - test.targets)
+        mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))
+        rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
+    remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
+    tell(Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks), arguments.json, arguments.report)
+    errors = [row["mae_s"] for row in rows[:3]]
+    return 0 if errors == sorted(errors, reverse=True) else 1

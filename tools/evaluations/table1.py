@@ -1,0 +1,74 @@
+"""The paper's Table 1: for every action, episodes, mean duration and the duration model's error on fresh episodes."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from models import scores
+from models.episodes import DataSet
+from models.examples import duration_examples
+from models.runtime import OnnxDuration, load_robot
+from tools.evaluations import fresh
+from tools.evaluations.learned import configure_learned
+from tools.evaluations.report import Report, tell
+
+# robot, action -> training episodes, mean duration and MAE in seconds (paper Table 1, simulated where there are both)
+PAPER = {
+    ("agilo", "goToPose"): (750, 6.2, 0.22),
+    ("agilo", "dribbleBall"): (750, 7.4, 0.29),
+    ("b21", "goToPose"): (2200, 9.0, 0.52),
+    ("b21", "reach"): (2200, 2.6, 0.10),
+    ("powercube", "reach"): (1100, 2.9, 0.21),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate table1`."""
+    configure_learned(parser, 1000)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; 0 when no action's relative error is worse than the paper's."""
+    durations, _ = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
+    rows = [row(model, arguments) for _, model in sorted(durations.items())]
+    remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs, other noise"]
+    tell(Report("table1", "Table 1: duration models", rows, remarks), arguments.json, arguments.report)
+    return 0 if all(r["relative_pct"] <= r.get("paper_relative_pct", np.inf) for r in rows) else 1
+
+
+def row(model: OnnxDuration, arguments: argparse.Namespace) -> dict[str, Any]:
+    """The figures of one action."""
+    robot, action = model.card["robot"], model.card["action"]
+    data = fresh.evaluation(robot, action, arguments.episodes, arguments.seed, arguments.jobs, arguments.store)
+    mae, ci, bias = error(model, data, arguments.seed)
+    mean = float(np.mean([episode.duration_s for episode in data.episodes if episode.finished]))
+    figures = {
+        "robot": robot,
+        "action": action,
+        "training_episodes": model.card["episodes"]["finished"],
+        "episodes": len(data.episodes),
+        "mean_duration_s": mean,
+        "mae_s": mae,
+        "mae_ci95": ci,
+        "bias_s": bias,
+        "floor_s": fresh.noise_floor(robot, action, arguments.seed, arguments.jobs)["mae_s"],
+        "relative_pct": 100 * mae / mean,
+    }
+    if (robot, action) in PAPER:
+        count, paper_mean, paper_mae = PAPER[robot, action]
+        relative = 100 * paper_mae / paper_mean
+        figures |= {"paper_episodes": count, "paper_mean_duration_s": paper_mean, "paper_mae_s": paper_mae}
+        figures |= {"paper_relative_pct": relative}
+    return figures
+
+
+def error(model: OnnxDuration, data: DataSet, seed: int) -> tuple[float, tuple[float, float], float]:
+    """MAE in seconds with its 95 % interval over episodes, and bias (predicted minus observed)."""
+    rows = duration_examples([episode for episode in data.episodes if episode.finished], 1)
+    off = model.predict(rows.arguments)[0] - rows.targets
+    mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
+    return mae, ci, float(off.mean())
