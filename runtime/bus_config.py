@@ -15,6 +15,7 @@ DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a partner that is silent for so long is gone
 QUEUE_SIZE = 16  # zenoh's 2 loses the tail of a burst under load
 CONNECT_MS = 3000
+RETRY_MS = 200  # zenoh's own back-off goes up to 4 s; data is to be back within a second
 PRIORITIES = (
     "control",
     "real_time",
@@ -60,5 +61,10 @@ def router(listen: str) -> str:
 
 def client(connect: str, timeout_ms: int = CONNECT_MS) -> str:
     """JSON of a client of the router at `connect`; it listens nowhere and reconnects when the router comes back."""
-    connecting = {"endpoints": [check_endpoint(connect)], "timeout_ms": timeout_ms, "exit_on_failure": True}
+    connecting = {
+        "endpoints": [check_endpoint(connect)],
+        "timeout_ms": timeout_ms,
+        "exit_on_failure": True,
+        "retry": {"period_init_ms": RETRY_MS, "period_max_ms": RETRY_MS, "period_increase_factor": 1},
+    }
     return json.dumps(_base("client") | {"connect": connecting, "listen": {"endpoints": []}})

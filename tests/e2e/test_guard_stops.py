@@ -10,7 +10,6 @@ import pytest
 from schemas.messages import DriverState
 from tests.e2e.bus_system import bus_system, wait_until
 
-TRIES = 20
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period of the executive
 EXECUTIVE = "tests.e2e.stand_in_executive"
 
@@ -43,10 +42,11 @@ def stop_time(trace, killed_s):
     return wait_until(lambda: stopped_at(trace, killed_s), 2.0, "robot at rest") - killed_s
 
 
-def test_robot_stops_within_300_ms_after_executive_is_killed(system, record_property):
+@pytest.mark.parametrize("tries", [3, pytest.param(20, marks=pytest.mark.slow)])
+def test_robot_stops_within_300_ms_after_executive_is_killed(system, tries):
     _, endpoint, start, trace = system
     phases, times = random.Random(1), []
-    for _ in range(TRIES):
+    for _ in range(tries):
         executive = start(EXECUTIVE, endpoint, 0.5)
         wait_until(moving(trace, 0.5), what="robot moves")
         time.sleep(phases.uniform(0.15, 0.35))
@@ -54,9 +54,8 @@ def test_robot_stops_within_300_ms_after_executive_is_killed(system, record_prop
         killed_s = time.monotonic()
         executive.kill()
         times.append(stop_time(trace, killed_s))
-    record_property("stop_time_max_s", max(times))
     print(
-        f"\nkill -9 to zero at the guard, {TRIES} tries: max {max(times) * 1e3:.0f} ms, min {min(times) * 1e3:.0f} ms"
+        f"\nkill -9 to zero at the guard, {tries} tries: max {max(times) * 1e3:.0f} ms, min {min(times) * 1e3:.0f} ms"
     )
     assert max(times) <= LIMIT_S
     assert min(times) > 0.15, "a lost command must not stop the robot"

@@ -1,0 +1,131 @@
+"""Sessions on a real router: errors in one line, questions, foreign publications, coming back, arrival times."""
+
+import threading
+import time
+
+import pytest
+
+from runtime.session import open_client, open_router
+from schemas import codec
+from schemas.errors import UsageError
+from schemas.messages import EStop, Odometry, VelocityCommand
+from tests.e2e.bus_system import free_endpoint, wait_until
+
+ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
+
+
+@pytest.fixture
+def pair():
+    codec.prime()
+    endpoint = free_endpoint()
+    with open_router(endpoint), open_client(endpoint) as a, open_client(endpoint) as b:
+        yield a, b
+
+
+def test_a_port_in_use_is_told_in_one_line():
+    endpoint = free_endpoint()
+    with open_router(endpoint), pytest.raises(UsageError, match="the port is in use"), open_router(endpoint):
+        pass
+
+
+def test_no_router_is_told_in_one_line():
+    with pytest.raises(UsageError, match="no router answers"), open_client(free_endpoint(), timeout_s=0.3):
+        pass
+
+
+@pytest.mark.parametrize("endpoint", ["", "7447", "tcp/localhost", "tcp/1.2.3.4:99999", "ftp/x:1", "tcp/a b:1"])
+def test_a_misspelt_endpoint_is_told_before_anything_is_opened(endpoint):
+    with pytest.raises(UsageError, match="expected PROTOCOL/HOST:PORT"), open_client(endpoint):
+        pass
+
+
+def test_the_newest_state_arrives_and_is_stamped_when_it_came_not_when_it_was_looked_at(pair):
+    a, b = pair
+    publisher, inbox = a.publisher("odom", "agilo"), b.inbox(["odom"], "agilo")
+    wait_until(publisher.matched)
+    errors = []
+    for _ in range(20):
+        inbox.drain()
+        publisher.publish(ODOMETRY)
+        sent_ns = time.monotonic_ns()
+        time.sleep(0.03)
+        (sample,) = inbox.drain()
+        errors.append(sample.arrival_ns - sent_ns)
+    assert (sample.sequence, sample.sender, sample.message.x) == (20, a.sender, 1.0)
+    assert sorted(errors)[10] < 5e6, "30 ms would be the time of the look"
+
+
+def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair):
+    a, b = pair
+    commands, states = a.publisher("cmd_vel", "agilo"), a.publisher("odom", "agilo")
+    inbox = b.inbox(["cmd_vel", "odom"], "agilo")
+    wait_until(lambda: commands.matched() and states.matched())
+    for number in range(5):
+        commands.publish(VelocityCommand(number, 0.1, 0.0))
+        states.publish(ODOMETRY)
+    time.sleep(0.2)
+    sequences = [(s.key, s.sequence) for s in inbox.drain()]
+    assert sorted(sequences) == [*(("agilo/cmd_vel", k) for k in range(1, 6)), ("agilo/odom", 5)]
+
+
+def test_a_put_on_a_wildcard_does_not_pass_for_a_command(pair):
+    a, b = pair
+    inbox = b.inbox(["cmd_vel"], "agilo")
+    time.sleep(0.2)
+    a._zenoh.put("agilo/*", codec.encode(VelocityCommand(0, 0.5, 0.0)))
+    wait_until(lambda: inbox.drain() or inbox.rejected, what="wildcard put")
+    assert inbox.rejected == {("agilo/cmd_vel", "other key"): 1}
+
+
+def test_a_plain_put_of_a_ros_bridge_is_heard(pair):
+    a, b = pair
+    inbox = b.inbox(["odom"], "agilo")
+    time.sleep(0.2)
+    a._zenoh.put("agilo/odom", codec.encode(ODOMETRY))
+    (sample,) = wait_until(inbox.drain, what="plain put")
+    assert (sample.sequence, sample.sender) == (0, "")
+
+
+def test_questions_are_answered_from_a_loop(pair):
+    a, b = pair
+    questions, over = b.questions("exec/goal"), threading.Event()
+
+    def loop():
+        while not over.is_set():
+            if question := questions.poll():
+                question.accept("gladly") if question.text == "(good)" else question.refuse("no such goal")
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=loop)
+    thread.start()
+    try:
+        time.sleep(0.2)
+        assert a.ask("exec/goal", "(good)") == (True, "gladly")
+        assert a.ask("exec/goal", "(bad)") == (False, "no such goal")
+        assert a.ask("exec/none", "(good)") == (False, "nobody answers at exec/none")
+    finally:
+        over.set()
+        thread.join()
+    assert a.ask("exec/goal", "(good)", timeout_s=0.2) == (False, "no answer within 0.2 s")
+
+
+def test_clients_are_back_within_a_second_of_their_router(pair):
+    endpoint = free_endpoint()
+    router = open_router(endpoint)
+    router.__enter__()
+    with open_client(endpoint) as a, open_client(endpoint) as b:
+        publisher, inbox = a.publisher("estop", ""), b.inbox(["estop"], "")
+        wait_until(publisher.matched)
+        router.__exit__(None, None, None)
+        publisher.publish(EStop(True))
+        time.sleep(0.7)
+        assert not inbox.drain()
+        with open_router(endpoint):
+            began = time.monotonic()
+
+            def heard():
+                publisher.publish(EStop(True))
+                return inbox.drain()
+
+            wait_until(heard, what="traffic")
+            assert time.monotonic() - began < 1.0
