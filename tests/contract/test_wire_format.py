@@ -1,0 +1,59 @@
+"""The bytes on the wire, pinned: what other nodes and old recordings rely on."""
+
+from typing import get_type_hints
+
+import pytest
+
+from schemas import messages as m
+from schemas.codec import decode, encode
+from schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
+
+OWN = [kind for kind in MESSAGES if kind not in STANDARD]
+
+# A TwistStamped as CDR, field by field.
+TWIST = bytes.fromhex(
+    "00010000"  # little-endian CDR
+    "01000000" "0765cd1d"  # stamp: 1 s, 500000007 ns
+    "0a000000" "626173655f6c696e6b00" "0000"  # frame_id "base_link", padding to 4; doubles want 8
+    "000000000000d03f" "0000000000000000" "0000000000000000"  # linear: 0.25, 0, 0
+    "0000000000000000" "0000000000000000" "000000000000f8bf"  # angular: 0, 0, -1.5
+)  # fmt: skip
+
+
+def test_a_command_has_the_bytes_of_a_twist_stamped():
+    command = m.VelocityCommand(1_500_000_007, 0.25, -1.5)
+    assert encode(command) == TWIST
+    assert decode(m.VelocityCommand, TWIST) == command
+
+
+def test_big_endian_senders_are_understood():
+    bool_be = bytes.fromhex("0000000001")
+    assert decode(m.EStop, bool_be) == m.EStop(True)
+
+
+def test_an_arming_request_has_these_bytes():
+    expected = "00010000010000000300000061620000000000000500000000000000"
+    assert encode(m.ArmRequest(True, False, "ab", 5)).hex() == expected
+
+
+def test_type_hashes_are_those_of_ros_2():
+    known = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"  # of std_msgs/msg/String
+    assert typestore().hash_rihs01("std_msgs/msg/String") == known
+
+
+@pytest.mark.parametrize("kind", OWN)
+def test_a_definition_has_the_fields_of_its_message_in_their_order(kind):
+    own_part = definition(kind).split("=" * 80)[0]
+    names = [line.split()[1] for line in own_part.splitlines() if line.strip()]
+    expected = ["header" if name == "stamp_ns" else name for name in get_type_hints(kind)]
+    assert names == expected
+
+
+@pytest.mark.parametrize("kind", MESSAGES)
+def test_a_types_name_leads_back_to_it(kind):
+    assert type_of(ros_type(kind)) is kind
+    assert type_hash(kind).startswith("RIHS01_")
+
+
+def test_an_unknown_type_is_none_of_ours():
+    assert type_of("sensor_msgs/msg/Image") is None

@@ -1,0 +1,82 @@
+"""What a recorder does when the machine lets it down: the file stays readable, the bus goes on."""
+
+import json
+import subprocess
+import sys
+import time
+
+from runtime.processes import Child
+from runtime.recording import open_recording
+from schemas import codec
+from schemas.messages import Odometry
+from tests.e2e.bus_system import bus_system, wait_until
+
+MOST_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
+LIMITED = f"""
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, ({MOST_BYTES}, {MOST_BYTES}))
+from tools.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def noise(number):
+    """Odometry that does not compress away."""
+    return Odometry(number, number * 0.7310585786, -number / 7, number % 3.1, number / 11, number / 13)
+
+
+def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
+    path = tmp_path / "full.mcap"
+    with bus_system() as (session, endpoint, _), (tmp_path / "said").open("w") as said:
+        options = ["record", "-o", str(path), "--connect", endpoint]
+        recorder = Child("recorder", [sys.executable, "-c", LIMITED, *options], said)
+        try:
+            codec.prime()
+            publisher = session.publisher("odom", "agilo")
+            wait_until(publisher.matched, what="recorder")
+            slowest = 0.0
+            for number in range(3000):
+                began = time.monotonic()
+                publisher.publish(noise(number))
+                slowest = max(slowest, time.monotonic() - began)
+                time.sleep(0.001)
+            assert recorder.exit_code() is None, "it goes on"
+            assert slowest < 0.1, "the publisher never waits for the disk"
+        finally:
+            code = recorder.stop()
+    assert code == 1
+    assert "disk: File too large" in (tmp_path / "said").read_text()
+    assert path.stat().st_size <= MOST_BYTES
+    recording = open_recording(path)
+    sequences = [message.sequence for message in recording.messages()]
+    assert sequences == list(range(sequences[0], sequences[-1] + 1)), "what is there is whole"
+    assert len(sequences) > 100
+    assert recording.account.damaged_chunks == 0
+
+
+def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
+    path = tmp_path / "flood.mcap"
+    with bus_system() as (session, endpoint, start):
+        recorder = start("tools.main", "record", "--quiet", "-o", path, "--connect", endpoint)
+        publisher = session.publisher("odom", "agilo")
+        wait_until(publisher.matched, what="recorder")
+        before_mb = memory_mb(recorder.pid)
+        ends = time.monotonic() + 3.0
+        while time.monotonic() < ends:
+            publisher.publish(noise(publisher.sequence))
+        after_mb = memory_mb(recorder.pid)
+        recorder.stop(20.0)
+    sequences = [message.sequence for message in open_recording(path).messages()]
+    assert after_mb - before_mb < 80  # 32 MB of queue, and what it takes to write them
+    assert sequences == sorted(set(sequences))
+    assert len(sequences) > 2000
+    command = [sys.executable, "-m", "tools.main", "info", str(path), "--json"]
+    said = json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
+    lost = publisher.sequence - len(sequences)
+    print(f"\nflood: {publisher.sequence} sent, {lost} lost, memory +{after_mb - before_mb:.0f} MB")
+    assert said["topics"][0]["lost"] <= lost, "info tells what is missing"
+
+
+def memory_mb(pid):
+    with open(f"/proc/{pid}/status") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1000
