@@ -5,24 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from executive.library import Array
-from executive.refinement.chain import ChainSolver, blocks_of
+from executive.refinement.chain import ChainSolver, Columns, blocks_of
 from executive.refinement.differential import DifferentialEvolution
 from executive.refinement.genetic import GeneticAlgorithm
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.solver import Solver
 
+SUBGOALS_MIN = 3  # from so many on, dynamic programming beats evolution for the same number of model rows
+PARAMETERS_MAX = 2  # of one subgoal: a few candidates of more dimensions are too thin, under constraints above all
+
 
 def solver_for(
     objective: SequenceObjective, settings: RefinementSettings, rng: np.random.Generator, seeds: Array
 ) -> Solver:
-    """The solver that the settings name; "auto" takes the chain solver where the sequence is a chain.
+    """The solver that the settings name; "auto" goes by the structure of the sequence.
 
-    "chain" falls back to differential evolution likewise: what no chain solver can do is no mistake of the user's.
+    "chain" falls back to differential evolution where the sequence is no chain: no mistake of the user's.
     """
     limits = (settings.patience, settings.checks_max)
-    if settings.solver == "genetic":
+    blocks = blocks_of(objective.stages)
+    wanted = settings.solver
+    if wanted == "auto" and blocks is not None:
+        wanted = "chain" if _long_chain(blocks) else "differential"
+    if blocks is not None and (wanted == "chain" or not objective.ids):
+        return ChainSolver(objective, rng, seeds, settings.batch, *limits)
+    if wanted == "genetic":
         return GeneticAlgorithm(objective, rng, seeds)
-    if settings.solver == "differential" or blocks_of(objective.stages) is None:
-        return DifferentialEvolution(objective, rng, seeds, *limits)
-    return ChainSolver(objective, rng, seeds, settings.batch, *limits)
+    return DifferentialEvolution(objective, rng, seeds, *limits)
+
+
+def _long_chain(blocks: tuple[Columns, ...]) -> bool:
+    """Whether there are several subgoals of few parameters each."""
+    sizes = [len(block) for block in blocks if len(block)]
+    return len(sizes) >= SUBGOALS_MIN and max(sizes) <= PARAMETERS_MAX

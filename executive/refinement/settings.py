@@ -40,7 +40,7 @@ class RefinementSettings:
     assertion_depth: int = 2  # detours in a row before one action
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
     weigh_detours: bool = False  # a detour must pay: compare expected costs, failure priced at risk_cost_s
-    weighing_checks: int = 12  # batches spent on each side of that comparison
+    weighing_checks: int = 40  # batches spent on each side of that comparison
 
     def __post_init__(self) -> None:
         for name in COUNTS:

@@ -38,7 +38,7 @@ class Weighing:
         settings: RefinementSettings,
         rng: np.random.Generator,
     ) -> None:
-        limited = replace(settings, solver="auto", checks_max=settings.weighing_checks)
+        limited = replace(settings, checks_max=settings.weighing_checks)
         arrived = frozenset(direct.actions[position - 1].variables) if position else frozenset()
         stretches = (
             (accepting(direct, position, 1.0), position + 1),

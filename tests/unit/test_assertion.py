@@ -173,7 +173,7 @@ def test_detour_must_pay_when_it_is_weighed(price_s, expected):
 def test_weighing_goes_on_where_the_budget_stopped_it():
     settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=100.0)
     sliced = Assertion(FROM_THE_SIDE, PLAIN, settings, np.random.default_rng(0))
-    results = [sliced.advance(CheckBudget(3)) for _ in range(20)]
+    results = [sliced.advance(CheckBudget(3)) for _ in range(60)]
     assert results[0] is None
     assert results[-1] == asserted(FROM_THE_SIDE, settings, PLAIN)
 
