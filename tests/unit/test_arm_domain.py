@@ -57,7 +57,9 @@ def test_every_word_lies_where_reaches_were_learned(word, seed):
     assert sum(count for _, count in scenario.settings["letters"]) == len(scenario.places)
 
 
-@pytest.mark.parametrize("name", ["letter-a", "word-", "word-tailor", "word-" + "A" * 13, "letter-AB", "square"])
+@pytest.mark.parametrize(
+    "name", ["letter-a", "word-", "word-tailor", "word-" + "A" * 13, "letter-AB", "stops-", "square"]
+)
 def test_a_scenario_that_does_not_exist_is_told_with_what_does(name):
     with pytest.raises(UsageError, match="letter-A to letter-Z"):
         load(name)
@@ -79,6 +81,13 @@ def test_velocities_are_free_at_every_waypoint_but_the_last():
     bound = {(v.label, v.quantity): v.value for v in sequence.variables if v.value is not None}
     assert bound["p4", "wa"] == bound["p4", "wb"] == 0.0
     assert bound["home", "a"] == pytest.approx(start["a"])
+
+
+def test_a_hand_that_stops_has_the_same_letters_and_nothing_free():
+    (free, start), (stops, same_start) = load("word-ZO", 5), load("stops-ZO", 5)
+    assert start == same_start
+    assert [(p["a"], p["b"]) for p in free.places.values()] == [(p["a"], p["b"]) for p in stops.places.values()]
+    assert all(place["wa"] == place["wb"] == 0.0 for place in stops.places.values())
 
 
 def test_the_same_seed_writes_the_same_and_another_one_does_not():

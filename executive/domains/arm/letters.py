@@ -1,6 +1,7 @@
 """Letters and words as scenarios: strokes of a font, put into joint space, as a PDDL problem with places.
 
-`letter-A` to `letter-Z` fill the page; `word-TAILOR` writes letters side by side, smaller.
+`letter-A` to `letter-Z` fill the page; `word-TAILOR` writes letters side by side, smaller; `stops-TAILOR` comes to rest
+at every waypoint, as the upper row of the paper's Figure 13 (b).
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ LETTER_RAD = 0.8  # a letter alone: one unit of the font
 SIZES = (0.9, 1.05)  # drawn by the seed: nobody writes a letter twice alike
 HOME = (-0.85, -0.7)  # where the arm rests before it writes
 HOME_SPREAD_RAD = 0.1
+KINDS = ("letter", "word", "stops")
 MOST_LETTERS = 12  # a smaller hand could not be read
 
 
@@ -49,10 +51,9 @@ def scenarios() -> list[str]:
     return [f"letter-{letter}" for letter in sorted(font())]
 
 
-def text_of(scenario: str) -> str:
-    """What a scenario of that name writes, or "" if it is none of ours."""
-    found = re.fullmatch(f"letter-([A-Z])|word-([A-Z]{{1,{MOST_LETTERS}}})", scenario)
-    return (found[1] or found[2]) if found else ""
+def is_word(text: str) -> bool:
+    """Whether a text can be written: capitals, not too many."""
+    return re.fullmatch(f"[A-Z]{{1,{MOST_LETTERS}}}", text) is not None
 
 
 def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
@@ -61,14 +62,15 @@ def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, di
     Raises:
       UsageError: No such scenario.
     """
-    text = text_of(scenario)
-    if not text:
+    kind, _, text = scenario.partition("-")
+    if kind not in KINDS or not is_word(text) or (kind == "letter" and len(text) > 1):
         raise UsageError(
-            f"no scenario {scenario!r} in arm, expected letter-A to letter-Z, or word- and 1 to {MOST_LETTERS} capitals"
+            f"no scenario {scenario!r} in arm, expected letter-A to letter-Z, "
+            f"or word- or stops- and 1 to {MOST_LETTERS} capitals"
         )
     writing = _laid_out(text, rng)
-    (a, b) = writing.home
-    return _scenario(scenario, writing), {"a": a, "wa": 0.0, "b": b, "wb": 0.0}
+    a, b = writing.home
+    return _scenario(scenario, writing, kind == "stops"), {"a": a, "wa": 0.0, "b": b, "wb": 0.0}
 
 
 def _laid_out(text: str, rng: np.random.Generator) -> Writing:
@@ -83,12 +85,13 @@ def _laid_out(text: str, rng: np.random.Generator) -> Writing:
     return Writing(text, (HOME[0] + float(off_a), HOME[1] + float(off_b)), tuple(strokes))
 
 
-def _scenario(name: str, writing: Writing) -> Scenario:
-    """All strokes in one chain of waypoints p1, p2, …; only at the last one the arm must come to rest."""
+def _scenario(name: str, writing: Writing, stops: bool) -> Scenario:
+    """All strokes in one chain of waypoints p1, p2, …; the arm must come to rest at the last one, or at all."""
     points = [point for stroke in writing.strokes for point in stroke]
     labels = [f"p{k}" for k in range(1, len(points) + 1)]
     places = {label: {"a": a, "b": b} for label, (a, b) in zip(labels, points, strict=True)}
-    places[labels[-1]] |= {"wa": 0.0, "wb": 0.0}
+    for label in labels if stops else labels[-1:]:
+        places[label] |= {"wa": 0.0, "wb": 0.0}
     counts = tuple((letter, len(stroke)) for letter, stroke in zip(writing.text, writing.strokes, strict=True))
     return Scenario(name, _problem(labels), places, {"letters": counts, "events": ()})
 

@@ -1,0 +1,83 @@
+"""Letters in the manner of the paper's Figure 13 (b): a row for each hand, in joint space or as the pen went.
+
+The line's colour is the speed, dots are waypoints; ways to a letter's first waypoint are thin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
+
+from tools.writing.measures import pen_m
+from tools.writing.track import Written
+
+Array = NDArray[np.float64]
+
+FASTEST_RADPS = 1.0  # brightest colour
+COLOURS = "viridis"
+CELL_INCHES = 2.1
+WORD_INCHES = 9.0
+MARGIN_M = 0.2
+
+
+def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
+    """Draw a grid: one row for each hand, one column for each letter, all in joint space to one scale."""
+    count = len(rows[0])
+    figure = Figure(figsize=(CELL_INCHES * count + 1.2, CELL_INCHES * 1.3 * len(rows)), layout="constrained")
+    axes = figure.subplots(len(rows), count, squeeze=False, sharex=True, sharey=True)
+    for line, row in zip(axes, rows, strict=True):
+        for axis, said in zip(line, row, strict=True):
+            lines = _draw(axis, said, said.angles, said.waypoints)
+            axis.set_title(f"{said.duration_s:.1f} s", fontsize="medium")
+        line[0].set_ylabel(f"{row[0].title}\nlift b (rad)")
+    for axis in axes[-1]:
+        axis.set_xlabel("pan a (rad)")
+    _finish(figure, axes, lines, path)
+
+
+def draw_words(rows: Sequence[Written], path: Path) -> None:
+    """Draw a word by several hands below each other, at the scale of the page, in metres."""
+    page = pen_m(rows[0].waypoints)
+    (left, low), (right, high) = page.min(axis=0) - MARGIN_M, page.max(axis=0) + MARGIN_M
+    height = WORD_INCHES * (high - low) / (right - left) + 0.3
+    figure = Figure(figsize=(WORD_INCHES + 1.5, height * len(rows) + 0.3), layout="constrained")
+    axes = figure.subplots(len(rows), 1, squeeze=False, sharex=True, sharey=True)
+    for (axis,), said in zip(axes, rows, strict=True):
+        lines = _draw(axis, said, pen_m(said.angles), pen_m(said.waypoints))
+        axis.set_title(f"{said.title}: {said.duration_s:.1f} s", fontsize="medium")
+        axis.set(ylabel="up (m)", xlim=(left, right), ylim=(low, high))
+    axes[-1, 0].set_xlabel("right (m)")
+    _finish(figure, axes, lines, path)
+
+
+def _draw(axis: Any, said: Written, line: Array, points: Array) -> LineCollection:
+    """One piece of writing on one axis; returns its line, for the scale of colours."""
+    speed = np.linalg.norm(said.velocities, axis=1)
+    segments = np.stack((line[:-1], line[1:]), axis=1)
+    drawn = LineCollection(list(segments), cmap=COLOURS, capstyle="round")
+    drawn.set_array(0.5 * (speed[:-1] + speed[1:]))
+    drawn.set_clim(0.0, FASTEST_RADPS)
+    drawn.set_linewidths(np.where(said.pen_down()[1:], 2.4, 0.5).tolist())
+    axis.add_collection(drawn)
+    axis.autoscale_view()
+    axis.plot(*points.T, "o", color="black", markersize=3, zorder=3)
+    return drawn
+
+
+def _finish(figure: Figure, axes: Any, lines: LineCollection, path: Path) -> None:
+    for axis in axes.flat:
+        axis.set_aspect("equal")
+        axis.xaxis.set_major_locator(MultipleLocator(0.4))
+        axis.yaxis.set_major_locator(MultipleLocator(0.4))
+        axis.spines[["top", "right"]].set_visible(False)
+        axis.grid(alpha=0.2)
+    figure.colorbar(lines, ax=axes, label="joint speed (rad/s)", shrink=0.6, aspect=30, pad=0.01)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=130)

@@ -1,0 +1,62 @@
+"""Writes in lock-step, keeping all that the arm's sensors say: the whole executive, faster than real time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from executive import domains
+from executive.core.context import Settings, make_context
+from executive.library import Models
+from executive.refinement.settings import RefinementSettings
+from schemas.messages import JointState, Message
+from simnodes.body import Reading
+from simnodes.powercube.body import PowerCubeBody
+from tools.episodes import SENDER, run_episode
+from tools.writing.track import Written, written
+
+SCENARIO_STREAM = 0  # of the seed; noise is drawn from another
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """A way to write: with or without a halt at every waypoint, and how subgoals are refined."""
+
+    name: str
+    refinement: RefinementSettings
+    stops: bool = False
+
+
+class ListenedBody(PowerCubeBody):
+    """The arm's body, with an ear on its sensors."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard: list[Message] = []
+
+    def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
+        """See Body.reset; forgets what was heard."""
+        super().reset(rng, start)
+        self.heard = []
+
+    def advance(self, duration_ns: int) -> list[Reading]:
+        """See Body.advance."""
+        readings = super().advance(duration_ns)
+        self.heard += [reading.message for reading in readings if reading.topic in ("joint_states", "currents")]
+        return readings
+
+
+def write(text: str, hand: Hand, models: Models, seed: int, body: ListenedBody) -> Written:
+    """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
+    scenario, start = domains.load_scenario(
+        "arm", f"{'stops' if hand.stops else 'word'}-{text}", np.random.default_rng([seed, SCENARIO_STREAM])
+    )
+    settings = Settings(seed=seed, refinement=hand.refinement)
+    context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
+    episode = run_episode(context, body, start, seed)
+    body.command((0.0, 0.0))
+    body.advance(round(0.2e9))  # until the last state is out
+    told = [message for message in episode.messages if not isinstance(message, JointState)]  # the truth is one, too
+    return written(hand.name, text, [*body.heard, *told])

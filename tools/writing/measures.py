@@ -1,0 +1,52 @@
+"""What can be measured on a piece of writing: how well it keeps to its waypoints, and how smooth it is."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.domains.arm.robot import PEN_M
+from tools.writing.track import Written
+
+Array = NDArray[np.float64]
+GRID_S = 0.02  # of the joint states
+SMOOTHING = 5  # of them: set-points come every 0.1 s, and their corners are not the arm's
+
+
+def waypoint_errors_rad(said: Written) -> Array:
+    """How far the arm was from each waypoint when it was to pass it, shape (w,)."""
+    count = min(len(said.waypoints), len(said.arrivals_s))
+    at = [np.interp(said.arrivals_s[:count], said.times_s, said.angles[:, joint]) for joint in (0, 1)]
+    return np.linalg.norm(np.stack(at, axis=1) - said.waypoints[:count], axis=1)
+
+
+def rms_jerk(said: Written) -> float:
+    """Root of the mean squared jerk of both joints together, rad/s³, from velocities averaged over 0.1 s."""
+    return float(np.sqrt((_jerk(said) ** 2).sum(axis=1).mean()))
+
+
+def roughness(said: Written) -> float:
+    """Logarithm of the dimensionless jerk: ln(T³ / v_max² · ∫|jerk|² dt), without unit; less is smoother at any speed."""
+    square = float((_jerk(said) ** 2).sum() * GRID_S)
+    fastest = float(np.linalg.norm(said.velocities, axis=1).max())
+    return float(np.log(said.duration_s**3 / fastest**2 * square))
+
+
+def _jerk(said: Written) -> Array:
+    """rad/s³, shape (n, 2), every GRID_S."""
+    times = np.arange(0.0, said.duration_s, GRID_S)
+    joints = []
+    for joint in (0, 1):
+        even = np.interp(times, said.times_s, said.velocities[:, joint])
+        smooth = np.convolve(even, np.ones(SMOOTHING) / SMOOTHING, mode="valid")
+        joints.append(np.diff(smooth, n=2) / GRID_S**2)
+    return np.stack(joints, axis=1)
+
+
+def pen_m(angles: Array) -> Array:
+    """Where the pen is on the page, shape (n, 2) in metres: right and up, seen from behind the arm.
+
+    The page is a sphere about the shoulder, unrolled along its parallels; the pen's small offset is left out.
+    """
+    pan, lift = angles.T
+    return PEN_M * np.stack((pan * np.cos(lift), lift), axis=1)
