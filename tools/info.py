@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from runtime.recording import Recording, open_recording
-from tools.survey import Survey, percentiles, survey
+from tools.survey import Stream, Survey, percentiles, survey
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -42,19 +42,7 @@ def _told(recording: Recording, found: Survey) -> dict[str, Any]:
         "messages": sum(stream.count for stream in found.streams.values()),
         "damage": recording.account.text(),
         "drops": {key: int(count) for key, count in metadata.get("drops", {}).items()},
-        "topics": [
-            {
-                "key": s.key,
-                "type": s.ros_type,
-                "sender": s.sender,
-                "count": s.count,
-                "rate_hz": round(s.rate_hz, 2),
-                "longest_gap_s": round(s.longest_gap_ns / 1e9, 3),
-                "lost": s.lost,
-                "rejected": dict(s.rejected),
-            }
-            for s in sorted(found.streams.values(), key=lambda s: (s.key, s.first_ns))
-        ],
+        "topics": [_stream(s) for s in sorted(found.streams.values(), key=lambda s: (s.key, s.first_ns))],
         "episodes": [{"goal": goal, "result": result} for goal, result in found.results],
         "actions": [
             {"action": a.action, "outcome": a.outcome, "predicted_s": a.predicted_s, "actual_s": a.actual_s}
@@ -70,6 +58,19 @@ def _told(recording: Recording, found: Survey) -> dict[str, Any]:
         },
         "provenance": _parsed(metadata.get("provenance", {}).get("json", "{}")),
         "recorder": metadata.get("recorder", {}),
+    }
+
+
+def _stream(stream: Stream) -> dict[str, Any]:
+    return {
+        "key": stream.key,
+        "type": stream.ros_type,
+        "sender": stream.sender,
+        "count": stream.count,
+        "rate_hz": round(stream.rate_hz, 2),
+        "longest_gap_s": round(stream.longest_gap_ns / 1e9, 3),
+        "lost": stream.lost,
+        "rejected": dict(stream.rejected),
     }
 
 
