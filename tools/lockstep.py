@@ -30,15 +30,15 @@ class Trials(Protocol):
         """Random controller arguments, shape (k,)."""
         ...
 
-    def start(self, action: Action, arguments: Array) -> dict[str, float]:
-        """The body's start state for controller arguments."""
+    def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
+        """The body's start state for controller arguments, give or take what these do not tell."""
         ...
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> Belief:
         """What the robot believes in that state."""
         ...
 
-    def arguments_now(self, belief: Belief, arguments: Array) -> list[float]:
+    def arguments_now(self, action: Action, belief: Belief, arguments: Array) -> list[float]:
         """Controller arguments with the believed state in place of the start."""
         ...
 
@@ -114,7 +114,7 @@ def run_action(
       traced: Keep beliefs, truth and commands too.
     """
     action, trials = domain.actions[action_name], trials_of(domain)
-    start = trials.start(action, arguments)
+    start = trials.start(action, arguments, rng)
     belief = trials.belief(start, rng)
     body.reset(rng, start)
     memory: Any = None
@@ -123,7 +123,7 @@ def run_action(
         now_ns = tick * PERIOD_NS
         truth = body.truth()
         failure = failure or trials.failure(action, start, truth)
-        rows.append(trials.arguments_now(belief, arguments))
+        rows.append(trials.arguments_now(action, belief, arguments))
         control = action.controller(memory, now_ns, belief, arguments)
         if traced:
             trace.append(Tick(now_ns * 1e-9, belief, truth, control.command))

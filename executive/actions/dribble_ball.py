@@ -48,7 +48,7 @@ class DribbleBall:
 
     fetch: FetchBall
     in_rail_m: float  # axle to ball
-    radii_m: tuple[float, ...] = (0.42, 0.55, 0.75)  # of bends: the tighter, the slower
+    radii_m: tuple[float, ...] = (0.48, 0.55, 0.65)  # of bends: the tighter, the slower
     v_max_mps: float = 0.75
     bend_radps: float = 0.64  # what bends are planned for
     omega_max_radps: float = 0.70  # the rest is for corrections; the rail holds 0.75 for ever
@@ -58,17 +58,18 @@ class DribbleBall:
     braking_mps2: float = 0.35  # the ball must not roll out of the rail: it slows by 0.53 by itself
     bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
     bending_radps: float = 0.15  # turning faster than this counts as a bend
-    preview_s: float = 0.3  # turning lags so far behind the command
-    settle_m: float = 0.5
+    preview_s: float = 0.6  # turning lags so far behind the command
+    settle_m: float = 0.4
     run_out_m: float = 0.15  # straight end of every path
     slip_aside_m: float = 0.05  # so far aside or ahead of the rail's bottom the ball is slipping out
     slip_ahead_m: float = 0.09  # the camera sees how far aside it is twice as well
     mended_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
-    chase_radps: float = 2.0  # rad/s per rad of the ball's bearing when it slips
+    chase_radps: float = 1.0  # rad/s per rad of the ball's bearing when it slips
     lost_m: float = 0.17  # from the bottom of the rail: gone
     seated_ahead_m: float = 0.035  # pushing begins when the ball is this near to the bottom
     seated_aside_m: float = 0.035
+    anew_m: float = 0.8  # with more than this to go, a path is planned anew after a slip
     off_path_m: float = 0.35  # plan a new path
     near_m: float = 0.25
     reached_m: float = 0.05
@@ -114,7 +115,8 @@ class DribbleBall:
         if self._arrived(progress, belief, goal):
             return Control(memory, (goal[3], 0.0), "done")
         slipping = self._slips(ball, memory.slipping)
-        if abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
+        mended = memory.slipping and not slipping and progress.remaining_m > self.anew_m
+        if mended or abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
             progress = self._plan(pose, memory.v, goal)
         pace = self._pace(progress.path.radius)
         limit = speed_limit(progress, goal[3], pace)

@@ -23,6 +23,8 @@ ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would b
 BELIEF_SIGMA_M = 0.02  # of a pose that has been tracked for a while
 BELIEF_SIGMA_RAD = 0.015
 BALL_SIGMA_M = 0.02
+SHORT_M = (0.02, 0.12)  # how far from the rail the ball is when an approach has ended
+ASIDE_SIGMA_M = 0.03
 DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
 DRIBBLE_Y_M = 1.8
 DRIBBLE_M = (0.6, 2.7)  # from the ball to its target
@@ -49,16 +51,22 @@ class SoccerTrials:
             if self._sensible(places) if dribble else self._has_room(arguments):
                 return arguments
 
-    def start(self, action: Action, arguments: Array) -> dict[str, float]:
-        """Start state of the body: the ball in the rail for dribbles, else where it would be at the goal."""
+    def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
+        """Start state of the body.
+
+        An approach has the ball where it would be at the goal. A dribble begins as approaches end: the ball rests where
+        the arguments put it, and the robot is still short of it, not quite facing it.
+        """
         x, y, phi, v, xg, yg, phig, _ = arguments.tolist()
-        robot_state = {"x": x, "y": y, "phi": phi, "v": v}
         if action.name == "dribbleBall":
             c, s = math.cos(phi), math.sin(phi)
-            reach = robot.IN_RAIL_M
-            return {**robot_state, "ball_x": x + reach * c, "ball_y": y + reach * s, "ball_vx": v * c, "ball_vy": v * s}
-        reach = robot.BEHIND_BALL_M
-        return {**robot_state, "ball_x": xg + reach * math.cos(phig), "ball_y": yg + reach * math.sin(phig)}
+            ball_x, ball_y = x + robot.IN_RAIL_M * c, y + robot.IN_RAIL_M * s
+            behind, aside = robot.IN_RAIL_M + rng.uniform(*SHORT_M), ASIDE_SIGMA_M * rng.standard_normal()
+            x, y = ball_x - behind * c + aside * s, ball_y - behind * s - aside * c
+        else:
+            ball_x = xg + robot.BEHIND_BALL_M * math.cos(phig)
+            ball_y = yg + robot.BEHIND_BALL_M * math.sin(phig)
+        return {"x": x, "y": y, "phi": phi, "v": v, "ball_x": ball_x, "ball_y": ball_y}
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> SoccerBelief:
         """What the robot would believe had it been on its way for a while."""
@@ -72,14 +80,20 @@ class SoccerTrials:
         c, s = math.cos(start["phi"]), math.sin(start["phi"])
         dx, dy = start["ball_x"] - start["x"], start["ball_y"] - start["y"]
         sigma = min(BALL_SIGMA_M, 0.05 * math.hypot(dx, dy))
-        velocity = (start.get("ball_vx", 0.0), start.get("ball_vy", 0.0))
-        ball = BallTrack(c * dx + s * dy + sigma * off[3], c * dy - s * dx + sigma * off[4], *velocity, sigma**2, 0)
+        ball = BallTrack(c * dx + s * dy + sigma * off[3], c * dy - s * dx + sigma * off[4], 0.0, 0.0, sigma**2, 0)
         return replace(unknown(), pose=pose, v=start["v"], ball=ball, poses_seen=FIRST_POSES)
 
-    def arguments_now(self, belief: SoccerBelief, arguments: Array) -> list[float]:
-        """The controller arguments with the believed state in place of the start: an example to learn from."""
+    def arguments_now(self, action: Action, belief: SoccerBelief, arguments: Array) -> list[float]:
+        """The controller arguments with the believed state in place of the start: an example to learn from.
+
+        The start of a dribble is told by the ball and the robot's heading, as instantiation tells it.
+        """
         pose = belief.pose
-        return [pose.x, pose.y, pose.phi, belief.v, *arguments[XG : VG + 1].tolist()]
+        x, y = pose.x, pose.y
+        if action.name == "dribbleBall" and belief.ball_xy is not None:
+            x = belief.ball_xy[0] - robot.IN_RAIL_M * math.cos(pose.phi)
+            y = belief.ball_xy[1] - robot.IN_RAIL_M * math.sin(pose.phi)
+        return [x, y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
 
     def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
         """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""
