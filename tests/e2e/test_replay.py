@@ -4,6 +4,7 @@ import os
 import pty
 import subprocess
 import sys
+import termios
 import threading
 import time
 from dataclasses import replace
@@ -55,7 +56,8 @@ def test_keys_step_pause_and_end_a_replay(recording):
         player = subprocess.Popen(
             command(recording, endpoint, *options), stdin=theirs, stdout=subprocess.DEVNULL, cwd=ROOT
         )
-        time.sleep(2.0)
+        wait_until(lambda: not termios.tcgetattr(theirs)[3] & termios.ICANON, 30.0, "single keys")
+        time.sleep(0.3)
         assert odometry() == []
         for number in range(1, 4):
             os.write(ours, b"s")
