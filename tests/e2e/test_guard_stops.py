@@ -46,14 +46,15 @@ def stop_time(trace, killed_s):
 def test_robot_stops_within_300_ms_after_executive_is_killed(system, tries):
     _, endpoint, start, trace = system
     phases, times = random.Random(1), []
-    for _ in range(tries):
+    while len(times) < tries:
         executive = start(EXECUTIVE, endpoint, 0.5)
         wait_until(moving(trace, 0.5), what="robot moves")
         time.sleep(phases.uniform(0.15, 0.35))
-        assert moving(trace, 0.5)(), "still moving when killed"
+        still_moving = moving(trace, 0.5)()  # not so if the machine stalled the executive for 0.3 s
         killed_s = time.monotonic()
         executive.kill()
-        times.append(stop_time(trace, killed_s))
+        if still_moving:
+            times.append(stop_time(trace, killed_s))
     print(
         f"\nkill -9 to zero at the guard, {tries} tries: max {max(times) * 1e3:.0f} ms, min {min(times) * 1e3:.0f} ms"
     )
