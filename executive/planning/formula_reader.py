@@ -144,7 +144,8 @@ def read_timed(node: Node, scope: Scope) -> tuple[Condition, ...]:
         return tuple(Condition(Quantified(True, variables, c.formula), c.when) for c in inner)
     if form.head == "preference":
         raise form.place.unsupported("a preference")
-    return (Condition(read_formula(form.items[2], scope), moment_of(form)),)
+    moment = moment_of(form)
+    return (Condition(read_formula(form.items[2], scope), moment),)
 
 
 def moment_of(form: Form) -> When:
