@@ -9,7 +9,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from schemas.errors import UsageError
 Array = NDArray[np.float64]
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
 MANIFEST = "manifest.json"
+UNOBSERVED = "unobserved"  # "failure" of an episode that says nothing about success
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +127,25 @@ def read_data_set(folder: Path) -> DataSet:
             raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
         episodes.extend(_episodes(table, names))
     return DataSet(manifest, tuple(episodes), digest.hexdigest())
+
+
+def merge(sets: Sequence[DataSet]) -> DataSet:
+    """Several data sets of one action as one; the first one's manifest speaks, its ranges stand.
+
+    Raises:
+      UsageError: They are of different robots, actions or arguments.
+    """
+    first, *others = sets
+    for other in others:
+        for key in ("robot", "action"):
+            if other.manifest[key] != first.manifest[key]:
+                raise UsageError(f"data sets of {key} '{first.manifest[key]}' and '{other.manifest[key]}' do not mix")
+        if other.names != first.names:
+            raise UsageError(f"data sets with arguments {first.names} and {other.names} do not mix")
+    episodes = [replace(e, number=k) for k, e in enumerate(e for each in sets for e in each.episodes)]
+    policy = sum(len(each.episodes) for each in sets if each.manifest.get("on_policy"))
+    digest = hashlib.sha256("".join(each.sha256 for each in sets).encode()).hexdigest() if others else first.sha256
+    return DataSet({**first.manifest, "on_policy": policy}, tuple(episodes), digest)
 
 
 def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:

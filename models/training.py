@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import learners, scores
-from models.episodes import Episode
+from models.episodes import UNOBSERVED, Episode
 from models.examples import Examples, duration_examples, folds, split, success_examples
 from models.features import FeatureSpace
 from schemas.errors import UsageError
@@ -72,6 +72,7 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
     Raises:
       UsageError: Too few episodes, only one outcome, or an unknown learner.
     """
+    episodes = [episode for episode in episodes if episode.failure != UNOBSERVED]
     _check_count(episodes, "")
     if len({episode.success for episode in episodes}) < 2:
         raise UsageError("all episodes ended alike, expected some successes and some failures")

@@ -19,6 +19,8 @@ EPILOG = """\
 examples:
   tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
   tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
+  tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
+  tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
 
 Each action's episodes go to OUT/ACTION: Parquet parts, and manifest.json that says how they were made. The same seed
 gives the same bits for any number of jobs."""
@@ -34,6 +36,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=7, help="draws arguments and noise (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
+    other = parser.add_mutually_exclusive_group()
+    other.add_argument("--on-policy", nargs="+", metavar="SCENARIO", help="whole runs that refine with current models")
+    other.add_argument("--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="cut recorded runs")
+    parser.add_argument("--zoo", default="", help="models for --on-policy (default: those that ship)")
     parser.add_argument("--resume", action="store_true", help="go on where an interrupted run stopped")
     parser.add_argument("--json", action="store_true", help="print figures as JSON, no progress bar")
 
@@ -42,6 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
     name = gathering.domain_of(arguments.robot)
     out = arguments.out or Path("data") / arguments.robot
+    if arguments.recordings or arguments.on_policy:
+        return _from_runs(arguments, name, out)
     works = [
         Work(name, action, arguments.episodes, arguments.seed, out / action)
         for action in actions_of(name, arguments.actions)
@@ -62,6 +70,29 @@ def run(arguments: argparse.Namespace) -> int:
             return 130
     if arguments.json:
         print(json.dumps(figures))
+    return 0
+
+
+def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
+    """Episodes out of recordings, or out of whole runs with the current models."""
+    from tools import run_gathering
+
+    if arguments.actions:
+        raise UsageError("whole runs take no ACTION, expected none with --from and --on-policy")
+    if arguments.recordings:
+        counts = run_gathering.cut_recordings(domain, out, arguments.recordings)
+        print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
+        return 0
+    known = domains.scenarios(domain)
+    for scenario in arguments.on_policy:
+        if scenario not in known:
+            raise UsageError(f"no scenario '{scenario}' in {domain} (expected some of: {', '.join(known)})")
+    scenarios = tuple(arguments.on_policy)
+    policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
+    with Progress(console=Console(stderr=True), disable=arguments.json) as progress:
+        task = progress.add_task("runs", total=len(policy.jobs))
+        for count in run_gathering.run_policy(policy, arguments.jobs):
+            progress.update(task, advance=count)
     return 0
 
 

@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("robot", help="whose actions, as in the data sets' manifests")
     parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all data sets)")
-    parser.add_argument("--data", type=Path, help="folder with a data set per action (default: data/ROBOT)")
+    parser.add_argument("--data", type=Path, nargs="+", help="folders with a data set per action (default: data/ROBOT)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder to write models to (default: the one that ships)")
     parser.add_argument("--features", default="projective", help="feature space (default: %(default)s)")
     parser.add_argument("--learner", default="bag", help="of durations: bag, linear, m5 (default: %(default)s)")
@@ -41,9 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Train; exit code 0."""
     console = Console(stderr=True)
     rows = []
-    for folder in _data_sets(arguments):
-        with console.status(f"learning from {folder}"):
-            rows.extend(train_one(folder, arguments))
+    for action, folders in _data_sets(arguments).items():
+        with console.status(f"learning {action}"):
+            rows.extend(train_one(folders, arguments))
     if arguments.json:
         print(json.dumps(rows))
     else:
@@ -51,21 +51,21 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def train_one(folder: Path, arguments: argparse.Namespace) -> list[dict[str, Any]]:
-    """Train the models of one data set and write them to the zoo; returns what they reached in the test."""
+def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
+    """Train the models of one action and write them to the zoo; returns what they reached in the test."""
     from models import publishing, runtime, training
-    from models.episodes import read_data_set
+    from models.episodes import UNOBSERVED, merge, read_data_set
     from models.features import SPACES
 
     if arguments.features not in SPACES:
         raise UsageError(f"no feature space '{arguments.features}' (expected one of: {', '.join(SPACES)})")
-    data, space = read_data_set(folder), SPACES[arguments.features]
+    data, space = merge([read_data_set(folder) for folder in folders]), SPACES[arguments.features]
     if data.manifest["robot"] != arguments.robot:
-        raise UsageError(f"{folder}: episodes of robot '{data.manifest['robot']}', expected '{arguments.robot}'")
+        raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{arguments.robot}'")
     if data.names != tuple(quantity.name for quantity in space.arguments):
-        raise UsageError(f"{folder}: arguments {data.names}, expected {space.arguments} by features '{space.name}'")
+        raise UsageError(f"{folders[0]}: arguments {data.names}, expected {space.arguments} by features '{space.name}'")
     jobs = [("duration", arguments.learner, training.train_duration)]
-    if any(not episode.success for episode in data.episodes):
+    if any(episode.failure not in ("", UNOBSERVED) for episode in data.episodes):
         jobs.append(("success", arguments.failure_learner, training.train_success))
     rows = []
     for kind, learner, train in jobs:
@@ -77,22 +77,27 @@ def train_one(folder: Path, arguments: argparse.Namespace) -> list[dict[str, Any
     return rows
 
 
-def _data_sets(arguments: argparse.Namespace) -> list[Path]:
-    data = arguments.data or Path("data") / arguments.robot
-    found = {path.parent.name: path.parent for path in sorted(data.glob("*/manifest.json"))}
+def _data_sets(arguments: argparse.Namespace) -> dict[str, list[Path]]:
+    """Folders of each action's episodes, by action."""
+    roots = arguments.data or [Path("data") / arguments.robot]
+    found: dict[str, list[Path]] = {}
+    for path in (path for root in roots for path in sorted(root.glob("*/manifest.json"))):
+        found.setdefault(path.parent.name, []).append(path.parent)
+    said = ", ".join(map(str, roots))
     for action in arguments.actions:
         if action not in found:
-            raise UsageError(f"{data}: no episodes of '{action}' (data sets there: {', '.join(found) or 'none'})")
+            raise UsageError(f"{said}: no episodes of '{action}' (data sets there: {', '.join(found) or 'none'})")
     if not found:
-        raise UsageError(f"{data}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
-    return [found[action] for action in arguments.actions or found]
+        raise UsageError(f"{said}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
+    return {action: found[action] for action in arguments.actions or found}
 
 
 def _command(arguments: argparse.Namespace, manifest: dict[str, Any]) -> str:
     """The two commands that make the model again."""
     robot, action = arguments.robot, manifest["action"]
     gather = f"tailor gather {robot} {action} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
-    train = f"tailor train {robot} {action} --features {arguments.features} --learner {arguments.learner}"
+    data = "" if not arguments.data else " --data " + " ".join(map(str, arguments.data))
+    train = f"tailor train {robot} {action}{data} --features {arguments.features} --learner {arguments.learner}"
     return f"{gather} && {train} --failure-learner {arguments.failure_learner} --seed {arguments.seed}"
 
 

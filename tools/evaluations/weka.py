@@ -49,7 +49,7 @@ def _run(command: Sequence[str], features: NDArray[Any], targets: NDArray[Any], 
         _write(test, fresh, np.full(len(fresh), targets[0]), kind)
         name, *options = command
         java = ["java", "-Xmx1g", "-cp", str(JAR), name, "-t", str(train), "-T", str(test)]
-        model = _call([*java, "-o" if kind != "numeric" else "-v", *options]) if kind == "numeric" else ""
+        model = _call([*java, "-v", *options]) if kind == "numeric" else ""  # says how many rules there are
         return model + "\n" + _call([*java, "-p", "0", *options])
 
 
