@@ -112,7 +112,8 @@ class Browser:
         """Until a JavaScript expression holds."""
         deadline = time.monotonic() + timeout_s
         while not self.value(condition):
-            assert time.monotonic() < deadline, f"never true: {condition}"
+            state = "JSON.stringify({...document.documentElement?.dataset})"
+            assert time.monotonic() < deadline, f"never true: {condition}; the page says {self.value(state)}"
             time.sleep(0.05)
 
     def press(self, key: str, shift: bool = False) -> None:

@@ -51,6 +51,7 @@ class Feed:
         self._rows: list[Row] = []
         self._pages: set[Subscription] = set()
         self._lock = Lock()
+        self.closed = False
 
     @property
     def pages(self) -> int:
@@ -69,8 +70,9 @@ class Feed:
                 page.put(batch)
 
     def close(self) -> None:
-        """Let every page go."""
+        """Let every page go, and take no more."""
         with self._lock:
+            self.closed = True
             for page in self._pages:
                 page.let_go()
 

@@ -47,7 +47,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         host = self.headers.get("Host", "").rpartition(":")[0] or self.headers.get("Host", "")
-        if host not in OWN_NAMES:
+        if self.feed.closed:
+            self.close_connection = True  # a socket that the browser had opened ahead; an error code would be for ever
+        elif host not in OWN_NAMES:
             self.send_error(403)
         elif self.path == "/":
             self._send_document()
