@@ -42,16 +42,14 @@ def add_probability(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, 
 
 def add_tree(sink: Sink, features: str, tree: LinearTree) -> tuple[str, str]:
     """One model tree: mean and spread, shapes (n,), of features with a one (n, f + 1)."""
-    leaf = _leaf(sink, features, tree, 0)
+    leaf = _leaves(sink, features, [tree])
     mean = _formula(sink, features, leaf, [tree])
     return _flat(sink, mean), _flat(sink, str(sink.add("Gather", sink.constant(tree.spread), leaf)))
 
 
 def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str, str]:
     """A bag of k model trees: mean and standard deviation over the trees, shapes (n,), of features (n, f + 1)."""
-    offsets = np.cumsum([0, *(tree.leaves for tree in trees[:-1])])
-    leaf = sink.add("Concat", *(_leaf(sink, features, t, o) for o, t in zip(offsets, trees, strict=True)), axis=0)
-    each = _formula(sink, features, leaf, trees)  # (k, n)
+    each = _formula(sink, features, _leaves(sink, features, trees), trees)  # (k, n)
     over = sink.constant(np.array([0]))
     mean = sink.add("ReduceMean", each, over, keepdims=1)
     off = sink.add("Sub", each, mean)
@@ -59,11 +57,19 @@ def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str
     return _flat(sink, mean), str(sink.add("Sqrt", variance))
 
 
-def _leaf(sink: Sink, features: str, tree: LinearTree, first: int) -> str:
-    """Leaf numbers counted from `first`, shape (1, n); an ensemble each, for several targets cost eight times more."""
-    numbers = np.arange(first, first + tree.leaves, dtype=np.float32)  # whole numbers, exact below 2**24
-    column = sink.add("Reshape", add_steps(sink, features, [(tree.splits, numbers)]), sink.constant(np.array([1, -1])))
-    return str(sink.add("Cast", column, to=TensorProto.INT32))
+def _leaves(sink: Sink, features: str, trees: Sequence[LinearTree]) -> str:
+    """Leaf numbers, counted on from tree to tree, shape (k, n).
+
+    One ensemble for each tree: one ensemble with several targets costs eight times as much.
+    """
+    columns, first = [], 0
+    for tree in trees:
+        numbers = np.arange(first, first + tree.leaves, dtype=np.float32)  # whole numbers, exact below 2**24
+        columns.append(add_steps(sink, features, [(tree.splits, numbers)]))
+        first += tree.leaves
+    stacked = sink.add("Concat", *columns, axis=0) if len(columns) > 1 else columns[0]  # (k·n, 1)
+    rows = sink.add("Reshape", stacked, sink.constant(np.array([len(trees), -1])))
+    return str(sink.add("Cast", rows, to=TensorProto.INT32))
 
 
 def _formula(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree]) -> str:
