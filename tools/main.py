@@ -13,6 +13,7 @@ from schemas.errors import UsageError
 COMMANDS: dict[str, tuple[str, str]] = {
     "up": ("tools.up", "start a whole system: bus, simulator, executive, recorder"),
     "demo": ("tools.demo", "greedy against refined from the same seed, with a picture"),
+    "letters": ("tools.letters", "the arm writes capitals, with and without refined velocities"),
     "bus": ("tools.bus", "run the bus router alone"),
     "sim": ("tools.sim", "run a simulated robot on the bus"),
     "executive": ("tools.executive", "run the executive on the bus"),

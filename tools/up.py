@@ -15,12 +15,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
     configure_system(parser)
     parser.add_argument("--record", metavar="FILE", type=Path, help="record everything into an MCAP file")
+    parser.add_argument("--letters", metavar="TEXT", help="what the arm is to write: short for --scenario word-TEXT")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run until Ctrl-C, or with --once until the goal is achieved or has failed."""
     stop = stop_on_signals()
+    if arguments.letters:
+        arguments.scenario = f"word-{arguments.letters.upper()}"
     read = deployment(arguments)
     plan = Plan(
         order_of(arguments.domain, read), read.bus.endpoint, arguments.record, arguments.once, arguments.config or ""

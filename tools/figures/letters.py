@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 FASTEST_RADPS = 1.0  # brightest colour
 COLOURS = "viridis"
+GRID = 0.4  # rad in joint space; half of it in metres on the page
 CELL_INCHES = 2.1
 WORD_INCHES = 9.0
 MARGIN_M = 0.2
@@ -39,7 +40,7 @@ def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
         line[0].set_ylabel(f"{row[0].title}\nlift b (rad)")
     for axis in axes[-1]:
         axis.set_xlabel("pan a (rad)")
-    _finish(figure, axes, lines, path)
+    _finish(figure, axes, lines, path, GRID)
 
 
 def draw_words(rows: Sequence[Written], path: Path) -> None:
@@ -54,7 +55,7 @@ def draw_words(rows: Sequence[Written], path: Path) -> None:
         axis.set_title(f"{said.title}: {said.duration_s:.1f} s", fontsize="medium")
         axis.set(ylabel="up (m)", xlim=(left, right), ylim=(low, high))
     axes[-1, 0].set_xlabel("right (m)")
-    _finish(figure, axes, lines, path)
+    _finish(figure, axes, lines, path, GRID / 2)
 
 
 def _draw(axis: Any, said: Written, line: Array, points: Array) -> LineCollection:
@@ -71,11 +72,11 @@ def _draw(axis: Any, said: Written, line: Array, points: Array) -> LineCollectio
     return drawn
 
 
-def _finish(figure: Figure, axes: Any, lines: LineCollection, path: Path) -> None:
+def _finish(figure: Figure, axes: Any, lines: LineCollection, path: Path, grid: float) -> None:
     for axis in axes.flat:
         axis.set_aspect("equal")
-        axis.xaxis.set_major_locator(MultipleLocator(0.4))
-        axis.yaxis.set_major_locator(MultipleLocator(0.4))
+        axis.xaxis.set_major_locator(MultipleLocator(grid))
+        axis.yaxis.set_major_locator(MultipleLocator(grid))
         axis.spines[["top", "right"]].set_visible(False)
         axis.grid(alpha=0.2)
     figure.colorbar(lines, ax=axes, label="joint speed (rad/s)", shrink=0.6, aspect=30, pad=0.01)

@@ -26,7 +26,7 @@ def rms_jerk(said: Written) -> float:
 
 
 def roughness(said: Written) -> float:
-    """Logarithm of the dimensionless jerk: ln(T³ / v_max² · ∫|jerk|² dt), without unit; less is smoother at any speed."""
+    """Logarithm of the dimensionless jerk: ln(T³ / v_max² · ∫|jerk|² dt), no unit; less is smoother at any speed."""
     square = float((_jerk(said) ** 2).sum() * GRID_S)
     fastest = float(np.linalg.norm(said.velocities, axis=1).max())
     return float(np.log(said.duration_s**3 / fastest**2 * square))
