@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Generic
 
-from executive.planning.plan import Result
+from executive.planning.plan import Result, dead_end, unreachable
 from executive.planning.plan_space import P, PlanSpace
 from executive.planning.ranking import Rank
 from executive.planning.settings import FlawOrder, Settings
@@ -38,6 +38,8 @@ class BestFirst(Generic[P]):
     def __init__(self, space: PlanSpace[P], settings: Settings) -> None:
         self._space = space
         self._limit = settings.node_limit
+        self._steps = settings.step_limit
+        self._too_long = False  # whether a plan was left out for its length: then running dry proves nothing
         self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
         self.generated = 1
         self.visited = 0
@@ -47,7 +49,7 @@ class BestFirst(Generic[P]):
         start = self._space.initial()
         rank = self._space.rank(start, 0)
         if rank is None:
-            yield self._result("unsolvable", "the goal cannot be reached, not even without delete effects")
+            yield unreachable()
             return
         queues = [_Queue(n, order.limit, [(rank, start)]) for n, order in enumerate(self._orders)]
         turn = FIRST_TURN
@@ -57,7 +59,7 @@ class BestFirst(Generic[P]):
                 if queue.exhausted():
                     queues.remove(queue)
             turn *= 2
-        yield self._result("limit", "every flaw order has reached its limit of generated plans")
+        yield self._limited("every flaw order has reached its limit of generated plans")
 
     def _work(self, queue: _Queue[P], turn: int | None) -> Iterator[Result | None]:
         """Works with one flaw order until its turn is over."""
@@ -65,24 +67,32 @@ class BestFirst(Generic[P]):
         end = None if turn is None else queue.generated + turn
         while not queue.exhausted() and (end is None or queue.generated < end):
             if not plans:
-                yield self._result("unsolvable", "every partial plan has been refined to a dead end")
+                yield dead_end(self._too_long, self._steps, self.generated, self.visited)
                 return
             if self.generated >= self._limit:
-                yield self._result("limit", f"{self._limit} plans generated")
+                yield self._limited(f"{self._limit} plans generated")
                 return
             _, plan = heapq.heappop(plans)
             if space.solved(plan):
                 yield Result("solved", space.extract(plan), "", self.generated, self.visited)
                 return
-            self.visited += 1
-            for child in space.refine(plan, queue.order):
-                rank = space.rank(child, self.generated)
-                if rank is not None:
-                    heapq.heappush(plans, (rank, child))
-                    self.generated += 1
-                    queue.generated += 1
+            self._expand(plan, queue)
             yield None
 
-    def _result(self, status: str, reason: str) -> Result:
-        assert status in ("unsolvable", "limit")
-        return Result("unsolvable" if status == "unsolvable" else "limit", None, reason, self.generated, self.visited)
+    def _expand(self, plan: P, queue: _Queue[P]) -> None:
+        """Pushes all refinements of a plan; those that have become too long are left out."""
+        space = self._space
+        self.visited += 1
+        for child in space.refine(plan, queue.order):
+            rank = space.rank(child, self.generated)
+            if rank is None:
+                continue
+            if space.length(child) > self._steps:
+                self._too_long = True
+                continue
+            heapq.heappush(queue.plans, (rank, child))
+            self.generated += 1
+            queue.generated += 1
+
+    def _limited(self, reason: str) -> Result:
+        return Result("limit", None, reason, self.generated, self.visited)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Generic
 
-from executive.planning.plan import Result
+from executive.planning.plan import Result, dead_end, unreachable
 from executive.planning.plan_space import P, PlanSpace
 from executive.planning.ranking import Rank
 from executive.planning.settings import Settings
@@ -23,14 +23,14 @@ class Deepening(Generic[P]):
         self._settings = settings
         self.generated = 1
         self.visited = 0
+        self._too_long = False
 
     def run(self) -> Iterator[Result | None]:
         """Works on one plan per iteration; yields None until the result."""
         start = self._space.initial()
         rank = self._space.rank(start, 0)
         if rank is None:
-            reason = "the goal cannot be reached, not even without delete effects"
-            yield Result("unsolvable", None, reason, self.generated, self.visited)
+            yield unreachable()
             return
         for number, order in enumerate(self._settings.flaw_orders):
             limit = self.generated + order.limit if order.limit is not None else math.inf
@@ -59,15 +59,18 @@ class Deepening(Generic[P]):
                         stack.append(other)
                 yield None
             bound = beyond
-        reason = "every partial plan has been refined to a dead end"
-        yield Result("unsolvable", None, reason, self.generated, self.visited)
+        yield dead_end(self._too_long, self._settings.step_limit, self.generated, self.visited)
 
     def _children(self, plan: P, order: int) -> list[tuple[Rank, P]]:
         """The children with their ranks, the best last: it is worked on first."""
         children = []
         for child in self._space.refine(plan, order):
             rank = self._space.rank(child, self.generated)
-            if rank is not None:
-                children.append((rank, child))
-                self.generated += 1
+            if rank is None:
+                continue
+            if self._space.length(child) > self._settings.step_limit:
+                self._too_long = True
+                continue
+            children.append((rank, child))
+            self.generated += 1
         return sorted(children, key=lambda ranked: ranked[0], reverse=True)

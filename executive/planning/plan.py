@@ -76,3 +76,15 @@ class Result:
     reason: str
     generated: int
     visited: int
+
+
+def unreachable() -> Result:
+    """The proof without a search: the relaxed planning graph never reaches the goal."""
+    return Result("unsolvable", None, "the goal cannot be reached, not even without delete effects", 1, 0)
+
+
+def dead_end(too_long: bool, step_limit: int, generated: int, visited: int) -> Result:
+    """The search ran dry: a proof, unless plans were left out for their length."""
+    if too_long:
+        return Result("limit", None, f"no plan of up to {step_limit} steps", generated, visited)
+    return Result("unsolvable", None, "every partial plan has been refined to a dead end", generated, visited)

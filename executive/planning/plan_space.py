@@ -34,6 +34,10 @@ class PlanSpace(Protocol[P]):
         """Whether the plan has no flaws."""
         ...
 
+    def length(self, plan: P) -> int:
+        """The number of steps."""
+        ...
+
     def refine(self, plan: P, order: int) -> list[P]:
         """All ways to mend the flaw that the order-th flaw order chooses."""
         ...
@@ -66,6 +70,10 @@ class GroundSpace:
     def solved(self, plan: PartialPlan) -> bool:
         """No open condition, no threat."""
         return plan.open is None and plan.threats is None
+
+    def length(self, plan: PartialPlan) -> int:
+        """See `PlanSpace`."""
+        return len(plan.steps)
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """Chooses a flaw and mends it in every way."""

@@ -22,7 +22,8 @@ class Settings:
 
     An empty `rankings` is ADDR/ADDR_WORK/BUC/LIFO, or ADDR/MAKESPAN/LIFO when the problem's metric is the makespan.
     Several flaw orders take turns (round robin). `weight` is of the heuristic against the cost of the steps.
-    `ground_limit` bounds the bindings that grounding tries; `tolerance_s` is one tick of a durative plan.
+    `node_limit` bounds the plans generated, `step_limit` their steps, `ground_limit` the bindings that grounding
+    tries; `tolerance_s` is one tick of a durative plan.
     """
 
     rankings: tuple[str, ...] = ()
@@ -32,6 +33,7 @@ class Settings:
     weight: float = 1.0
     action_cost: OneOf["unit", "duration", "relative"] = "unit"
     node_limit: int = 100_000
+    step_limit: int = 200
     ground_limit: int = 100_000
     tolerance_s: float = 0.01
     seed: int = 0

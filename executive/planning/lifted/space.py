@@ -40,6 +40,10 @@ class LiftedSpace:
         """No flaws, and an object for every variable."""
         return plan.open is None and plan.threats is None and plan.bindings.completed() is not None
 
+    def length(self, plan: LiftedPlan) -> int:
+        """See `PlanSpace`."""
+        return len(plan.steps)
+
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """Chooses a flaw and mends it in every way; nothing is left to do for bindings that cannot be completed."""
         if plan.open is None and plan.threats is None:
