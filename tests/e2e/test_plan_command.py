@@ -1,0 +1,148 @@
+"""`tailor plan` as a user meets it: forms of output, exit codes, errors, an external planner."""
+
+import json
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import pytest
+
+from executive.planning import parse_plan, validate
+from tests.planning_problems import DATA, own, printed
+from tools.main import main
+
+OWN = DATA / "own"
+DOMAIN, PROBLEM = str(OWN / "kitchen-domain.pddl"), str(OWN / "kitchen-s1.pddl")
+DURATIVE = [str(OWN / "kitchen-durative-domain.pddl"), str(OWN / "kitchen-durative-s3.pddl")]
+
+
+def plan(capsys, *arguments):
+    code = main(["plan", *arguments])
+    told = capsys.readouterr()
+    return code, told.out, told.err
+
+
+def test_prints_the_plain_form(capsys):
+    assert plan(capsys, DOMAIN, PROBLEM) == (0, printed("kitchen-s1.ground.plain"), "")
+
+
+def test_links_are_the_originals_byte_for_byte(capsys):
+    assert plan(capsys, DOMAIN, PROBLEM, "--links")[1] == printed("kitchen-s1.ground.links")
+    lifted = plan(capsys, str(OWN / "soccer-domain.pddl"), str(OWN / "soccer-p1.pddl"), "--links", "--lifted")
+    assert lifted[1] == printed("soccer-p1.lifted.links")
+
+
+def test_json_says_everything(capsys):
+    code, out, _ = plan(capsys, *DURATIVE, "--json", "-h", "ADDR/MAKESPAN/LIFO", "-f", "MW-Loc")
+    answer = json.loads(out)
+    assert code == 0
+    assert answer["status"] == "solved"
+    assert answer["makespan"] == pytest.approx(28, abs=0.1)
+    assert {"id", "start", "action", "duration"} == set(answer["steps"][0])
+    assert {"producer", "literal", "consumer"} == set(answer["links"][0])
+    assert answer["generated"] > answer["visited"] > 0
+    assert answer["cpu_ms"] > 0
+    assert [2, 1] in answer["orderings"]
+
+
+def test_dot_and_svg_draw_links_and_orderings_apart(capsys):
+    soccer = [str(OWN / "soccer-typed-domain.pddl"), str(OWN / "soccer-typed-p3.pddl")]
+    _, dot, _ = plan(capsys, *soccer, "--dot")
+    assert dot.startswith('digraph "soccer-typed-p3"')
+    assert "style=dashed" in dot
+    assert 'label="(has-ball r2 b2)' in dot
+    _, svg, _ = plan(capsys, *soccer, "--svg")
+    picture = ElementTree.fromstring(svg)
+    paths = picture.findall(".//{http://www.w3.org/2000/svg}path[@marker-end]")
+    dashed = [path for path in paths if path.get("stroke-dasharray")]
+    assert 0 < len(dashed) < len(paths)
+    assert "(dribbleball r1 b1 p2 p1)" in svg
+
+
+def test_options_have_vhpops_letters_and_names(capsys):
+    options = ["-g", "-h", "ADDR/LIFO", "-f", "LCFR", "-l", "5000", "-f", "ZLIFO", "-l", "unlimited", "-s", "A", "-w2",
+               "-a", "unit", "-t", "0.1", "-r", "-S", "3", "-v", "1", "-T", "1"]  # fmt: skip
+    code, out, err = plan(capsys, DOMAIN, PROBLEM, *options)
+    assert code == 0
+    assert validate(parse_plan(out), *own("kitchen-s1")) == ""
+    assert err.startswith("generated ")
+    long = ["--ground-actions", "--heuristic", "UCPOP", "--flaw-order", "DSep-LIFO", "--limit", "100000",
+            "--search-algorithm", "IDA", "--weight", "1", "--action-cost", "DURATION", "--tolerance", "0.01",
+            "--random-open-conditions", "--seed", "1", "--verbose", "--time-limit", "1"]  # fmt: skip
+    assert plan(capsys, DOMAIN, PROBLEM, *long)[0] == 0
+
+
+# --- no plan -------------------------------------------------------------------------------------
+@pytest.fixture
+def hopeless(tmp_path):
+    path = tmp_path / "hopeless.pddl"
+    path.write_text("(define (problem hopeless) (:domain kitchen) (:objects c - cup t - place) (:goal (holding c)))")
+    return str(path)
+
+
+def test_unsolvable_and_limit_are_told_apart(capsys, hopeless):
+    code, out, err = plan(capsys, DOMAIN, hopeless)
+    assert (code, out) == (1, "")
+    assert err == "hopeless: no plan exists: the goal cannot be reached, not even without delete effects\n"
+    code, out, err = plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "-l", "100")
+    assert (code, out) == (1, "")
+    assert err == "kitchen-s3: no plan found: 100 plans generated\n"
+    assert json.loads(plan(capsys, DOMAIN, hopeless, "--json")[1])["status"] == "unsolvable"
+    assert json.loads(plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "-T", "0", "--json")[1])["status"] == "limit"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([DOMAIN, "nowhere.pddl"], "nowhere.pddl: cannot be read: No such file or directory"),
+        ([DOMAIN, DOMAIN], "kitchen-domain.pddl:2:9: expected (problem name)"),
+        ([DOMAIN, DURATIVE[1]], "expected"),
+        ([DOMAIN, PROBLEM, "-f", "FOO"], "flaw order 'FOO': expected a name"),
+        ([DOMAIN, PROBLEM, "-h", "FOO"], "ranking 'FOO' is unknown"),
+        ([DOMAIN, PROBLEM, "-l", "0"], "--limit: expected a number of plans of at least 1"),
+        ([DOMAIN, PROBLEM, "-w", "-1"], "expected a weight of at least 0"),
+        ([DOMAIN, PROBLEM, "--planner", "no-such-planner"], "planner command 'no-such-planner': cannot be started"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(capsys, arguments, message):
+    code, out, err = plan(capsys, *arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith("tailor plan: ")
+    assert err.count("\n") == 1
+    if message != "expected":
+        assert message in err
+
+
+def test_a_huge_file_is_refused_before_it_is_read(capsys, tmp_path):
+    path = tmp_path / "huge.pddl"
+    with path.open("wb") as huge:
+        huge.truncate(10_000_000)
+    code, _, err = plan(capsys, str(path), PROBLEM)
+    assert code == 2
+    assert "more than" in err
+
+
+# --- an external planner -------------------------------------------------------------------------
+@pytest.mark.parametrize("form", ["links", "plain"])
+def test_an_external_planners_plan_is_parsed_linked_and_validated(capsys, tmp_path, form):
+    program = tmp_path / "vhpop.py"
+    program.write_text(f"print({printed(f'kitchen-s1.ground.{form}')!r})")
+    code, out, _ = plan(capsys, DOMAIN, PROBLEM, "--planner", f"{sys.executable} {program}", "--json")
+    assert code == 0
+    assert {"producer": 0, "literal": "(hand-empty)", "consumer": 2} in json.loads(out)["links"]
+
+
+def test_an_external_planners_unsound_plan_is_refused(capsys, tmp_path):
+    program = tmp_path / "vhpop.py"
+    program.write_text(f"print({printed('kitchen-s1.ground.links').replace('table2', 'dock')!r})")
+    code, out, err = plan(capsys, DOMAIN, PROBLEM, "--planner", f"{sys.executable} {program}")
+    assert (code, out) == (1, "")
+    assert "unsound" in err
+
+
+def test_help_teaches():
+    told = subprocess.run(
+        [sys.executable, "-c", "from tools.main import main; main()", "plan", "--help"], capture_output=True, text=True
+    ).stdout
+    for word in ("DOMAIN", "--links", "MW-Loc", "ADDR", "Exit codes", "Figure 10"):
+        assert word in told

@@ -1,0 +1,131 @@
+"""An external planner behaves, hangs, crashes, prints garbage or floods: it never blocks and leaves no process behind."""
+
+import os
+import sys
+import time
+
+import pytest
+
+from executive.planning import PlanTextError, parse_plan, validate
+from runtime.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
+from schemas.errors import UsageError
+from tests.planning_problems import DATA, own, printed
+
+LIMIT_S = 5.0
+POLL_LIMIT_S = 0.05  # half a tick; a poll takes microseconds, the rest is for a busy machine
+
+
+def program(tmp_path, body):
+    """The command of a stand-in for vhpop."""
+    path = tmp_path / "vhpop.py"
+    path.write_text(f"import os, subprocess, sys, time\n{body}\n")
+    return f"{sys.executable} {path}"
+
+
+def run(command, limit_s=LIMIT_S):
+    """The answer, after polling as a tick would; and the longest poll in seconds."""
+    domain, problem = ((DATA / "own" / name).read_text() for name in ("kitchen-domain.pddl", "kitchen-s1.pddl"))
+    child = PlannerProcess(command, domain, problem, limit_s)
+    longest, give_up = 0.0, time.monotonic() + limit_s + 10
+    while time.monotonic() < give_up:
+        before = time.perf_counter()
+        answer = child.poll()
+        longest = max(longest, time.perf_counter() - before)
+        if answer is not None:
+            return child, answer, longest
+        time.sleep(0.005)
+    raise AssertionError("the planner never ended")
+
+
+def is_alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    with open(f"/proc/{pid}/stat") as stat:  # a zombie that nobody has waited for yet is dead enough
+        return stat.read().rpartition(")")[2].split()[0] != "Z"
+
+
+def gone(pid, within_s=2.0):
+    end = time.monotonic() + within_s
+    while is_alive(pid):
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def test_a_planner_that_behaves_well_gets_its_plan_parsed_and_validated(tmp_path):
+    text = printed("kitchen-s1.ground.links")
+    body = f"assert len(sys.argv) == 4 and sys.argv[1] == '-g', sys.argv\nopen(sys.argv[2]); sys.stdout.write({text!r})"
+    _, answer, longest = run(program(tmp_path, body) + " -g")
+    assert answer.outcome == "answered"
+    assert validate(parse_plan(answer.output), *own("kitchen-s1")) == ""
+    assert longest < POLL_LIMIT_S
+
+
+def test_a_planner_that_hangs_is_killed_with_its_whole_group(tmp_path):
+    body = """
+grandchild = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+print(";pids", os.getpid(), grandchild.pid, flush=True)
+time.sleep(60)"""
+    child, answer, longest = run(program(tmp_path, body), limit_s=1.5)
+    assert answer.outcome == "timeout"
+    pids = [int(word) for word in answer.output.split()[1:]]
+    assert len(pids) == 2
+    assert all(gone(pid) for pid in pids)
+    assert gone(child.pid)
+    assert longest < POLL_LIMIT_S
+
+
+def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
+    body = "import signal\nfor s in (2, 15, 1): signal.signal(s, signal.SIG_IGN)\ntime.sleep(60)"
+    child, answer, _ = run(program(tmp_path, body), limit_s=0.5)
+    assert answer.outcome == "timeout"
+    assert gone(child.pid)
+
+
+def test_a_planner_that_crashes_has_no_plan(tmp_path):
+    _, answer, _ = run(program(tmp_path, "os.abort()"))
+    assert answer.outcome == "answered"
+    assert "code -6" in answer.reason
+    with pytest.raises(PlanTextError):
+        parse_plan(answer.output)
+
+
+def test_a_planner_that_prints_garbage_has_no_plan(tmp_path):
+    _, answer, _ = run(program(tmp_path, "sys.stdout.buffer.write(os.urandom(5000))"))
+    assert answer.outcome == "answered"
+    with pytest.raises(PlanTextError):
+        parse_plan(answer.output)
+
+
+def test_a_planner_that_floods_is_stopped_at_a_limit(tmp_path):
+    child, answer, longest = run(program(tmp_path, "while True: sys.stdout.write('x' * 65536)"))
+    assert answer.outcome == "flood"
+    assert len(answer.output) <= MAX_OUTPUT_BYTES
+    assert gone(child.pid)
+    assert longest < 1.0
+
+
+def test_a_child_that_outlives_its_planner_is_killed(tmp_path):
+    body = """
+grandchild = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+print(grandchild.pid)"""
+    _, answer, _ = run(program(tmp_path, body))
+    assert answer.outcome == "answered"
+    assert gone(int(answer.output))
+
+
+def test_killing_early_leaves_nothing_and_may_be_repeated(tmp_path):
+    child = PlannerProcess(program(tmp_path, "time.sleep(60)"), "", "", LIMIT_S)
+    child.kill()
+    child.kill()
+    assert child.poll().outcome == "timeout"
+    assert gone(child.pid)
+
+
+@pytest.mark.parametrize("command", ["", "no-such-planner-anywhere", "/", "'unbalanced"])
+def test_a_command_that_cannot_be_started_is_told(command):
+    with pytest.raises(UsageError, match="cannot be started"):
+        PlannerProcess(command, "", "", LIMIT_S)
