@@ -132,9 +132,9 @@ class Refinement:
             self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
 
     def _adopt(self, candidate: Array) -> None:
-        """Make a candidate the answer, unless the one so far is better."""
+        """Make a candidate the answer, unless the one so far is better or greedy is nearly as good."""
         total = float(self._judge(candidate[None])[0])
-        if self._choice is not None and total >= self._choice.total_s:
+        if self._choice is not None and total >= min(self._choice.total_s, self._greedy_s - self._settings.gain_min_s):
             return
         predictions = self._judge.predict(candidate)
         self._choice = Choice(

@@ -31,6 +31,7 @@ class RefinementSettings:
     # that has arrived beside its subgoal is not sent around again
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
     risk_cost_s: float = 6.0  # seconds that a failure costs: about one more approach
+    gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for (paper 6.3.2)
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
     batch: int = 256  # rows that one check of the chain solver asks of a model, about 0.1 ms with ten bagged trees
@@ -46,7 +47,7 @@ class RefinementSettings:
         for name in COUNTS:
             if getattr(self, name) < 1:
                 raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
-        for name in ("k_std", "risk_cost_s", "energy_weight", "assertion_depth"):
+        for name in ("k_std", "risk_cost_s", "gain_min_s", "energy_weight", "assertion_depth"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise UsageError(f"refinement.{name} is {value}, expected a finite number >= 0")

@@ -133,6 +133,20 @@ def test_start_is_never_lost():
     assert again.choice.total_s <= best.choice.total_s + 1e-9
 
 
+def test_gain_that_is_too_small_leaves_the_greedy_choice():
+    def searched(gain_min_s: float) -> Refinement:
+        chosen = RefinementSettings(horizon=3, gain_min_s=gain_min_s)
+        search = Refinement(task("waypoints", 4), MODELS, chosen, np.random.default_rng(5))
+        search.advance(CheckBudget(10_000))
+        return search
+
+    gain_s = searched(0.0).report().greedy_s - searched(0.0).choice.total_s
+    assert gain_s > 0.01
+    assert searched(gain_s * 0.9).choice == searched(0.0).choice
+    greedy = searched(gain_s * 1.1)
+    assert greedy.choice.total_s == greedy.report().greedy_s
+
+
 def test_sequence_without_free_parameters_is_finished_after_one_check():
     known = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}
     fixed = sequence([approach_dribble().actions[1].action], [known, known | {"x": 1.0}])

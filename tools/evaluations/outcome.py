@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from executive.library import Domain
 from executive.refinement.settings import RefinementSettings
-from schemas.messages import SimTruth, Subgoals
+from schemas.messages import RefinementReport, SimTruth, Subgoals
 from tools.episodes import Episode
 
 PERIOD_NS = 100_000_000  # of the truth in an episode
@@ -54,6 +54,8 @@ class Outcome:
     ball_moved_m: float  # how far the ball had moved when the approach ended; 0 without an approach
     free: tuple[tuple[str, str, float, float, float], ...]  # first choice: label, quantity, lower, upper, value
     bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value
+    greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
+    refined_cost_s: float = float("nan")
 
 
 def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
@@ -74,7 +76,16 @@ def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Out
         _ball_moved_m(episode),
         free,
         bound,
+        *_costs_s(episode),
     )
+
+
+def _costs_s(episode: Episode) -> tuple[float, float]:
+    """What the first finished refinement said of the greedy choice and of its own."""
+    for message in episode.messages:
+        if isinstance(message, RefinementReport) and message.finished:
+            return message.greedy_s, message.best_s
+    return float("nan"), float("nan")
 
 
 def _situation(
