@@ -40,7 +40,7 @@ class ArmTrials:
                 arguments[velocities] = 0.0
         return arguments
 
-    def start(self, action: Action, arguments: Array) -> dict[str, float]:
+    def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
         """Start state of the body."""
         return dict(zip(STATE, arguments[: len(STATE)].tolist(), strict=True))
 
@@ -48,7 +48,7 @@ class ArmTrials:
         """What the encoders say of that state."""
         return ArmBelief(0, (start["a"], start["b"]), (start["wa"], start["wb"]), 0)
 
-    def arguments_now(self, belief: ArmBelief, arguments: Array) -> list[float]:
+    def arguments_now(self, action: Action, belief: ArmBelief, arguments: Array) -> list[float]:
         """The controller arguments with the believed state in place of the start: an example to learn from."""
         return [*named(belief.angles, belief.velocities).values(), *arguments[len(STATE) :].tolist()]
 
