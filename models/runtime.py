@@ -132,15 +132,19 @@ def _in_zoo(name: str, zoo: Path) -> Path:
     return zoo.joinpath(*parts[:2], f"{parts[2]}.onnx")
 
 
-def _session(content: bytes, path: Path) -> Any:
-    """An inference session that never starts a thread of its own."""
+def open_session(content: bytes) -> Any:
+    """An inference session that never starts a thread of its own; the runtime's own exceptions come through."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     options.log_severity_level = 3  # errors come as exceptions, too
+    return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+
+
+def _session(content: bytes, path: Path) -> Any:
     try:
-        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+        return open_session(content)
     except Exception as error:  # the runtime's own family has no common base
         raise UsageError(f"{path}: not a model that runs here ({str(error).splitlines()[0]})") from None
 

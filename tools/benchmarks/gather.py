@@ -1,0 +1,28 @@
+"""How fast episodes are gathered: simulated seconds per wall second and core."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from executive import domains
+from tools import gathering
+from tools.run_gathering import actions
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print one row an action."""
+    table = Table("action", "episodes", "mean duration", "times real time per core", title="gathering, one process")
+    for name in domains.DOMAINS:
+        robot = domains.load(name).robot
+        for action in actions(name):
+            with tempfile.TemporaryDirectory() as folder:
+                work = gathering.Work(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
+                gathering.prepare(work, resume=False)
+                parts = [gathering.run_part(work, first) for first in gathering.missing_parts(work)]
+            count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))
+            table.add_row(f"{robot}/{action}", str(count), f"{simulated / count:.1f} s", f"{simulated / wall:.0f}")
+    console.print(table)

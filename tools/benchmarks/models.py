@@ -1,0 +1,72 @@
+"""Microseconds of a prediction, features included, and seconds of a fit."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from models import learners
+from models.asking import random_arguments
+from models.card import Card
+from models.features import SPACES
+from models.onnx_export import export_duration
+from models.runtime import OnnxDuration, load_robot, open_session
+
+ROWS = (1, 50, 250, 1000)
+EPISODES, TICKS = 3000, 20  # the fit that learning.md sets a limit for: 5 s
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print both tables."""
+    durations, successes = load_robot("agilo")
+    table = Table("model", *(f"{rows} rows" for rows in ROWS), title="prediction with features, µs")
+    for name, model in {**durations, **successes}.items():
+        ask = model.predict if isinstance(model, OnnxDuration) else model.probability
+        table.add_row(f"agilo/{name} ({model.card['learner']['name']})", *_times(ask, model.card, quick))
+    card = durations["goToPose/duration"].card
+    for name in ("linear", "distilled"):
+        table.add_row(f"{name}, runtime alone", *_times(_alone(name), card, quick))
+    console.print(table)
+    console.print(f"fit of one tree, {EPISODES} episodes x {TICKS} rows: {_fit_seconds():.1f} s")
+
+
+def _times(ask: Callable[[Any], Any], card: Card, quick: bool) -> list[str]:
+    """Best of several repetitions, which other processes disturb the least."""
+    arguments = random_arguments(card, max(ROWS), np.random.default_rng(0))
+    shown = []
+    for rows in ROWS:
+        part, best = np.ascontiguousarray(arguments[:rows]), np.inf
+        for _ in range(10 if quick else 40):
+            started = time.perf_counter()
+            for _ in range(100):
+                ask(part)
+            best = min(best, (time.perf_counter() - started) / 100)
+        shown.append(f"{1e6 * best:.1f}")
+    return shown
+
+
+def _examples(count: int) -> tuple[Any, Any, Any]:
+    """Features, seconds and episodes of a task made up for timing: a plane with a fold, and noise."""
+    rng = np.random.default_rng(0)
+    features = rng.uniform([0, 0, 0, 0, -3], [0.6, 0.6, 6, 3, 3], (count, 5)).astype(np.float32)
+    seconds = 1 + 1.6 * features[:, 2] + 0.6 * np.abs(features[:, 4]) + rng.normal(0, 0.3, count)
+    return features, seconds, np.arange(count) // TICKS
+
+
+def _alone(name: str) -> Callable[[Any], Any]:
+    features, seconds, groups = _examples(20_000)
+    learner = learners.make("duration", name, 1).fit(features, seconds, groups=groups)
+    session = open_session(export_duration(learner, SPACES["projective"], {}).SerializeToString())
+    return lambda arguments: session.run(None, {"arguments": arguments})
+
+
+def _fit_seconds() -> float:
+    features, seconds, groups = _examples(EPISODES * TICKS)
+    started = time.process_time()
+    learners.make("duration", "linear", 1).fit(features, seconds, groups=groups)
+    return time.process_time() - started

@@ -1,0 +1,101 @@
+"""Pictures of one action model: what it predicts against what happened, where it errs, and what it has learned."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+
+from models import scores
+from models.episodes import Episode, read_data_set
+from models.examples import Examples, duration_examples, success_examples
+from models.runtime import OnnxDuration, OnnxSuccess
+from tools.figures import learned_shapes
+
+mpl.use("Agg")
+from matplotlib import pyplot as plt
+
+Model = OnnxDuration | OnnxSuccess
+
+
+def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
+    """Draw all pictures of a model; those that need episodes are drawn from its data set, if there is one.
+
+    Args:
+      model: A loaded model.
+      data: Folder with a data set per action; None looks in data/ROBOT.
+      out: Folder for the PNG files.
+    """
+    card = model.card
+    folder = (data or Path("data") / card["robot"]) / card["action"]
+    episodes = read_data_set(folder).episodes if (folder / "manifest.json").exists() else ()
+    pictures: dict[str, Callable[[Any], None]] = {}
+    if isinstance(model, OnnxDuration):
+        pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model)}
+        pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card["test"])}
+        if episodes:
+            rows = duration_examples([e for e in episodes if e.finished], 1)
+            pictures |= {"predicted-observed": lambda figure: _predicted_observed(figure, model, rows)}
+            pictures |= {"error-by-region": lambda figure: learned_shapes.error_by_region(figure, model, rows)}
+    else:
+        pictures |= {"figure8": lambda figure: learned_shapes.figure8(figure, model)}
+        if episodes:
+            pictures |= {"reliability": lambda figure: _reliability(figure, model, episodes)}
+    out.mkdir(parents=True, exist_ok=True)
+    return [_save(out / f"{card['action']}-{card['kind']}-{name}.png", fill) for name, fill in pictures.items()]
+
+
+def _save(path: Path, fill: Callable[[Any], None]) -> Path:
+    figure = plt.figure(figsize=(9, 4.5), layout="constrained")
+    fill(figure)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    return path
+
+
+def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> None:
+    predicted, spread = model.predict(rows.arguments)
+    axes, right = figure.subplots(1, 2)
+    limit = 1.05 * float(np.quantile(rows.targets, 0.995))
+    axes.scatter(predicted, rows.targets, s=5, alpha=0.4)
+    axes.plot([0, limit], [0, limit], color="black", lw=1)
+    axes.set(xlabel="predicted [s]", ylabel="observed [s]", xlim=(0, limit), ylim=(0, limit))
+    axes.set_title("first ticks of the episodes it was fitted to")
+    right.scatter(spread, np.abs(predicted - rows.targets), s=5, alpha=0.4)
+    top = 1.05 * float(np.quantile(spread, 0.995))
+    right.plot([0, top], [0, top], color="black", lw=1)
+    right.set(
+        xlabel="spread [s]", ylabel="|error| [s]", xlim=(0, top), ylim=(0, 4 * top), title="is it sure when right?"
+    )
+
+
+def _learning_curve(figure: Any, test: Any) -> None:
+    axes = figure.subplots()
+    count, error = zip(*test["learning_curve"], strict=True)
+    axes.plot(count, error, marker="o")
+    low, high = test["mae_ci95"]
+    axes.errorbar([count[-1]], [error[-1]], [[error[-1] - low], [high - error[-1]]], capsize=4, color="tab:blue")
+    axes.set(xlabel="training episodes", ylabel="MAE on test episodes [s]", ylim=(0, None))
+    axes.set_title("learning curve, 95 % interval at its end")
+
+
+def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
+    rows = success_examples(episodes, 1)
+    said, seen, count = zip(*model.card["test"]["reliability"], strict=True)
+    probability = model.probability(rows.arguments)
+    axes, right = figure.subplots(1, 2)
+    axes.plot([0, 1], [0, 1], color="black", lw=1)
+    axes.scatter(said, seen, s=np.array(count), label="test episodes (area: how many)")
+    fitted = scores.reliability(probability, rows.targets > 0.5)
+    axes.plot([row[0] for row in fitted], [row[1] for row in fitted], color="tab:orange", label="episodes fitted to")
+    axes.set(xlabel="predicted probability of success", ylabel="share that succeeded")
+    axes.legend()
+    right.hist(
+        [probability[rows.targets < 0.5], probability[rows.targets > 0.5]], bins=20, label=["failed", "succeeded"]
+    )
+    right.axvline(model.threshold, color="black", lw=1, label="threshold")
+    right.set(xlabel="predicted probability of success", ylabel="episodes")
+    right.legend()
