@@ -1,4 +1,4 @@
-"""An external planner behaves, hangs, crashes, prints garbage or floods: it never blocks and leaves no process behind."""
+"""An external planner behaves, hangs, crashes, prints garbage or floods: nothing blocks, no process is left behind."""
 
 import os
 import sys
