@@ -21,7 +21,11 @@ class Declaration:
 
 def declaration(robot: str) -> Declaration:
     """The declaration of a robot that ships with us."""
-    text = resources.files("simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
+    return read_declaration(resources.files("simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8"))
+
+
+def read_declaration(text: str) -> Declaration:
+    """A declaration from its TOML text; raises KeyError, TypeError or ValueError where it is none."""
     command = tomllib.loads(text)["command"]
     return Declaration(
         command_topic=command["topic"],

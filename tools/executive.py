@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import replace
 
 from executive.composition import compose, provenance
 from executive.core.context import Context, check_goal
@@ -15,11 +16,13 @@ from runtime.stopping import stop_on_signals
 from schemas import codec
 from schemas.errors import UsageError
 from tools.deployment import configure_system, deployment, order_of
+from tools.driver_check import check_driver, driver_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor executive`."""
     configure_system(parser)
+    parser.add_argument("--driver", metavar="FILE", help="the driver's declaration (default: the simulated robot's)")
     parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
     parser.add_argument("--wait", action="store_true", help="start without a goal and wait for `tailor goal`")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
@@ -30,11 +33,12 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     read = deployment(arguments)
     order = order_of(arguments.domain, read)
-    probe = compose(order, sender="")  # every mistake of ours is told before the bus is touched
-    goal = _goal(probe, arguments)
+    context = compose(order, sender="")  # every mistake of ours is told before the bus is touched
+    check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
+    goal = _goal(context, arguments)
     with open_client(read.bus.endpoint) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
-        context = compose(order, session.sender, offset_ns)
+        context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()
         obtained = realtime.prepare()
         made_of = {**provenance(order, context), "realtime": obtained}

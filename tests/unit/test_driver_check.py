@@ -1,0 +1,35 @@
+"""A domain and a driver that do not fit never meet."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from executive import domains
+from schemas.errors import UsageError
+from simnodes.declaration import declaration
+from simnodes.guard import Limit
+from tools.driver_check import check_driver, driver_of
+
+
+@pytest.mark.parametrize("name", domains.DOMAINS)
+def test_every_domain_fits_the_driver_of_its_robot(name):
+    domain = domains.load(name)
+    check_driver(domain, declaration(domain.robot))
+
+
+def test_all_mismatches_are_told_at_once():
+    driver = declaration("agilo")
+    slow = dataclasses.replace(driver, command_topic="joint_cmd", limits=(Limit(-0.5, 0.5), driver.limits[1]))
+    with pytest.raises(UsageError) as caught:
+        check_driver(domains.load("soccer"), slow)
+    assert "commands cmd_vel, the driver takes joint_cmd" in str(caught.value)
+    assert "v goes from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
+
+
+def test_a_file_that_is_no_declaration_is_refused(tmp_path):
+    file = tmp_path / "driver.toml"
+    file.write_text("[robot]\n")
+    with pytest.raises(UsageError, match="expected a driver's declaration"):
+        driver_of("agilo", str(file))
