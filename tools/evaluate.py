@@ -17,6 +17,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "duration-learners": ("tools.evaluations.duration_learners", "ours, boosting and WEKA's M5P on the same folds"),
     "failure-learners": ("tools.evaluations.failure_learners", "trees, forest, network, SVM, boosting, J48"),
     "table3": ("tools.evaluations.table3", "refined against greedy subgoals, paired"),
+    "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
     "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
 }
