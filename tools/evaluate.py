@@ -19,6 +19,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "table3": ("tools.evaluations.table3", "refined against greedy subgoals, paired"),
     "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
+    "benefit": ("tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
     "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
 }
 ALL = "all"
