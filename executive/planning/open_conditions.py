@@ -62,43 +62,45 @@ def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) 
 
 
 def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> PartialPlan:
-    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
-    cell = plan.open
-    for condition, (first, last) in reversed(conditions):
-        cell = OpenCondition(condition, node + first, node + last, cell)
-    return plan._replace(open=cell, open_count=plan.open_count + len(conditions))
+    """The plan with more open conditions of one step."""
+    opened = _opened_by(conditions, node, plan.open)
+    return plan._replace(open=opened, open_count=plan.open_count + len(conditions))
 
 
 # --- the three ways ------------------------------------------------------------------------------
 def _by_new_step(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
 ) -> PartialPlan | None:
+    literal, first, last, _ = flaw
     node = len(plan.orderings.late)
-    orderings = plan.orderings.with_step(action).ordered(node + effect.moment, flaw.first)
+    orderings = plan.orderings.with_step(action, effect.moment, first)
     if orderings is None:
         return None
-    conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
-    cell = plan.open
-    for condition, (first, last) in reversed(conditions):
-        cell = OpenCondition(condition, node + first, node + last, cell)
-    steps = (*plan.steps, action)
-    effects = plan.effects.with_step(action, node)
-    literal = flaw.condition
     assert isinstance(literal, int)
-    link = Link(node + effect.moment, literal, flaw.first, flaw.last, plan.links)
-    threats, count = _threats_to(task, steps, orderings, plan, link, action.bits.get(literal ^ 1, 0) << node)
-    threats, count = _threats_by(action, node, orderings, plan.links, threats, count)
+    steps = (*plan.steps, action)
+    link = Link(node + effect.moment, literal, first, last, plan.links)
+    undoing = plan.effects.masks()[literal ^ 1] | action.bits.get(literal ^ 1, 0) << node
+    threats, count = _threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
+    threats, count = _threats_by(action, node, orderings.late, plan.links, threats, count)
+    conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
     return PartialPlan(
         steps,
         orderings,
-        effects,
+        plan.effects.with_step(action, node),
         link,
-        cell,
+        _opened_by(conditions, node, plan.open),
         threats,
         plan.open_count + len(conditions),
         count,
         plan.cost + task.costs[action.number],
     )
+
+
+def _opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:
+    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
+    for condition, (first, last) in reversed(conditions):
+        cell = OpenCondition(condition, node + first, node + last, cell)
+    return cell
 
 
 def _by_old_step(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, node: int) -> list[PartialPlan]:
@@ -119,22 +121,31 @@ def _by_old_step(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, node:
 def _linked(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, producer: int, orderings: Orderings
 ) -> PartialPlan:
-    literal = flaw.condition
+    literal, first, last, _ = flaw
     assert isinstance(literal, int)
-    link = Link(producer, literal, flaw.first, flaw.last, plan.links)
-    threats, count = _threats_to(task, plan.steps, orderings, plan, link, 0)
+    link = Link(producer, literal, first, last, plan.links)
+    undoing = plan.effects.masks()[literal ^ 1]
+    threats, count = _threats_to(task, plan.steps, orderings, undoing, link, plan.threats, plan.threat_count)
     return PartialPlan(plan.steps, orderings, plan.effects, link, plan.open, threats, plan.open_count, count, plan.cost)
 
 
 # --- threats -------------------------------------------------------------------------------------
+Threats = tuple[Threat | None, int]  # the list and its length
+
+
 def _threats_to(
-    task: GroundTask, steps: tuple[GroundAction, ...], orderings: Orderings, plan: PartialPlan, link: Link, more: int
-) -> tuple[Threat | None, int]:
-    """The plan's threats and those to a new link: newest node first, so that the oldest ends at the head."""
-    threats, count = plan.threats, plan.threat_count
+    task: GroundTask,
+    steps: tuple[GroundAction, ...],
+    orderings: Orderings,
+    undoing: int,
+    link: Link,
+    threats: Threat | None,
+    count: int,
+) -> Threats:
+    """Adds the threats to a new link by the nodes that undo it: newest first, so that the oldest ends at the head."""
     producer, literal, first, last, _ = link
     late = orderings.late
-    mask = (plan.effects.masks()[literal ^ 1] | more) & ~late[last] & ~(1 << producer | 1 << first)
+    mask = undoing & ~late[last] & ~(1 << producer | 1 << first)
     while mask:
         node = mask.bit_length() - 1
         mask ^= 1 << node
@@ -148,21 +159,19 @@ def _threats_to(
 
 
 def _threats_by(
-    action: GroundAction, node: int, orderings: Orderings, links: Link | None, threats: Threat | None, count: int
-) -> tuple[Threat | None, int]:
-    """The threats and those by a new step to older links, newest link first."""
-    late, bits = orderings.late, action.bits
-    link = links
+    action: GroundAction, node: int, late: tuple[int, ...], link: Link | None, threats: Threat | None, count: int
+) -> Threats:
+    """Adds the threats by a new step to older links, newest link first."""
+    bits = action.bits
     while link is not None:
-        moments = bits.get(link.literal ^ 1, 0)
-        for moment in (1, 0):
-            if moments >> moment & 1:
-                at = node + moment
-                if not (late[link.last] >> at & 1 or late[at] >> link.producer & 1):
-                    for conditions in _deletions(action, link.literal ^ 1, moment):
+        producer, literal, _, last, rest = link
+        if literal ^ 1 in bits:
+            for at in _nodes(bits[literal ^ 1] << node & ~late[last]):
+                if not late[at] >> producer & 1:
+                    for conditions in _deletions(action, literal ^ 1, at - node):
                         threats = Threat(link, at, conditions, threats)
                         count += 1
-        link = link.rest
+        link = rest
     return threats, count
 
 

@@ -36,8 +36,17 @@ class Orderings(Protocol):
         """By node, the mask of the nodes that cannot come before it."""
         ...
 
-    def with_step(self, action: Lasting) -> Orderings:
-        """The orderings with the nodes of one more step, after the initial state and before the goal."""
+    def with_step(self, action: Lasting, moment: int, before: int) -> Orderings | None:
+        """The orderings with the nodes of one more step, after the initial state and before the goal.
+
+        Args:
+          action: Of the step.
+          moment: 0 for the step's start, 1 for its end ...
+          before: ... which comes before this node.
+
+        Returns:
+          None when that is impossible.
+        """
         ...
 
     def ordered(self, a: int, b: int) -> Orderings | None:
@@ -54,11 +63,11 @@ class Closure(NamedTuple):
 
     late: tuple[int, ...] = (0b11, 0b10)
 
-    def with_step(self, action: Lasting) -> Closure:
-        """See `Orderings`; such a step has one node."""
+    def with_step(self, action: Lasting, moment: int, before: int) -> Closure:
+        """See `Orderings`; such a step has one node, and nothing comes before it but the initial state."""
         late = self.late
         bit = 1 << len(late)
-        return Closure((late[0] | bit, *late[1:], bit | 1 << GOAL))
+        return Closure((late[0] | bit, *late[1:], bit | late[before]))
 
     def ordered(self, a: int, b: int) -> Closure | None:
         """See `Orderings`."""

@@ -30,18 +30,26 @@ class TemporalNetwork(NamedTuple):
         )
         return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
 
-    def with_step(self, action: Lasting) -> TemporalNetwork:
-        """Two more nodes, start and end, as far apart as the action's duration allows."""
+    def with_step(self, action: Lasting, moment: int, before: int) -> TemporalNetwork | None:
+        """See `Orderings`: start and end, as far apart as the duration allows, one of them before a node."""
         start = len(self.rows)
+        end = start + 1
         longest = UNBOUNDED if action.longest is None else action.longest
-        rows = [(*row, UNBOUNDED, UNBOUNDED) for row in self.rows]
-        rows[INITIAL] = (*self.rows[INITIAL], -1, -1 - action.shortest)
+        first = self.rows[INITIAL] + (-1, -1 - action.shortest)
         unbounded = (UNBOUNDED,) * start
-        rows += [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
+        own = [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
+        if before != GOAL:
+            # only the initial state and the step itself come before the step: no other bound can change
+            via = (*self.rows[before], UNBOUNDED, UNBOUNDED)
+            node = start + moment
+            if via[INITIAL] + first[node] < 1:
+                return None
+            first = _through(first, first[node] - 1, via)
+            own = [_through(row, row[node] - 1, via) for row in own]
         late = list(self.late)
         late[INITIAL] |= 3 << start
-        late += [_late(rows[start], start), _late(rows[start + 1], start + 1)]
-        return TemporalNetwork(tuple(rows), tuple(late))
+        rows = (first, *[(*row, UNBOUNDED, UNBOUNDED) for row in self.rows[1:]], *own)
+        return TemporalNetwork(rows, (*late, _late(own[0], start), _late(own[1], end)))
 
     def ordered(self, a: int, b: int) -> TemporalNetwork | None:
         """See `Orderings`: t_a <= t_b - 1 tick."""
@@ -54,8 +62,8 @@ class TemporalNetwork(NamedTuple):
         for node, row in enumerate(self.rows):
             reach = row[a] - 1
             if reach < row[b]:
-                rows[node] = tuple([min(old, reach + more) for old, more in zip(row, via, strict=True)])
-                late[node] = _late(rows[node], node)
+                rows[node] = changed = _through(row, reach, via)
+                late[node] = _late(changed, node)
         return TemporalNetwork(tuple(rows), tuple(late))
 
     def earliest(self) -> tuple[float, ...]:
@@ -68,6 +76,11 @@ class TemporalNetwork(NamedTuple):
         """Rows and columns of VHPOP's print, without the goal: [i][j] is the greatest t_j - t_i, None if unbounded."""
         nodes = [node for node in range(len(self.rows)) if node != GOAL]
         return tuple(tuple(_bound(self.rows[j][i]) for j in nodes) for i in nodes)
+
+
+def _through(row: Row, reach: int, via: Row) -> Row:
+    """The row with every bound that gets smaller by way of another node: `reach` to it, and its own row."""
+    return tuple([old if old <= reach + more else reach + more for old, more in zip(row, via, strict=True)])
 
 
 def _bound(value: int) -> int | None:

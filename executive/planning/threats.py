@@ -16,12 +16,12 @@ def is_threat(plan: PartialPlan, threat: Threat) -> bool:
 
 def choices(plan: PartialPlan, threat: Threat) -> int:
     """The number of refinements of a threat."""
-    if not is_threat(plan, threat):
+    late, (link, node, conditions, _) = plan.orderings.late, threat
+    if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
         return 1
-    late, link, node = plan.orderings.late, threat.link, threat.node
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1
-    return promotion + demotion + len(_by_span(threat))
+    return promotion + demotion + (len(_by_span(threat)) if conditions else 0)
 
 
 def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
@@ -29,13 +29,11 @@ def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[P
     rest = plan._replace(threats=without_threat(plan.threats, threat), threat_count=plan.threat_count - 1)
     if not is_threat(plan, threat):
         return [rest]
-    children = separations(task, rest, threat)
-    promoted = plan.orderings.ordered(threat.link.last, threat.node)
-    if promoted is not None:
-        children.append(rest._replace(orderings=promoted))
-    demoted = plan.orderings.ordered(threat.node, threat.link.producer)
-    if demoted is not None:
-        children.append(rest._replace(orderings=demoted))
+    children = separations(task, rest, threat) if threat.conditions else []
+    for before, after in ((threat.link.last, threat.node), (threat.node, threat.link.producer)):
+        orderings = plan.orderings.ordered(before, after)
+        if orderings is not None:  # promotion, then demotion
+            children.append(rest._replace(orderings=orderings))
     return children
 
 

@@ -82,7 +82,7 @@ def _by_new_step(
     node = len(plan.orderings.late)
     bindings = _bound(task, plan.bindings, schema, step)
     bindings = bindings and _achieving(bindings, effect, step, flaw.literal)
-    orderings = plan.orderings.with_step(schema).ordered(node + effect.moment, flaw.first)
+    orderings = plan.orderings.with_step(schema, effect.moment, flaw.first)
     if bindings is None or orderings is None:
         return None
     cell = plan.open
