@@ -95,11 +95,16 @@ class Deliberation:
         return self.found is not None and self.found.plan is not None and not self.found.plan.steps
 
     def _reuse(self, previous: planning.Plan | None, done: frozenset[int]) -> None:
+        """Take the shortest suffix of the last plan that is sound from now: what the world did for us is left out."""
         if previous is None:
             return
-        plan = planning.suffix(previous, done, self._context.pddl_domain, self._problem)
-        if plan is not None:
-            self._planned(PlanFound("solved", "suffix", plan, 0, 0, ""))
+        remaining = [step.id for step in previous.steps if step.id not in done]
+        for skipped in range(len(remaining), -1, -1):
+            left_out = done | set(remaining[:skipped])
+            plan = planning.suffix(previous, left_out, self._context.pddl_domain, self._problem)
+            if plan is not None:
+                self._planned(PlanFound("solved", "suffix", plan, 0, 0, ""))
+                return
 
     def _plan(self, budget: Budget) -> None:
         if self._search is None:

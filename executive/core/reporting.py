@@ -20,6 +20,7 @@ class Told:
 
     deliberation: Deliberation | None
     found: PlanFound | None
+    plan: planning.Plan | None
     running: Running | None
     finished: int
     decision: Decision | None
@@ -32,6 +33,7 @@ def snapshot(state: State) -> Told:
     return Told(
         deliberation,
         deliberation.found if deliberation is not None else None,
+        state.task.plan,
         state.task.running,
         state.task.finished,
         state.task.decision,
@@ -43,7 +45,7 @@ def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
     """The messages about this tick, the status last."""
     outputs: list[Output] = []
     if told.running is not None and state.task.finished > told.finished:
-        how = ("aborted", "the world has changed and another action comes first now")
+        how = _overtaken(context, state, told.plan, told.running)
         outputs.append(Output("finished", ending(context, state, told.finished, told.running, how)))
     deliberation = state.deliberation
     if deliberation is not None:
@@ -55,6 +57,16 @@ def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
     if state.task.decision is not None and state.task.decision is not told.decision:
         outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))
     return (*outputs, Output("status", _status(context, state)))
+
+
+def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, str]:
+    """How an action ended that a new decision has no place for: its effects hold already, or others come first."""
+    steps = plan.steps if plan is not None and not running.asserted else ()
+    action = next((step.action for step in steps if step.id == running.step), None)
+    facts = state.task.facts
+    if action is not None and planning.progress(context.pddl_domain, context.problem, facts, action) <= facts:
+        return "done", "its effects hold already"
+    return "aborted", "another action comes first now"
 
 
 def _evaluations(deliberation: Deliberation | None) -> int:

@@ -26,7 +26,8 @@ def think(context: Context, state: State, budget: Budget) -> State:
     if deliberation.stage == "failed":
         return _gave_up(context, state, deliberation.reason)
     if deliberation.nothing_to_do():
-        task = replace(state.task, active=False, result="achieved", running=None, decision=None)
+        ended = state.task.finished + (state.task.running is not None)
+        task = replace(state.task, active=False, result="achieved", running=None, decision=None, finished=ended)
         return replace(state, task=task)
     decision = deliberation.decision()
     if decision is None:

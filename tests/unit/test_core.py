@@ -229,6 +229,24 @@ def test_action_that_gives_way_to_another_one_is_told_as_aborted():
     assert [(f.action, f.outcome, f.action_index) for f in ended] == [("slide", "aborted", 0)]
 
 
+def test_action_whose_effects_hold_already_is_done_and_not_aborted():
+    context = line_context()
+
+    def anchor(belief, scenario, remembered):
+        there = (remembered - {("at", "home")}) | {("at", "a"), ("visited", "a")}
+        return there if belief.shift else remembered
+
+    context.domain.anchor = anchor
+
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
+
+    run = list(drive(context, goal="(visited a)", world=world, ticks=10))
+    ended = messages(run, ActionFinished)
+    assert [(f.outcome, f.reason) for f in ended] == [("done", "its effects hold already")]
+    assert run[-1][0].task.result == "achieved"
+
+
 def test_a_stopped_driver_gets_no_commands_though_it_names_us():
     def world(n, given, x):
         state = dataclasses.replace(driver(n * TICK).message, mode="stopped")
