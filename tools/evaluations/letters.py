@@ -86,6 +86,32 @@ def evaluate(arguments: argparse.Namespace) -> tuple[list[dict[str, Any]], dict[
     return rows, {} if arguments.report is None else _picture(arguments.report, arguments.zoo)
 
 
+def table3_row(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The arm's row of Table 3 in that table's columns, over about as many letters as it has `episodes`."""
+    seeds = max(1, arguments.episodes // len(font()))
+    asked = argparse.Namespace(
+        seeds=seeds, no_oracle=not arguments.oracle, jobs=arguments.jobs, zoo=arguments.zoo, report=None
+    )
+    rows = {row["hand"]: row for row in evaluate(asked)[0]}
+    greedy, refined = rows["greedy"], rows["refined"]
+    row = {
+        "scenario": "arm",
+        "horizon": BASE.horizon,
+        "n": refined["n"],
+        "mean_greedy_s": greedy["mean_s"],
+        "mean_refined_s": refined["mean_s"],
+        **{name: refined[name] for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")},
+        "failed_greedy": greedy["failed"],
+        "failed_refined": refined["failed"],
+        "bias_greedy_s": greedy["bias_s"],
+        "bias_refined_s": refined["bias_s"],
+    }
+    if arguments.oracle:
+        best = rows["oracle, all ahead"]
+        row |= {"oracle_n": best["n"], "oracle_pct": best["improvement_pct"], "oracle_s": best["mean_s"]}
+    return row
+
+
 def _row(name: str, found: Mapping[str, Mapping[Key, Figures]]) -> dict[str, Any]:
     """One hand against the greedy one, over the letters that both finished."""
     keys = [key for key, figures in found[name].items() if figures.achieved and found["greedy"][key].achieved]
@@ -100,6 +126,7 @@ def _row(name: str, found: Mapping[str, Mapping[Key, Figures]]) -> dict[str, Any
         "improvement_pct": said.improvement_pct,
         "ci95": said.ci95,
         "p_value": said.p_value,
+        "p_wilcoxon": said.p_wilcoxon,
         "slower_pct": said.slower_pct,
         "against_stopping_pct": compare(stopping, [figures.duration_s for figures in mine]).improvement_pct,
         "waypoint_mrad": _mean(mine, "waypoint_mrad"),
