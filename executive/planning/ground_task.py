@@ -33,6 +33,7 @@ class GroundTask:
     achievers: tuple[tuple[Achiever, ...], ...]
     costs: tuple[float, ...]  # by the action's number
     estimates: Estimates
+    simple: bool  # no action has conditional effects
 
     @property
     def moments(self) -> int:
@@ -62,6 +63,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         _achievers(grounded.actions, estimates, 2 * len(facts)),
         costs,
         estimates,
+        all(action.simple for action in grounded.actions),
     )
 
 

@@ -131,6 +131,7 @@ def _linked(
 
 # --- threats -------------------------------------------------------------------------------------
 Threats = tuple[Threat | None, int]  # the list and its length
+_ALWAYS: tuple[Spanned, ...] = ((),)  # one effect without conditions
 
 
 def _threats_to(
@@ -150,12 +151,16 @@ def _threats_to(
         node = mask.bit_length() - 1
         mask ^= 1 << node
         if not late[node] >> producer & 1:
-            step = step_of(task, node)
-            moment = (node - first_node(task)) % task.moments
-            for conditions in _deletions(steps[step - 1], literal ^ 1, moment) if step else ((),):
+            for conditions in _ALWAYS if task.simple else _deletions_at(task, steps, node, literal ^ 1):
                 threats = Threat(link, node, conditions, threats)
                 count += 1
     return threats, count
+
+
+def _deletions_at(task: GroundTask, steps: tuple[GroundAction, ...], node: int, literal: int) -> tuple[Spanned, ...]:
+    """The conditions under which a node, of a step or of a timed literal, makes a literal true."""
+    step = step_of(task, node)
+    return _deletions(steps[step - 1], literal, (node - first_node(task)) % task.moments) if step else _ALWAYS
 
 
 def _threats_by(
@@ -166,7 +171,10 @@ def _threats_by(
     while link is not None:
         producer, literal, _, last, rest = link
         if literal ^ 1 in bits:
-            for at in _nodes(bits[literal ^ 1] << node & ~late[last]):
+            mask = bits[literal ^ 1] << node & ~late[last]
+            while mask:
+                at = mask.bit_length() - 1
+                mask ^= 1 << at
                 if not late[at] >> producer & 1:
                     for conditions in _deletions(action, literal ^ 1, at - node):
                         threats = Threat(link, at, conditions, threats)
@@ -178,6 +186,6 @@ def _threats_by(
 def _deletions(action: GroundAction, literal: int, moment: int) -> tuple[Spanned, ...]:
     """The conditions under which an action makes a literal true at a moment: one empty set when it always does."""
     if action.simple:
-        return ((),)
+        return _ALWAYS
     found = tuple(e.conditions for e in action.effects if e.literal == literal and e.moment == moment)
-    return ((),) if () in found else found
+    return _ALWAYS if () in found else found
