@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,17 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table
 
 from schemas.errors import UsageError
 from tools.figures.alternatives import draw_alternatives
 from tools.figures.page import image, page
 from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
 from tools.viewer.explainer import Explainer, fields_of
-from tools.viewer.explanation import Explanation, FreeParameter
+from tools.viewer.explanation import Explanation
 from tools.viewer.recorded import timed
-
-NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
+from tools.viewer.wording import durations, effort, in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,62 +93,6 @@ def _show(reasons: Sequence[Reason]) -> None:
         for of in reason.explanation.parameters:
             console.print(f"  {in_words(of)}", highlight=False)
         console.print(f"  {effort(reason.decision)}\n", highlight=False)
-
-
-def durations(said: Explanation) -> Table:
-    """Predicted durations, chosen against greedy, and the objective."""
-    table = Table("predicted", "chosen", "greedy", "difference", box=None, pad_edge=True)
-    for column in table.columns[1:]:
-        column.justify = "right"
-    for name, chosen, greedy in zip(said.actions, said.chosen_s, said.greedy_s, strict=True):
-        table.add_row(name, *_compared(chosen, greedy))
-    table.add_row("sum", *_compared(sum(said.chosen_s), sum(said.greedy_s)), style="bold")
-    table.add_row("objective", *_compared(said.chosen_cost, said.greedy_cost))
-    return table
-
-
-def in_words(of: FreeParameter) -> str:
-    """One free parameter: chosen, greedy's, its range, the best value, and what is about as good."""
-    variable, cost = of.variable, of.alternatives.total_s
-    best = cost.min()
-    said = f"{variable.quantity} at {variable.label}: {_value(of.chosen, variable.unit)}"
-    said += f", greedy {_value(of.greedy, variable.unit)}"
-    said += f", free in {_value(variable.lower, variable.unit)} to {_value(variable.upper, variable.unit)}"
-    if not math.isfinite(best):
-        return f"{said}; every other value that was tried is predicted to fail"
-    share = f"{100 * (cost <= best * NEAR).mean():.0f} % of the range is within 2 % of the best"
-    worst = cost[cost < math.inf].max()
-    return f"{said}; {share}, the worst valid value costs {worst - best:+.2f} s"
-
-
-def effort(decision: Decision) -> str:
-    """What the search took, and what came of it."""
-    said = []
-    report = decision.report
-    if report is not None:
-        state = "finished" if report.finished else "cut short"
-        said.append(
-            f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks, "
-            f"{1000 * decision.work_s:.0f} ms of thinking in {decision.ticks} ticks, {state}; "
-            f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
-        )
-    if decision.finished is not None:
-        end = decision.finished
-        said.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")
-    return "; ".join(said) or "nothing is known of the search"
-
-
-def _compared(chosen: float, greedy: float) -> tuple[str, str, str]:
-    both = math.isfinite(chosen) and math.isfinite(greedy)
-    return _seconds(chosen), _seconds(greedy), f"{chosen - greedy:+.2f} s" if both else ""
-
-
-def _seconds(value: float) -> str:
-    return f"{value:.2f} s" if math.isfinite(value) else "INVALID"
-
-
-def _value(value: float, unit: str) -> str:
-    return f"{math.degrees(value):.0f}°" if unit == "rad" else f"{value:.2f} {unit}".strip()
 
 
 def _told(reason: Reason) -> dict[str, Any]:

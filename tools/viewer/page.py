@@ -16,6 +16,7 @@ SCRIPTS = (
     "run.js",
     "places.js",
     "field.js",
+    "jointplane.js",
     "series.js",
     "lanes.js",
     "timeline.js",

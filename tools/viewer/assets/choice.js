@@ -63,7 +63,7 @@ class ChoicePanel {
   plots(why, said) {
     const first = this.firstIndex(why.at);
     const curves = said.touched.map((i, k) => ({ name: why.actions[i], seconds: said.seconds[k], kind: colour(first + i) }));
-    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "c2", beside: said.cost }] : [];
+    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "sum", beside: said.cost }] : [];
     const common = { values: said.values, valid: said.cost.map((s) => s !== null), chosen: said.chosen, greedy: said.greedy, unit: said.unit };
     if (!said.periodic) return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
     return html("div", { class: "plots" }, ...[...curves, ...both].map((c) => polarPlot({ ...common, seconds: c.seconds, beside: c.beside, kind: c.kind, caption: c.name })));
@@ -71,7 +71,7 @@ class ChoicePanel {
 
   /** The place in the run of the action that a decision begins with, for its colour. */
   firstIndex(at) {
-    const running = this.run.actions().find((a) => a.until >= at - 0.01);
+    const running = this.run.actions().find((a) => a.until > at + 0.15); // the last action's end is told a little late
     return running?.index ?? 0;
   }
 

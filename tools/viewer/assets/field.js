@@ -12,33 +12,65 @@ class Field {
     this.drawn = -1;
   }
 
-  /** Show a moment. Everything that stands still is drawn anew only when rows have come. */
+  /** Show a moment. What stands still is drawn anew only when rows have come or another episode is shown. */
   show(at) {
     if (this.drawn !== this.run.version) this.lay();
+    const number = this.starts.filter((start) => start <= at).length - 1;
+    if (number !== this.number) this.layEpisode(Math.max(0, number));
+    this.colourStrokes(at);
     this.moving.replaceChildren(...this.movingParts(at));
   }
 
+  /** The frame for the whole run: two drawings, so that what moves does not make the rest be painted again. */
   lay() {
     this.drawn = this.run.version;
-    this.path = this.run.all(this.run.source());
-    this.segments = segmentsOf(this.path);
+    this.number = -1;
+    this.starts = this.run.episodes();
     const { map, width, height } = this.frame();
     this.map = map;
-    const clip = svg("clipPath", { id: "fieldclip" }, svg("rect", { x: 0, y: 0, width, height }));
+    const box = `0 0 ${width} ${height}`;
+    this.still = svg("g");
     this.moving = svg("g");
-    const parts = [clip, svg("g", {}, ...this.gridLines(width, height)), svg("g", { "clip-path": "url(#fieldclip)" }, ...this.standing(), this.moving)];
-    const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "the robot's path seen from above" }, ...parts);
-    this.panel.body.replaceChildren(drawing);
+    const below = svg("svg", { viewBox: box, role: "img", "aria-label": "the robot's path seen from above" }, svg("g", {}, ...this.gridLines(width, height)), this.still);
+    const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving);
+    this.panel.body.replaceChildren(html("div", { class: "layers" }, below, above));
     this.panel.title.textContent = "Field";
     this.panel.note.replaceChildren(this.legend());
   }
 
+  /** One episode's path: a drawing for each action, pale until it has happened. */
+  layEpisode(number) {
+    this.number = number;
+    const [from, to] = [this.starts[number], this.starts[number + 1] ?? Infinity];
+    this.path = this.run.between(this.run.source(), from, to);
+    this.segments = segmentsOf(this.path);
+    for (const segment of this.segments) segment.element = svg("path", { d: this.strokes(segment.points) });
+    const ghost = this.run.source() === "truth" ? this.run.between("believed", from, to).map((p) => this.map(p.x, p.y)) : [];
+    this.still.replaceChildren(...this.segments.map((s) => s.element), svg("path", { class: "ghost", d: through(ghost) }), ...this.ballParts());
+  }
+
+  ballParts() {
+    const balls = this.path.map((p) => (p.ball ? this.map(...p.ball) : null));
+    const first = balls.find((b) => b !== null);
+    if (!first) return [];
+    return [svg("path", { class: "ballpath", d: through(balls) }), svg("circle", { class: "ballstart", cx: first[0], cy: first[1], r: BALL_M * this.map.perMetre })];
+  }
+
+  colourStrokes(at) {
+    for (const segment of this.segments) {
+      const ahead = segment.points[segment.points.length - 1].at > at;
+      const kind = `strokes ${ahead ? "ahead " : ""}${colour(segment.index)}`;
+      if (segment.element.getAttribute("class") !== kind) segment.element.setAttribute("class", kind);
+    }
+  }
+
   /** Pixels for metres: everything that is ever drawn, with a margin, y upwards. */
   frame() {
+    const path = this.run.all(this.run.source());
     const places = this.run.all("subgoals").flatMap(placesOf);
-    const balls = this.path.filter((p) => p.ball).map((p) => p.ball);
-    const xs = [...this.path.map((p) => p.x), ...places.map((p) => p.x), ...balls.map((b) => b[0])];
-    const ys = [...this.path.map((p) => p.y), ...places.map((p) => p.y), ...balls.map((b) => b[1])];
+    const balls = path.filter((p) => p.ball).map((p) => p.ball);
+    const xs = [...path.map((p) => p.x), ...places.map((p) => p.x), ...balls.map((b) => b[0])];
+    const ys = [...path.map((p) => p.y), ...places.map((p) => p.y), ...balls.map((b) => b[1])];
     let [left, right] = extent(xs, 0);
     let [bottom, top] = extent(ys, 0);
     [left, right, bottom, top] = [left - 0.55, right + 0.55, bottom - 0.55, top + 0.55];
@@ -65,28 +97,12 @@ class Field {
       const [, py] = this.map(0, y);
       return [svg("line", { class: "grid", x1: 0, x2: width, y1: py, y2: py }), svg("text", { x: 3, y: py - 3, text: y === 0 ? "0" : String(y) })];
     });
-    return [...vertical, ...horizontal, svg("text", { x: width - 4, y: height - 4, "text-anchor": "end", text: "x, y in m" })];
-  }
-
-  /** The whole path, faint; the ball's path; what the robot believed where the truth is known. */
-  standing() {
-    const parts = this.segments.map((s) => svg("path", { class: `strokes ahead ${colour(s.index)}`, d: this.strokes(s.points) }));
-    if (this.run.source() === "truth") {
-      const ghost = this.run.all("believed").map((p) => this.map(p.x, p.y));
-      parts.push(svg("path", { class: "ghost", d: through(ghost) }));
-    }
-    const balls = this.path.map((p) => (p.ball ? this.map(...p.ball) : null));
-    const first = balls.find((b) => b !== null);
-    if (first) {
-      parts.push(svg("path", { class: "ballpath", d: through(balls) }));
-      parts.push(svg("circle", { class: "ballstart", cx: first[0], cy: first[1], r: BALL_M * this.map.perMetre }));
-    }
-    return parts;
+    return [...vertical, ...horizontal, svg("text", { x: width - 4, y: 12, "text-anchor": "end", text: "x, y in m" })];
   }
 
   movingParts(at) {
     const parts = this.segments
-      .filter((s) => s.points[0].at <= at)
+      .filter((s) => s.points[0].at <= at && s.points[s.points.length - 1].at > at)
       .map((s) => svg("path", { class: `strokes ${colour(s.index)}`, d: this.strokes(s.points.filter((p) => p.at <= at)) }));
     const subgoals = this.run.last("subgoals", at);
     const why = this.run.last("why", at);
@@ -175,7 +191,7 @@ class Field {
   legend() {
     const named = new Map(this.run.actions().map((a) => [`${colour(a.index)} ${a.action}`, a]));
     const pairs = [...named.values()].slice(0, 6).map((a) => [colour(a.index), a.action]);
-    return legend([...pairs, ...(this.run.source() === "truth" ? [["idle", "dashed: as believed"]] : [])]);
+    return legend([...pairs, ...(this.run.source() === "truth" ? [["idle", "dotted: as believed"]] : [])]);
   }
 }
 

@@ -96,7 +96,7 @@ function linkParts(plan, places) {
     const kind = from.id === 0 ? "start" : "link";
     const line = route(from, to, from.id === 0 && to.level > 1 ? -1 : 1);
     const shown = literals.length > 3 ? [...literals.slice(0, 2), `and ${literals.length - 2} more`] : literals;
-    const label = shown.map((words, i) => svg("text", { x: line.x + line.side * 6, y: line.y + 3 + (i - (shown.length - 1) / 2) * 12, "text-anchor": line.side < 0 ? "end" : "start", text: words }));
+    const label = shown.map((words, i) => svg("text", { class: "halo", x: line.x + line.side * 6, y: line.y + 3 + (i - (shown.length - 1) / 2) * 12, "text-anchor": line.side < 0 ? "end" : "start", text: words }));
     return [svg("path", { class: `link ${kind}`, d: line.d, "marker-end": `url(#head-${kind})` }, svg("title", { text: literals.join(" ") })), ...label];
   });
 }
@@ -108,14 +108,18 @@ function orderingParts(plan, places) {
   });
 }
 
-/** A curve from one node to another; long ones swing out sideways so that they pass the nodes between. */
+/** A curve from one node to another; long ones leave and arrive at a side, and pass the nodes between. */
 function route(from, to, side, shift = 0) {
-  const [x1, y1, x2, y2] = [from.x + shift, from.y + GRAPH.node, to.x + shift, to.y - 5];
   const span = to.level - from.level;
-  const swing = span > 1 ? side * (Math.max(from.width, to.width) / 2 + 12 * span + 10) : 0;
-  const bend = (y2 - y1) * (span > 1 ? 0.25 : 0.5);
-  const d = `M${x1} ${y1}C${x1 + swing} ${y1 + bend} ${x2 + swing} ${y2 - bend} ${x2} ${y2}`;
-  return { d, side, x: (x1 + x2) / 2 + swing * 0.75, y: (y1 + y2) / 2 };
+  if (span <= 1) {
+    const [x1, y1, x2, y2] = [from.x + shift, from.y + GRAPH.node, to.x + shift, to.y - 5];
+    const bend = (y2 - y1) / 2;
+    return { d: `M${x1} ${y1}C${x1} ${y1 + bend} ${x2} ${y2 - bend} ${x2} ${y2}`, side, x: (x1 + x2) / 2, y: (y1 + y2) / 2 };
+  }
+  const [x1, x2] = [from.x + (side * from.width) / 2, to.x + side * (to.width / 2 + 5)];
+  const [y1, y2] = [from.y + GRAPH.node / 2, to.y + GRAPH.node / 2];
+  const widest = Math.max(x1 * side, x2 * side) * side + side * 22 * span;
+  return { d: `M${x1} ${y1}C${widest} ${y1} ${widest} ${y2} ${x2} ${y2}`, side, x: (x1 + x2) / 8 + widest * 0.75, y: (y1 + y2) / 2 };
 }
 
 function arrowHead(kind) {

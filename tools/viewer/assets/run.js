@@ -81,6 +81,15 @@ class Run {
     return found;
   }
 
+  /** When each episode begins: the first at the start, the others where the count of actions begins anew. */
+  episodes() {
+    const starts = [this.start];
+    this.actions().forEach((action, i, all) => {
+      if (i > 0 && action.index <= all[i - 1].index) starts.push(action.begin);
+    });
+    return starts;
+  }
+
   /** Times at which something happened, for jumping to. */
   landmarks() {
     const kinds = ["state", "plan", "action", "finished", "subgoals", "estop"];

@@ -13,14 +13,37 @@ class Series {
     const key = `${this.run.version} ${view[0]} ${view[1]}`;
     if (this.drawn !== key) { this.drawn = key; this.lay(view); }
     for (const plot of this.plots) plot.move(at);
+    this.plane?.move(at);
   }
 
   lay(view) {
-    this.plots = [...this.beliefs(), ...this.others()].map((line) => timePlot(line, view));
-    const grid = html("div", { class: "plots", style: "grid-template-columns:repeat(auto-fit,minmax(17rem,1fr))" }, ...this.plots.map((p) => p.element));
-    this.panel.body.replaceChildren(this.plots.length ? grid : html("p", { class: "empty", text: "No numbers yet." }));
+    const [beliefs, others] = [this.beliefs(), this.others()].map((lines) => lines.map((line) => timePlot(line, view)));
+    this.plane = this.waypoints.length ? new JointPlane(this.run, this.waypoints) : null;
+    this.plots = [...beliefs, ...others];
+    const wasOpen = this.panel.body.querySelector("details")?.open ?? false;
+    const more = html("details", wasOpen ? { open: "" } : {}, html("summary", { text: `${others.length} more: sensors and commands` }), plotGrid(others));
+    const empty = html("p", { class: "empty", text: "No numbers yet." });
+    this.panel.body.replaceChildren(...[this.plane?.element, beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean));
     this.panel.title.textContent = "State";
-    this.panel.note.textContent = this.plots.length ? "as believed; subgoals as dots where they are due" : "";
+    this.panel.note.textContent = beliefs.length ? "as believed; dots are the goals where they are due, hollow ones were free to choose" : "";
+  }
+
+  /** For each started action the values that its goal has for the two quantities that the belief names first. */
+  get waypoints() {
+    return this.run.actions().flatMap((action) => {
+      const goal = this.goalOf(action);
+      const [first, second] = this.axes().map((name) => goal.find((p) => p.name === `${name}g`));
+      return first && second ? [{ action, place: first.place, x: first.value, y: second.value }] : [];
+    });
+  }
+
+  /** The first two angles of the belief: an arm's Figure 13 is drawn over them. */
+  axes() {
+    return (this.run.about().beliefNames ?? []).filter((name) => name.endsWith("(rad)")).slice(0, 2).map(bare);
+  }
+
+  goalOf(action) {
+    return this.run.last("subgoals", action.begin + 0.15)?.actions[0]?.parameters ?? [];
   }
 
   /** The belief's values, each with the goals that the actions had for a parameter of that name. */
@@ -30,25 +53,35 @@ class Series {
     const count = rows[0]?.values.length ?? 0;
     return Array.from({ length: count }, (_, i) => {
       const name = names[i] ?? `belief ${i}`;
-      return { name, points: rows.map((row) => [row.at, row.values[i]]), goals: this.goals(name.split(" (")[0].replace(/ /g, "_")) };
+      return { name, points: rows.map((row) => [row.at, row.values[i]]), goals: this.goals(bare(name)) };
     });
   }
 
   goals(name) {
     return this.run.actions().flatMap((action) => {
-      const subgoals = this.run.last("subgoals", action.begin + 0.15);
-      const goal = subgoals?.actions[0]?.parameters.find((p) => p.name === `${name}g`);
+      const goal = this.goalOf(action).find((p) => p.name === `${name}g`);
       return goal ? [[action.until, goal.value, goal.bound]] : [];
     });
   }
 
+  /** Topics that the page knows nothing of, without what never moves. */
   others() {
     return this.run.series().flatMap((kind) => {
       const rows = this.run.all(kind);
       const names = Object.keys(rows[0]).filter((name) => name !== "at");
-      return names.slice(0, 12).map((name) => ({ name: `${kind.slice(7)} ${name}`, points: rows.map((row) => [row.at, row[name]]), goals: [] }));
+      const lines = names.map((name) => ({ name: `${kind.slice(7)} ${name}`, points: rows.map((row) => [row.at, row[name]]), goals: [] }));
+      return lines.filter((line) => line.points.some(([, value]) => Math.abs(value - line.points[0][1]) > 1e-3)).slice(0, 24);
     });
   }
+}
+
+/** A belief's name without its unit, as parameters have it. */
+function bare(name) {
+  return name.split(" (")[0].replace(/ /g, "_");
+}
+
+function plotGrid(plots) {
+  return html("div", { class: "plots", style: "grid-template-columns:repeat(auto-fit,minmax(17rem,1fr))" }, ...plots.map((p) => p.element));
 }
 
 /** One plot over time with a cursor that moves. */

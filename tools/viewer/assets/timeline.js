@@ -23,8 +23,7 @@ class Timeline {
     const key = `${this.run.version} ${view}`;
     if (key !== this.drawn) { this.drawn = key; this.lay(view); }
     const px = this.x(Math.min(view[1], Math.max(view[0], at)));
-    this.cursor.setAttribute("x1", px);
-    this.cursor.setAttribute("x2", px);
+    this.hand.style.left = `${(100 * px) / WIDE.width}%`;
   }
 
   lay(view) {
@@ -39,11 +38,11 @@ class Timeline {
       top += lane.height + 8;
     }
     const axis = ticks(view[0], view[1], 12).flatMap((t) => [svg("line", { class: "grid", x1: x(t), x2: x(t), y1: 0, y2: top }), svg("text", { x: x(t), y: top + 12, "text-anchor": "middle", text: `${t} s` })]);
-    this.cursor = svg("line", { class: "cursor", y1: 0, y2: top });
+    this.hand = html("div", { class: "hand" }); // above the drawing, which need not be painted again when it moves
     const hit = svg("rect", { class: "hit", x: x.low, y: 0, width: x.high - x.low, height: top });
-    const drawing = svg("svg", { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" }, svg("g", {}, ...axis), hit, ...parts, this.cursor);
+    const drawing = svg("svg", { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" }, svg("g", {}, ...axis), hit, ...parts);
     this.listen(drawing);
-    this.panel.body.replaceChildren(drawing);
+    this.panel.body.replaceChildren(html("div", { class: "layers" }, drawing, this.hand));
     this.panel.note.textContent = this.summary();
   }
 
