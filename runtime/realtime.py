@@ -9,10 +9,15 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+import re
 import resource
+from pathlib import Path
 from typing import Any
 
 PRIORITY = 50  # of SCHED_FIFO: above ordinary work, below the kernel's own threads
+BUS_PRIORITY = 40  # below the loop: a flood on the bus must not delay a tick
+DRIVER_PRIORITY = 45
+_BUS_THREAD = re.compile(r"(app|net|acc|tx|rx)-\d+")  # zenoh's runtimes
 _MCL_CURRENT, _MCL_FUTURE = 1, 2  # <sys/mman.h>
 
 
@@ -27,7 +32,8 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
     return {
         "gc": "frozen",
         "memory": _lock_memory(),
-        "scheduler": _take_fifo(priority),
+        "scheduler": take_fifo(priority),
+        "bus": elevate_bus_threads(),
         "threads": os.environ.get("OMP_NUM_THREADS", "unset"),
     }
 
@@ -47,7 +53,27 @@ def _lock_memory() -> str:
     return "locked"
 
 
-def _take_fifo(priority: int) -> str:
+def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:
+    """SCHED_FIFO for zenoh's threads in this process; call it again when a new kind of thread may have come up.
+
+    A command that is published in time and then waits for a starved network thread comes too late all the same.
+    """
+    elevated = 0
+    for thread in Path("/proc/self/task").iterdir():
+        try:
+            if _BUS_THREAD.fullmatch((thread / "comm").read_text().strip()):
+                # No reset on fork: the workers that such a thread starts later inherit its priority.
+                os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(priority))
+                elevated += 1
+        except FileNotFoundError:
+            continue  # it has ended meanwhile
+        except OSError as error:
+            return f"default: {error.strerror}"
+    return f"fifo {priority}, {elevated} threads"
+
+
+def take_fifo(priority: int) -> str:
+    """SCHED_FIFO for the calling thread; what was obtained."""
     try:
         # Reset on fork: threads and processes that this thread starts later do not inherit the priority.
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import zenoh
@@ -15,10 +15,12 @@ from runtime.attachment import SENDER_BYTES
 from runtime.inbox import Inbox, Raw, depth
 from runtime.publisher import Publisher
 from runtime.questions import Question, Questions
+from runtime.realtime import elevate_bus_threads
 from schemas.errors import UsageError
 from schemas.topics import TOPICS, key_of
 from schemas.typesystem import ros_type
 
+SELF_CONNECT_MS = 500
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -45,6 +47,10 @@ def open_router(listen: str = bus_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
         why = "the port is in use" if "in use" in str(error) else "cannot listen there"
         raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --listen") from error
     with opened:
+        # The threads that serve clients come up with the first one: be it ourselves, so that they can be elevated now.
+        with suppress(zenoh.ZError), zenoh.open(zenoh.Config.from_json5(bus_config.client(listen, SELF_CONNECT_MS))):
+            pass
+        elevate_bus_threads()
         yield Session(opened)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from runtime import realtime
 from runtime.clock import MonotonicClock
 from runtime.session import open_client
 from runtime.stopping import stop_on_signals
@@ -49,6 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     with open_client(read.bus.endpoint) as session:
         codec.prime()
+        realtime.take_fifo(realtime.DRIVER_PRIORITY)
+        realtime.elevate_bus_threads()
         run_node(world, declaration(arguments.robot), session, lambda: stop.requested, arguments.speed)
     return 0
 

@@ -1,8 +1,13 @@
 """What a real-time process asks for, in a process of its own."""
 
 import json
+import os
 import subprocess
 import sys
+
+import pytest
+
+from tests.e2e.bus_system import free_endpoint
 
 REPORT = """
 import gc, json, os
@@ -41,3 +46,26 @@ def test_without_privileges_the_refusals_are_reported():
     told = json.loads(out.stdout)["told"]
     assert told["memory"].startswith("not locked: limited to 65536")
     assert told["scheduler"].startswith("default: ")
+
+
+ELEVATED = """
+import json, os, sys
+from runtime.session import open_router
+with open_router(sys.argv[1]):
+    threads = {t: open(f"/proc/self/task/{t}/comm").read().strip() for t in os.listdir("/proc/self/task")}
+    print(json.dumps({name: os.sched_getscheduler(int(t)) for t, name in threads.items()}))
+"""
+
+
+def test_a_routers_threads_are_not_starved_by_ordinary_work():
+    out = subprocess.run(
+        [sys.executable, "-c", ELEVATED, free_endpoint()], capture_output=True, text=True, check=True
+    ).stdout
+    policies = json.loads(out)
+    assert {"rx-0", "tx-0", "net-0"} <= policies.keys()
+    allowed = subprocess.run(
+        [sys.executable, "-c", "import os; os.sched_setscheduler(0, 1, os.sched_param(1))"], capture_output=True
+    )
+    if allowed.returncode:
+        pytest.skip("SCHED_FIFO is not granted here")
+    assert {policy for name, policy in policies.items() if name != "python"} == {os.SCHED_FIFO}
