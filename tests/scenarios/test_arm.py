@@ -1,0 +1,61 @@
+"""The arm writes: real core, models, controller, physics, driver and guard, in lock-step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from executive.library import Models
+from executive.refinement.settings import RefinementSettings
+from models.runtime import load_robot
+from tools.writing.lockstep import Hand, ListenedBody, write
+from tools.writing.measures import waypoint_errors_rad
+
+MODELS = Models(*load_robot("powercube"))
+BODY = ListenedBody()
+REFINED = Hand("refined", RefinementSettings())
+GREEDY = Hand("greedy", replace(RefinementSettings(), horizon=1))
+STOPPING = Hand("stopping", RefinementSettings(), stops=True)
+
+
+def written(text, hand, seed=3):
+    return write(text, hand, MODELS, seed, BODY)
+
+
+@pytest.mark.parametrize("hand", [STOPPING, GREEDY, REFINED], ids=lambda hand: hand.name)
+@pytest.mark.parametrize("letter", "TFS")
+def test_a_letter_passes_every_waypoint_within_ten_milliradians(letter, hand):
+    said = written(letter, hand)
+    assert said.result == "achieved"
+    assert len(said.arrivals_s) == len(said.waypoints)
+    assert waypoint_errors_rad(said).max() < 0.010
+
+
+def test_a_refined_hand_is_faster_than_one_that_stops():
+    assert all(written(letter, REFINED).duration_s < written(letter, STOPPING).duration_s for letter in "TFSA")
+
+
+def test_a_hand_that_stops_rests_at_its_waypoints_and_a_refined_one_does_not():
+    def fastest_passage(said):
+        speeds = np.linalg.norm(said.velocities, axis=1)
+        return max(np.interp(said.arrivals_s, said.times_s, speeds))
+
+    assert fastest_passage(written("Z", STOPPING)) < 0.05
+    assert fastest_passage(written("Z", REFINED)) > 0.2
+
+
+def test_the_same_seed_writes_the_same_bits():
+    first, again = written("P", REFINED), written("P", REFINED)
+    assert first.angles.tobytes() == again.angles.tobytes()
+    assert first.duration_s == again.duration_s
+
+
+def test_a_word_is_written_letter_by_letter():
+    said = written("IT", REFINED)
+    assert said.result == "achieved"
+    assert len(said.waypoints) == 8
+    down = said.pen_down().astype(int)
+    assert np.count_nonzero(np.diff(down) == 1) == 2, "the pen goes down once a letter"
+    assert waypoint_errors_rad(said).max() < 0.010
