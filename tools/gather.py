@@ -7,6 +7,7 @@ import json
 import time
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -83,10 +84,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         counts = run_gathering.cut_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
-    known = domains.scenarios(domain)
     for scenario in arguments.on_policy:
-        if scenario not in known:
-            raise UsageError(f"no scenario '{scenario}' in {domain} (expected some of: {', '.join(known)})")
+        domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     scenarios = tuple(arguments.on_policy)
     policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
     with Progress(console=Console(stderr=True), disable=arguments.json) as progress:
