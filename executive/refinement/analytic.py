@@ -11,7 +11,7 @@ import numpy as np
 
 from executive.library import Array
 from executive.refinement.chain import ChainObjective, blocks_of, links_of, pairwise_costs, traced
-from executive.refinement.solver import Solver
+from executive.refinement.solver import Limits, Solver
 
 GRID_MAX = 20_000  # points of one subgoal's grid
 ROWS_AT_ONCE = 50_000  # keeps the memory of one model call small
@@ -33,7 +33,7 @@ class AnalyticSolver(Solver):
         if blocks is None:
             raise ValueError("a parameter occurs in actions that are not neighbours: not a chain")
         count = len(objective.stages)
-        super().__init__(objective, np.random.default_rng(0), np.empty((0, len(points))), count, count)
+        super().__init__(objective, np.random.default_rng(0), np.empty((0, len(points))), Limits(count, count))
         sizes = [int(np.prod([len(points[column]) for column in block])) for block in blocks]
         if max(sizes) > GRID_MAX:
             raise ValueError(f"a subgoal has {max(sizes)} grid points, expected at most {GRID_MAX}")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.library import Array
-from executive.refinement.solver import Objective, Solver
+from executive.refinement.solver import Limits, Objective, Solver
 
 Columns = NDArray[np.intp]
 
@@ -74,8 +74,7 @@ class ChainSolver(Solver):
       rng: The only source of randomness.
       seeds: Candidates to begin with, shape (s, d).
       batch: Rows that one check may ask of a stage.
-      patience: Checks without improvement after which the search is finished.
-      checks_max: Checks after which it is finished anyway.
+      limits: When the search is finished.
 
     Raises:
       ValueError: The stages form no chain.
@@ -87,10 +86,9 @@ class ChainSolver(Solver):
         rng: np.random.Generator,
         seeds: Array,
         batch: int,
-        patience: int,
-        checks_max: int,
+        limits: Limits,
     ) -> None:
-        super().__init__(objective, rng, seeds, patience, checks_max)
+        super().__init__(objective, rng, seeds, limits)
         blocks = blocks_of(objective.stages)
         if blocks is None:
             raise ValueError("a parameter occurs in actions that are not neighbours: not a chain")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from executive.library import Array
-from executive.refinement.solver import Objective, Solver
+from executive.refinement.solver import Limits, Objective, Solver
 
 INDIVIDUALS_PER_PARAMETER = 8
 INDIVIDUALS_MIN = 32
@@ -21,14 +21,11 @@ class DifferentialEvolution(Solver):
       objective: What is minimised.
       rng: The only source of randomness.
       seeds: Candidates to begin with, shape (s, d).
-      patience: Generations without improvement after which the search is finished.
-      checks_max: Generations after which it is finished anyway.
+      limits: When the search is finished, in generations.
     """
 
-    def __init__(
-        self, objective: Objective, rng: np.random.Generator, seeds: Array, patience: int, checks_max: int
-    ) -> None:
-        super().__init__(objective, rng, seeds, patience, checks_max)
+    def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array, limits: Limits) -> None:
+        super().__init__(objective, rng, seeds, limits)
         self._size = max(INDIVIDUALS_MIN, INDIVIDUALS_PER_PARAMETER * objective.ranges.count)
         self._population: Array | None = None
         self._costs = np.empty(0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from executive.library import Array
-from executive.refinement.solver import Objective, Solver
+from executive.refinement.solver import Limits, Objective, Solver
 
 CHROMOSOMES_PER_PARAMETER = 25
 ELITE = 0.02  # passes to the next generation unmodified
@@ -22,7 +22,7 @@ class GeneticAlgorithm(Solver):
     """One generation a check; elitism, mutation, two-point crossover, fitness-proportionate selection."""
 
     def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array) -> None:
-        super().__init__(objective, rng, seeds, GENERATIONS_IDLE, GENERATIONS_MAX)
+        super().__init__(objective, rng, seeds, Limits(GENERATIONS_IDLE, GENERATIONS_MAX))
         self._size = CHROMOSOMES_PER_PARAMETER * objective.ranges.count
         self._population: Array | None = None
         self._costs = np.empty(0)

@@ -10,7 +10,7 @@ from executive.refinement.differential import DifferentialEvolution
 from executive.refinement.genetic import GeneticAlgorithm
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
-from executive.refinement.solver import Solver
+from executive.refinement.solver import Limits, Solver
 
 SUBGOALS_MIN = 3  # from so many on, dynamic programming beats evolution for the same number of model rows
 PARAMETERS_MAX = 2  # of one subgoal: a few candidates of more dimensions are too thin, under constraints above all
@@ -23,16 +23,16 @@ def solver_for(
 
     "chain" falls back to differential evolution where the sequence is no chain: no mistake of the user's.
     """
-    limits = (settings.patience, settings.checks_max)
+    limits = Limits(settings.patience, settings.checks_max, settings.worth_s)
     blocks = blocks_of(objective.stages)
     wanted = settings.solver
     if wanted == "auto" and blocks is not None:
         wanted = "chain" if _long_chain(blocks) else "differential"
     if blocks is not None and (wanted == "chain" or not objective.ids):
-        return ChainSolver(objective, rng, seeds, settings.batch, *limits)
+        return ChainSolver(objective, rng, seeds, settings.batch, limits)
     if wanted == "genetic":
         return GeneticAlgorithm(objective, rng, seeds)
-    return DifferentialEvolution(objective, rng, seeds, *limits)
+    return DifferentialEvolution(objective, rng, seeds, limits)
 
 
 def _long_chain(blocks: tuple[Columns, ...]) -> bool:

@@ -35,7 +35,8 @@ class RefinementSettings:
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
     batch: int = 256  # rows that one check of the chain solver asks of a model, about 0.1 ms with ten bagged trees
-    patience: int = 50  # checks without improvement until the search ends (the paper's 50 generations)
+    patience: int = 25  # checks without an improvement that is worth it until the search ends
+    worth_s: float = 0.002  # such an improvement
     checks_max: int = 500  # the paper's 500 generations
     greedy_checks: int = 6  # batches spent on the first, greedy answer
     assertion_depth: int = 2  # detours in a row before one action
@@ -47,7 +48,7 @@ class RefinementSettings:
         for name in COUNTS:
             if getattr(self, name) < 1:
                 raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
-        for name in ("k_std", "risk_cost_s", "gain_min_s", "energy_weight", "assertion_depth"):
+        for name in ("k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise UsageError(f"refinement.{name} is {value}, expected a finite number >= 0")

@@ -32,6 +32,15 @@ class Objective(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """When a search is finished: `patience` checks in which the value fell by no more than `worth`, or `checks_max`."""
+
+    patience: int
+    checks_max: int
+    worth: float = 0.0
+
+
 @dataclass(slots=True)
 class Trace:
     """How the best value fell: at which check and after how many model rows."""
@@ -54,13 +63,10 @@ class Solver:
       objective: What is minimised.
       rng: The only source of randomness.
       seeds: Candidates to begin with, shape (s, d); s may be 0.
-      patience: Checks without improvement after which the search is finished.
-      checks_max: Checks after which it is finished anyway.
+      limits: When the search is finished.
     """
 
-    def __init__(
-        self, objective: Objective, rng: np.random.Generator, seeds: Array, patience: int, checks_max: int
-    ) -> None:
+    def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array, limits: Limits) -> None:
         self.best: Array | None = None  # shape (d,), None until a valid candidate has been seen
         self.value = np.inf
         self.trace = Trace()
@@ -68,22 +74,23 @@ class Solver:
         self._objective = objective
         self._rng = rng
         self._seeds = objective.ranges.confine(seeds.reshape(len(seeds), objective.ranges.count))
-        self._patience = patience
-        self._checks_max = checks_max
+        self._limits = limits
         self._idle = 0
+        self._milestone = np.inf  # the value when patience was last renewed
 
     @property
     def finished(self) -> bool:
         """Whether more budget would change nothing."""
-        return self._idle >= self._patience or self.checks >= self._checks_max
+        return self._idle >= self._limits.patience or self.checks >= self._limits.checks_max
 
     def advance(self, budget: Budget) -> None:
         """Search on until the budget is spent or the search is finished."""
         while not self.finished and not budget.spent():
             self.checks += 1
-            before = self.value
+            self._idle += 1
             self._check()
-            self._idle = 0 if self.value < before else self._idle + 1
+            if self.value < self._milestone - self._limits.worth:
+                self._milestone, self._idle = self.value, 0
 
     def _check(self) -> None:
         """One batch of candidates."""

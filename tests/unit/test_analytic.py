@@ -14,6 +14,7 @@ from executive.refinement.breakpoints import NotAnalytic, TreeEdges, breakpoints
 from executive.refinement.chain import ChainSolver
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
+from executive.refinement.solver import Limits
 from tests.synthetic_models import GO, norm, sequence
 
 FEATURES = ("v", "v_g", "dist", "angle_to", "angle_at")
@@ -83,7 +84,7 @@ def test_one_subgoal_is_no_worse_than_a_fine_grid(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_chain_of_subgoals_is_no_worse_than_a_long_search(seed):
     solver, objective = solved(3, seed)
-    search = ChainSolver(objective, np.random.default_rng(1), np.empty((0, 4)), 256, 400, 2000)
+    search = ChainSolver(objective, np.random.default_rng(1), np.empty((0, 4)), 256, Limits(400, 2000))
     search.advance(CheckBudget(2000))
     assert solver.value <= search.value + 1e-4
 

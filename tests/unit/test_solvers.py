@@ -16,6 +16,7 @@ from executive.refinement.objective import SequenceObjective
 from executive.refinement.ranges import Ranges
 from executive.refinement.selection import solver_for
 from executive.refinement.settings import RefinementSettings
+from executive.refinement.solver import Limits
 from tests.synthetic_models import APPROACH, GO, MODELS, approach_dribble, sequence
 
 
@@ -64,8 +65,8 @@ def solver(name: str, objective, seed: int = 1):
     if name == "genetic":
         return GeneticAlgorithm(objective, rng, none)
     if name == "differential":
-        return DifferentialEvolution(objective, rng, none, 80, 800)
-    return ChainSolver(objective, rng, none, 512, 200, 800)
+        return DifferentialEvolution(objective, rng, none, Limits(80, 800))
+    return ChainSolver(objective, rng, none, 512, Limits(200, 800))
 
 
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
@@ -83,7 +84,7 @@ def test_benchmark_minimum_is_found(name, function, half, count, close):
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_solver_is_as_good_as_a_brute_force_grid(name):
     given = approach_dribble((1.5, -1.0, 1.0))
-    settings = RefinementSettings(solver=name, arrival_spread=())
+    settings = RefinementSettings(solver=name, arrival_spread=(), patience=60, worth_s=0.0)
     objective = SequenceObjective(given.within(2), given.variables, MODELS, settings)
     assert objective.ranges.count == 2
     axes = [np.linspace(lo, hi, 400) for lo, hi in zip(objective.ranges.lower, objective.ranges.upper, strict=True)]
@@ -112,8 +113,8 @@ def test_small_valid_region_is_found_from_a_seed(name):
     objective, rng, seeds = Function(cube(1.0, 2), pocket), np.random.default_rng(0), np.array([[0.504, 0.504]])
     found = {
         "genetic": lambda: GeneticAlgorithm(objective, rng, seeds),
-        "differential": lambda: DifferentialEvolution(objective, rng, seeds, 80, 800),
-        "chain": lambda: ChainSolver(objective, rng, seeds, 512, 200, 800),
+        "differential": lambda: DifferentialEvolution(objective, rng, seeds, Limits(80, 800)),
+        "chain": lambda: ChainSolver(objective, rng, seeds, 512, Limits(200, 800)),
     }[name]()
     found.advance(CheckBudget(100))
     assert found.value <= 0.004 + 1e-9
@@ -149,3 +150,13 @@ def test_parameter_in_distant_actions_is_no_chain_and_falls_back():
     assert blocks_of(objective.stages) is None
     chosen = solver_for(objective, RefinementSettings(solver="chain"), np.random.default_rng(0), np.empty((0, 2)))
     assert isinstance(chosen, DifferentialEvolution)
+
+
+def test_search_ends_when_improvements_are_not_worth_it():
+    values = iter(1 + 0.5**k for k in range(10_000))
+    objective = Function(cube(1.0, 1), lambda x: np.full(len(x), next(values)))
+    none = np.empty((0, 1))
+    eager = DifferentialEvolution(objective, np.random.default_rng(0), none, Limits(5, 1000, worth=0.1))
+    eager.advance(CheckBudget(10_000))
+    assert eager.finished
+    assert eager.checks < 15
