@@ -15,7 +15,8 @@ from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 Floats = NDArray[np.float32]
 Answers = tuple[NDArray[Any], NDArray[Any]]  # mean and spread, (n,) each
 
-ROWS = 30_000  # asked of the teacher
+ROWS = 30_000  # asked of the teacher, at most
+ROWS_EACH = 30  # for each row of the examples
 SETTINGS = TreeSettings(max_leaves=64, min_rows=60, smoothing=0.0)
 
 
@@ -59,6 +60,6 @@ class DistilledModelTree(ModelTreeRegressor):
         features, _, _ = self._checked(X, y, groups)
         settings = (self.max_leaves, self.min_rows, self.smoothing, self.ridge, self.bins, self.clip)
         bag = BaggedModelTrees(self.trees, *settings, self.random_state).fit(X, y, groups)
-        asked = between(features, ROWS, np.random.default_rng(self.random_state or 0))
+        asked = between(features, min(ROWS, ROWS_EACH * len(features)), np.random.default_rng(self.random_state or 0))
         self.tree_ = distil(bag.predict_spread, np.concatenate([features, asked]))
         return self

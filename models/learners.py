@@ -13,6 +13,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
 from models.borrowed import BorrowedClassifier, BorrowedRegressor
+from models.distilled_failure import DistilledFailureTree
 from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
@@ -43,6 +44,7 @@ DURATION: Mapping[str, Callable[[int], Any]] = {
 }
 SUCCESS: Mapping[str, Callable[[int], Any]] = {
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
+    "distilled": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
     "boosting": lambda seed: BorrowedClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
     "network": lambda seed: BorrowedClassifier(_network(MLPClassifier, seed), COST_RATIO),

@@ -10,6 +10,7 @@ from onnx import TensorProto
 from skl2onnx import update_registered_converter
 from skl2onnx.common.data_types import FloatTensorType, Int64TensorType, guess_tensor_type
 
+from models.distilled_failure import DistilledFailureTree
 from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
@@ -47,7 +48,7 @@ def register() -> None:
     """Register all converters; may be called again."""
     for estimator in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
         update_registered_converter(estimator, f"Tailor{estimator.__name__}", _regressor_shape, _convert_regressor)
-    for estimator in (FailureTree, FailureForest):
+    for estimator in (FailureTree, FailureForest, DistilledFailureTree):
         update_registered_converter(
             estimator,
             f"Tailor{estimator.__name__}",

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from sklearn.utils.estimator_checks import check_estimator
 
+from models.distilled_failure import DistilledFailureTree
+from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
@@ -14,6 +16,8 @@ ESTIMATORS = [
     BaggedModelTrees(trees=3),
     FailureTree(),
     FailureForest(trees=5),
+    DistilledFailureTree(trees=5),
+    DistilledModelTree(trees=3),
 ]
 
 
@@ -90,3 +94,11 @@ def test_probabilities_mean_what_they_say() -> None:
             part = (said >= low) & (said < low + 0.25)
             if part.sum() > 50:
                 assert abs(said[part].mean() - y[4000:][part].mean()) < 0.08
+
+
+def test_a_distilled_tree_says_what_its_teacher_says() -> None:
+    x, y = two_planes(1500, noise=0.3)
+    settings = {"min_rows": 20.0, "random_state": 1}
+    bag, pupil = BaggedModelTrees(trees=5, **settings).fit(x, y), DistilledModelTree(trees=5, **settings).fit(x, y)
+    fresh = two_planes(500, seed=5)[0]
+    assert np.abs(bag.predict(fresh) - pupil.predict(fresh)).mean() < 0.1
