@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -150,3 +152,26 @@ def test_scenarios_are_listed_once_and_the_first_is_the_default(name):
     scenario, start = first_scenario(name)
     assert scenario.name == names[0]
     assert np.isfinite(list(start.values())).all()
+
+
+@pytest.mark.parametrize("folder", ["core", "planning", "refinement"])
+def test_what_all_robots_share_names_none_of_them(folder):
+    loaded = [domains.load(name) for name in domains.DOMAINS]
+    words = {domain.robot for domain in loaded} | {f"domains.{name}" for name in domains.DOMAINS}
+    words |= {topic for domain in loaded for topic in (domain.command_topic, *domain.sensors) if "_" in topic}
+    words |= {name for domain in loaded for name in domain.actions if not name.islower()}
+    for path in (Path(domains.__file__).parents[1] / folder).rglob("*.py"):
+        said = spoken(path)
+        assert [(word, text) for word in words for text in said if word in text] == [], path
+
+
+def spoken(path):
+    """Names and texts of a module that mean something to Python: comments and docstrings may give examples."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    prose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    said = set()
+    for node in ast.walk(tree):
+        said |= {str(getattr(node, field)) for field in ("id", "attr", "arg", "name", "module") if hasattr(node, field)}
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose:
+            said.add(node.value)
+    return said
