@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +21,8 @@ from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
 from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import Explanation
 from tools.viewer.recorded import timed
-from tools.viewer.wording import durations, effort, in_words
+from tools.viewer.rows import number
+from tools.viewer.wording import durations, effort, in_words, nearness, seen
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +31,7 @@ class Reason:
 
     decision: Decision
     explanation: Explanation | None
+    best_cost: float = math.inf  # that a long search finds
 
     @property
     def title(self) -> str:
@@ -79,7 +83,14 @@ def reasons_of(recording: Path, at_s: float | None = None, sender: str = "") -> 
     explainer.learn(found.provenance)
     if explainer.missing:
         raise UsageError(f"{recording}: cannot load what it was made with: {explainer.missing}")
-    return [Reason(decision, explainer.explanation(decision.subgoals)) for decision in decisions]
+    return [_reason(explainer, decision) for decision in decisions]
+
+
+def _reason(explainer: Explainer, decision: Decision) -> Reason:
+    explanation = explainer.explanation(decision.subgoals)
+    if explanation is None:
+        return Reason(decision, None)
+    return Reason(decision, explanation, explainer.best_cost(decision.subgoals))
 
 
 def _show(reasons: Sequence[Reason]) -> None:
@@ -92,6 +103,9 @@ def _show(reasons: Sequence[Reason]) -> None:
         console.print(durations(reason.explanation))
         for of in reason.explanation.parameters:
             console.print(f"  {in_words(of)}", highlight=False)
+        for situation in reason.explanation.situations:
+            console.print(f"  {seen(situation)}", highlight=False)
+        console.print(f"  {nearness(reason.explanation.chosen_cost, reason.best_cost)}", highlight=False)
         console.print(f"  {effort(reason.decision)}\n", highlight=False)
 
 
@@ -101,6 +115,7 @@ def _told(reason: Reason) -> dict[str, Any]:
         "at_s": decision.at_s,
         "actions": [action.action for action in decision.subgoals.actions],
         "explanation": None if reason.explanation is None else fields_of(reason.explanation),
+        "best_cost": number(reason.best_cost),
         "search": None
         if report is None
         else {"solver": report.solver, "evaluations": report.evaluations, "checks": report.checks},
@@ -121,4 +136,4 @@ def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
             body = [f"<p>{lines}</p>", image(picture, "predicted durations over the free parameters")]
         output.parent.mkdir(parents=True, exist_ok=True)
         output.write_text(page("Why these subgoals", body), encoding="utf-8")
-    print(output)
+    print(output, file=sys.stderr)  # stdout may be read by a program

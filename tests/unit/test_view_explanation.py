@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -13,9 +13,11 @@ from executive.refinement.refinement import Refinement
 from schemas.errors import UsageError
 from schemas.messages import Subgoals
 from tests import synthetic_run
-from tests.synthetic_models import LIBRARY, MODELS, approach_dribble
+from tests.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribble
 from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import explain, sequence_of
+from tools.viewer.longer_search import best_cost
+from tools.viewer.wording import nearness
 
 SETTINGS = synthetic_run.SETTINGS
 
@@ -90,3 +92,40 @@ def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -
     explainer.learn("{}")
     assert explainer.fields(told(*refined)) is None
     assert explainer.missing == "no model agilo/goToPose/duration"
+
+
+def test_a_long_search_is_never_worse_than_the_choice_and_finds_what_a_poor_choice_missed(refined) -> None:
+    sequence, choice = refined
+    rng = np.random.default_rng(1)
+    known = best_cost(told(sequence, choice), LIBRARY, MODELS, SETTINGS, rng, checks=100)
+    assert known <= choice.total_s + 1e-9
+    angle = next(v.id for v in sequence.free() if v.quantity == "phi")
+    poor = replace(choice, values={**choice.values, angle: choice.values[angle] - 0.3})
+    cost = explained(told(sequence, poor)).chosen_cost
+    assert cost > known + 0.01
+    assert best_cost(told(sequence, poor), LIBRARY, MODELS, SETTINGS, rng, checks=100) == pytest.approx(known, abs=0.02)
+
+
+def test_the_situation_is_what_the_duration_model_sees_of_the_choice(refined) -> None:
+    @dataclass
+    class Carded(PoseDuration):
+        card = {"features": "projective"}
+
+    models = replace(MODELS, durations={**MODELS.durations, "goToPose/duration": Carded()})
+    said = explain(told(*refined), LIBRARY, models, SETTINGS, np.random.default_rng(0))
+    (seen,) = said.situations
+    assert (seen.action, [q.name for q in seen.features]) == (
+        "approachBall",
+        ["v", "v_g", "dist", "angle_to", "angle_at"],
+    )
+    speed = next(p for p in said.parameters if p.variable.quantity == "v")
+    assert (seen.chosen[1], seen.greedy[1]) == pytest.approx((speed.chosen, speed.greedy))
+    assert seen.chosen[2] == pytest.approx(np.hypot(2.2, 0.6), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "best", "words"),
+    [(10.0, 10.0, "finds nothing better"), (11.0, 10.0, "1.00 s (10.0 %) better"), (9.0, np.inf, "nothing valid")],
+)
+def test_nearness_is_told_in_seconds_and_per_cent(chosen, best, words) -> None:
+    assert words in nearness(chosen, best)

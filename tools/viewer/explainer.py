@@ -13,9 +13,10 @@ from executive.core.context import Context
 from schemas.errors import UsageError
 from schemas.messages import Subgoals
 from tools.viewer.explanation import Explanation, FreeParameter, explain
+from tools.viewer.longer_search import best_cost
 from tools.viewer.rows import Fields, number
 
-STREAM = 5  # of the seed; the executive's own draws come from others
+STREAM = 5  # of the seed, and the one after it; the executive's own draws come from others
 
 
 class Explainer:
@@ -43,6 +44,13 @@ class Explainer:
             return None
         rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
         return explain(message, context.domain.actions, context.models, context.settings.refinement, rng)
+
+    def best_cost(self, message: Subgoals) -> float:
+        """The least objective that a long search finds for the same decision."""
+        assert self._context is not None, "nothing was explained either"
+        context = self._context
+        rng = np.random.default_rng([context.settings.seed, STREAM + 1, message.tick])
+        return best_cost(message, context.domain.actions, context.models, context.settings.refinement, rng)
 
     def fields(self, message: Subgoals) -> Fields | None:
         """The explanation as the page takes it."""

@@ -17,6 +17,7 @@ from executive.refinement.objective import SequenceObjective
 from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
 from executive.refinement.settings import RefinementSettings
 from schemas import messages as m
+from tools.viewer.situation import Situation, situations_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,7 @@ class Explanation:
     chosen_cost: float
     greedy_cost: float
     parameters: tuple[FreeParameter, ...]  # the free ones
+    situations: tuple[Situation, ...] = ()  # one for each action, where its model says what it sees
 
 
 def explain(
@@ -60,13 +62,11 @@ def explain(
     if sequence is None:
         return None
     settings = replace(settings, horizon=message.horizon)
-    chosen = {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
+    chosen = chosen_values(message)
+    sequence = accepted(sequence, chosen, models, settings)
     objective = _objective(sequence, models, settings)
     if not objective.ids:
         return None
-    if not np.isfinite(objective(objective.vector(chosen)[None]))[0]:
-        sequence = _risked(sequence)  # a failure that was knowingly accepted is not in the message
-        objective = _objective(sequence, models, settings)
     alone = greedy(sequence, models, settings, rng).values
     picked, lone = objective.vector(chosen), objective.vector(alone)
     return Explanation(
@@ -76,6 +76,7 @@ def explain(
         float(objective(picked[None])[0]),
         float(objective(lone[None])[0]),
         tuple(_parameter(sequence, objective, place, picked, lone, models, settings) for place in range(len(picked))),
+        situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
     )
 
 
@@ -110,7 +111,18 @@ def _objective(sequence: ActionSequence, models: Models, settings: RefinementSet
     return SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
 
 
-def _risked(sequence: ActionSequence) -> ActionSequence:
+def chosen_values(message: m.Subgoals) -> dict[int, float]:
+    """The values that were chosen for the free parameters, by variable id."""
+    return {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
+
+
+def accepted(
+    sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
+) -> ActionSequence:
+    """The sequence with every risk allowed if the choice needs it: risks that were accepted are not in the message."""
+    objective = _objective(sequence, models, settings)
+    if np.isfinite(objective(objective.vector(chosen)[None]))[0]:
+        return sequence
     return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
 
 

@@ -8,6 +8,7 @@ from rich.table import Table
 
 from tools.viewer.decisions import Decision
 from tools.viewer.explanation import Explanation, FreeParameter
+from tools.viewer.situation import Situation
 
 NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
 
@@ -36,6 +37,23 @@ def in_words(of: FreeParameter) -> str:
     share = f"{100 * (cost <= best * NEAR).mean():.0f} % of the range is within 2 % of the best"
     worst = cost[cost < math.inf].max()
     return f"{said}; {share}, the worst valid value costs {worst - best:+.2f} s"
+
+
+def nearness(chosen_cost: float, best_cost: float) -> str:
+    """How near the choice is to the best that a long search knows of."""
+    if not math.isfinite(best_cost):
+        return "a long search finds nothing valid either"
+    missed = chosen_cost - best_cost
+    if missed < 0.005:
+        return "a long search finds nothing better"
+    return f"a long search finds {missed:.2f} s ({100 * missed / best_cost:.1f} %) better"
+
+
+def seen(situation: Situation) -> str:
+    """What the model of an action sees, chosen and greedy."""
+    columns = zip(situation.features, situation.chosen, situation.greedy, strict=True)
+    said = [f"{q.name} {_value(a, q.unit)} ({_value(b, q.unit)})" for q, a, b in columns]
+    return f"{situation.action} sees (greedy): {', '.join(said)}"
 
 
 def effort(decision: Decision) -> str:
