@@ -19,8 +19,8 @@ from executive import domains
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
 from models.runtime import load_robot
-from simnodes.body import Body
 from tools.episodes import SENDER, run_episode
+from tools.evaluations.bodies import body_of
 from tools.evaluations.journal import Journal
 from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tools.evaluations.pinned import PinnedDomain
@@ -69,7 +69,7 @@ def run_all(
 def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
     """One episode, in lock-step with the same core as live."""
     context, start = _context(task, variant, seed)
-    episode = run_episode(context, _body(task), start, seed)
+    episode = run_episode(context, body_of(task.domain, task.profile), start, seed)
     return outcome_of(episode, context.domain, variant.name, seed)
 
 
@@ -98,12 +98,6 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
 def _models(robot: str, zoo: str) -> Models:
     """Loaded once a process."""
     return Models(*load_robot(robot, Path(zoo) if zoo else None))
-
-
-def _body(task: Task) -> Body:
-    from simnodes.agilo.body import AgiloBody
-
-    return AgiloBody()
 
 
 def _model_hashes(task: Task) -> list[str]:
