@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from executive.actions.dubins import DubinsPath, shortest
-from executive.actions.fetch_ball import FetchBall, Stage
+from executive.actions.fetch_ball import SEEKING, FetchBall, Stage
 from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
@@ -16,6 +16,7 @@ from executive.belief.planar_ekf import Pose
 from executive.library import Array, Control
 
 TICK_S = 0.1  # the controller's period
+SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
 
 
 class BallBelief(PlanarBelief, Protocol):
@@ -40,6 +41,7 @@ class Fetching:
     """Memory while the ball is lost."""
 
     stage: Stage
+    since_ns: int = 0  # begin of a search
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,8 @@ class DribbleBall:
     mended_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
     chase_radps: float = 1.0  # rad/s per rad of the ball's bearing when it slips
-    lost_m: float = 0.17  # from the bottom of the rail: gone
+    lost_m: float = 0.17  # from the bottom of the rail: to be fetched
+    gone_m: float = 0.90  # farther it is not worth fetching: another approach is
     seated_ahead_m: float = 0.035  # pushing begins when the ball is this near to the bottom
     seated_aside_m: float = 0.035
     anew_m: float = 0.8  # with more than this to go, a path is planned anew after a slip
@@ -82,11 +85,15 @@ class DribbleBall:
         ball = belief.ball
         if ball is None:
             return Control(memory, (0.0, 0.0), "failed", "the ball was never seen")
+        stage: Stage = memory.stage if isinstance(memory, Fetching) else "chase"
+        if self.fetch.misses(stage, ball, now_ns):
+            return self._seek(memory, now_ns, belief, ball)
         ahead, left = ball.ahead - self.in_rail_m, abs(ball.left)
-        if math.hypot(ahead, left) > self.lost_m:
-            memory = memory if isinstance(memory, Fetching) else Fetching("chase")
-        if not isinstance(memory, Pushing) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
-            return self._retrieve(memory.stage if isinstance(memory, Fetching) else "chase", belief, ball)
+        if math.hypot(ahead, left) > self.gone_m:
+            return Control(memory, (0.0, 0.0), "failed", "the ball got away")
+        lost = isinstance(memory, Fetching) or math.hypot(ahead, left) > self.lost_m
+        if (lost or memory is None) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
+            return self._retrieve("chase" if stage in SEEKING else stage, belief, ball)
         if not isinstance(memory, Pushing):
             memory = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v), belief.omega)
         return self._push(memory, belief, ball, goal)
@@ -163,6 +170,15 @@ class DribbleBall:
             and abs(difference(goal[2], pose.phi)) < self.heading_rad
             and belief.v < goal[3] + self.speed_mps
         )
+
+    def _seek(self, memory: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
+        """Turn, always the same way, until the ball is seen."""
+        if not (isinstance(memory, Fetching) and memory.stage in SEEKING):
+            memory = Fetching("seek left" if ball.left > 0.0 else "seek right", now_ns)
+        if now_ns - memory.since_ns > SEEKING_NS:
+            return Control(memory, (0.0, 0.0), "failed", "the ball is not to be found")
+        _, command = self.fetch(memory.stage, ball, 0.0)
+        return Control(memory, command)
 
     def _retrieve(self, stage: Stage, belief: BallBelief, ball: BallTrack) -> Control:
         c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)

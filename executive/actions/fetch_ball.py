@@ -1,4 +1,4 @@
-"""Getting a lost ball back into the rail: make room, face it, drive at it gently."""
+"""Getting a lost ball back into the rail: look for it, make room, face it, drive at it gently."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Literal
 
 from executive.belief.ball_track import BallTrack
 
-Stage = Literal["chase", "clear"]
+Stage = Literal["chase", "clear", "seek left", "seek right"]
+SEEKING = ("seek left", "seek right")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +25,19 @@ class FetchBall:
     clear_mps: float = 0.25
     touch_mps: float = 0.20  # faster than the ball when it reaches the rail
     v_max_mps: float = 0.7
+    unseen_s: float = 0.6  # in view and not seen for so long: it is not there
+    in_view_rad: float = 0.7  # a ball in this bearing would be seen
+    near_m: float = 0.27
+    search_radps: float = 1.0
+
+    def misses(self, stage: Stage, ball: BallTrack, now_ns: int) -> bool:
+        """Whether the ball is not where it is believed to be: looked for until it is seen again."""
+        unseen_s = 1e-9 * (now_ns - ball.seen_ns)
+        if stage in SEEKING:
+            return unseen_s > 0.5 * self.unseen_s
+        bearing = abs(math.atan2(ball.left, ball.ahead))
+        in_view = bearing < self.in_view_rad and math.hypot(ball.ahead, ball.left) > self.near_m
+        return in_view and unseen_s > self.unseen_s
 
     def __call__(self, stage: Stage, ball: BallTrack, ball_speed: float) -> tuple[Stage, tuple[float, float]]:
         """The next stage and the command (v m/s, omega rad/s).
@@ -33,6 +47,8 @@ class FetchBall:
           ball: Where the ball is, robot's frame.
           ball_speed: How fast it rolls away, m/s.
         """
+        if stage in SEEKING:
+            return stage, (0.0, self.search_radps if stage == "seek left" else -self.search_radps)
         distance, bearing = math.hypot(ball.ahead, ball.left), math.atan2(ball.left, ball.ahead)
         aside = abs(bearing) > self.facing_rad
         if aside and distance < (self.cleared_m if stage == "clear" else self.room_m):

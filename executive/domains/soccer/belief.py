@@ -14,8 +14,8 @@ from schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
 
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
 POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts in a row err alike and count as one
-FIRST_POSES = 5  # percepts before the first one's error has been averaged enough to drive
-LOOKING_POSES = 20  # so long the robot looks for a ball before it sets out without
+FIRST_POSES = 12  # percepts before the first one's error has been averaged enough to drive
+LOOKING_POSES = 25  # so long the robot looks for a ball before it sets out without
 LOST_JUMP_M = 0.6  # a pose this far off is not noise: the robot was put elsewhere
 LOST_JUMP_RAD = 0.6
 LOST_POSES = 3  # so many such poses in a row, and they are believed

@@ -20,7 +20,9 @@ FIELD_X_M = 3.5
 FIELD_Y_M = 2.25
 PASSING_MPS = 0.6  # fastest arrival that is asked of goToPose
 AT_BALL_MPS = 0.3  # what `atball` allows (paper 6.1)
-BALL_MOVED_M = 0.15  # an approach is thought over when its goal has moved so far; percepts from afar err by less
+BALL_MOVED_M = (
+    0.25  # an approach is thought over when its goal has moved so far: two deviations of a ball seen from 3 m
+)
 
 
 def _places(speed_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
