@@ -86,10 +86,12 @@ def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
     """The state after the last event."""
     state: State = frozenset(problem.initial)
     running: list[Step] = []
+    began: dict[int, State] = {}  # by step, the state just before its start
     for events in _happenings(plan, problem):
         _check_conditions(events, state, problem, bound)
         running = [step for step in running if not any(event.ends and event.step is step for event in events)]
-        changes = [(event, *_changes(event, state, problem, bound)) for event in events]
+        began.update((event.step.id, state) for event in events if event.step and not event.ends)
+        changes = [(event, *_changes(event, state, began, problem, bound)) for event in events]
         _check_disturbance(changes, problem, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
@@ -153,7 +155,9 @@ def _check_invariants(running: list[Step], state: State, problem: Problem, bound
             raise _Unsound(f"step {step.id}: {atom(step.action)} loses a condition that it needs all the time")
 
 
-def _changes(event: _Event, state: State, problem: Problem, bound: Bound) -> tuple[frozenset[Fact], frozenset[Fact]]:
+def _changes(
+    event: _Event, state: State, began: dict[int, State], problem: Problem, bound: Bound
+) -> tuple[frozenset[Fact], frozenset[Fact]]:
     """What an event adds and removes; add effects win over delete effects of the same event."""
     if event.step is None:
         return event.added, event.removed
@@ -162,15 +166,22 @@ def _changes(event: _Event, state: State, problem: Problem, bound: Bound) -> tup
     removed: set[Fact] = set()
     for effect in action.effects:
         if effect.when in _moments(event, action):
-            facts = affected(effect, binding, state, Objects(problem))
+            facts = affected(effect, binding, state, Objects(problem), began.get(event.step.id, state))
             (added if effect.positive else removed).update(facts)
     return frozenset(added), frozenset(removed - added)
 
 
-def affected(effect: Effect, binding: Binding, state: State, objects: Objects) -> Iterator[Fact]:
-    """The facts that an effect makes true or false in a state."""
+def affected(
+    effect: Effect, binding: Binding, state: State, objects: Objects, began: State | None = None
+) -> Iterator[Fact]:
+    """The facts that an effect makes true or false in a state.
+
+    Its conditions at the action's start are asked of `began`, the state before it, where that is another one. (A
+    condition over all is asked of the effect's own state alone.)
+    """
+    before = state if began is None else began
     for inner in objects.bindings(effect.variables, binding):
-        if all(holds(condition.formula, inner, state, objects) for condition in effect.condition):
+        if all(holds(c.formula, inner, before if c.when == "start" else state, objects) for c in effect.condition):
             yield fact_of(effect.atom, inner)
 
 

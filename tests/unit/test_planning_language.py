@@ -165,6 +165,18 @@ def test_an_effect_at_the_end_restores_what_was_demanded_at_the_start():
     assert plan.steps[1].start >= plan.steps[0].start + 5
 
 
+def test_a_conditional_effect_at_the_end_may_depend_on_the_start():
+    domain = """
+    (define (domain kiln) (:requirements :adl :durative-actions) (:predicates (lit) (clay) (pot) (ash))
+      (:durative-action light :parameters () :duration (= ?duration 1) :effect (at end (lit)))
+      (:durative-action fire :parameters () :duration (= ?duration 5)
+        :effect (and (at start (not (clay))) (when (at start (clay)) (at end (pot)))
+                     (when (at start (lit)) (at end (ash))))))"""
+    problem = "(define (problem p) (:domain kiln) (:init (clay)) (:goal (and (pot) {})))"
+    assert planned(domain, problem.replace("{}", "(not (ash))"))[0] == ["fire"]
+    assert planned(domain, problem.replace("{}", "(ash)"))[0] == ["light", "fire"]
+
+
 TIMED = """(define (problem wait) (:domain workshop) (:objects a - part)
   (:init (raw a) (hot a) (at 3 (light)) (at 12 (not (light))) (= (mass a) 1) (= (speed) 1))
   (:goal (shaped a)))"""
