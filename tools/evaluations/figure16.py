@@ -11,6 +11,7 @@ from typing import Any
 from executive.refinement.settings import RefinementSettings
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.plots import draw_shares
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.table3 import FIRST_SEED
 from tools.evaluations.trials import run_all
@@ -30,7 +31,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when at least 98 % succeed and at most 10 % of the detours were needless."""
     row = evaluate(arguments)
-    tell(Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER]), arguments.json, arguments.report)
+    plots = {}
+    if arguments.report is not None:
+        plots["success of approaches"] = draw_shares(row, arguments.report / "figure16.png")
+    tell(Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots), arguments.json, arguments.report)
     return 0 if row["success_after_pct"] >= 98 and row["needless_pct"] <= 10 else 1
 
 

@@ -24,7 +24,10 @@ class Journal:
         folder.mkdir(parents=True, exist_ok=True)
         self._path = folder / name
         if self._path.exists():
-            for line in self._path.read_text().splitlines():
+            text = self._path.read_text()
+            if text and not text.endswith("\n"):
+                self._path.write_text(text + "\n")  # a line was cut off; the next one shall not hang on to it
+            for line in text.splitlines():
                 outcome = _read(line)
                 if outcome is not None:
                     self.known[outcome.seed] = outcome

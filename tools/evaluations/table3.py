@@ -14,6 +14,7 @@ from tools.evaluations import letters
 from tools.evaluations.comparison import compare
 from tools.evaluations.oracle import Oracle, consult, subgoal_parameters
 from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.plots import draw_pairs
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.trials import paired, run_all
 
@@ -40,14 +41,21 @@ def run(arguments: argparse.Namespace) -> int:
     unknown = [name for name in arguments.scenarios if name not in SCENARIOS]
     if unknown:
         raise UsageError(f"unknown scenario '{unknown[0]}' for table3, expected one of: {', '.join(SCENARIOS)}")
-    rows = [evaluate(name, arguments) for name in arguments.scenarios]
+    rows, plots = [], {}
+    for name in arguments.scenarios:
+        row, durations = evaluate(name, arguments)
+        rows.append(row)
+        if arguments.report is not None:
+            plots[f"{name}: greedy and refined"] = draw_pairs(*durations, arguments.report / f"table3-{name}.png")
     remarks = [f"paper, {name}: {SCENARIOS[name][2]}" for name in arguments.scenarios]
-    tell(Report("table3", "Table 3: subgoal refinement", rows, remarks), arguments.json, arguments.report)
+    tell(Report("table3", "Table 3: subgoal refinement", rows, remarks, plots), arguments.json, arguments.report)
     return 0 if all(row["p_value"] < 0.001 and row["improvement_pct"] > 0 for row in rows) else 1
 
 
-def evaluate(name: str, arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
-    """One row of the table."""
+def evaluate(
+    name: str, arguments: argparse.Namespace, settings: RefinementSettings | None = None
+) -> tuple[dict[str, Any], tuple[list[float], list[float]]]:
+    """One row of the table, and the durations of greedy and refined episodes."""
     if name == "arm":
         return letters.table3_row(arguments)
     domain, scenario, _ = SCENARIOS[name]
@@ -57,7 +65,8 @@ def evaluate(name: str, arguments: argparse.Namespace, settings: RefinementSetti
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, name)
     greedy, refined = found["h1"], found["h2"]
-    said = compare(*paired(greedy, refined))
+    durations = paired(greedy, refined)
+    said = compare(*durations)
     row = {
         "scenario": name + (" (degraded)" if arguments.degraded else ""),
         "horizon": 2,
@@ -81,7 +90,7 @@ def evaluate(name: str, arguments: argparse.Namespace, settings: RefinementSetti
             arguments.store,
         )  # fmt: skip
         row |= against_oracle(judged, greedy, refined)
-    return row
+    return row, durations
 
 
 def against_oracle(

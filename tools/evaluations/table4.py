@@ -11,6 +11,7 @@ from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tools.evaluations.comparison import compare
 from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.plots import draw_horizons
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.table3 import FIRST_SEED, bias_s
 from tools.evaluations.trials import paired, run_all
@@ -35,7 +36,10 @@ def run(arguments: argparse.Namespace) -> int:
     for name in arguments.scenarios:
         rows += evaluate(name, arguments)
         remarks.append(f"paper, {name}, each horizon over the one before: {SCENARIOS[name][3]}")
-    tell(Report("table4", "Table 4: effect of the horizon", rows, remarks), arguments.json, arguments.report)
+    plots = {}
+    if arguments.report is not None:
+        plots["improvement by horizon"] = draw_horizons(rows, arguments.report / "table4.png")
+    tell(Report("table4", "Table 4: effect of the horizon", rows, remarks, plots), arguments.json, arguments.report)
     return 0 if _as_promised(rows) else 1
 
 

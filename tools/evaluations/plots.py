@@ -1,0 +1,67 @@
+"""The plots of the evaluations' pages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+INK, ACCENT, PALE = "#2c3e50", "#2f8f6b", "#b8c4cc"
+
+
+def draw_pairs(greedy_s: Sequence[float], refined_s: Sequence[float], path: Path) -> Path:
+    """Each episode a dot: greedy across, refined up; below the diagonal refinement was faster."""
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    top = 1.05 * max(*greedy_s, *refined_s)
+    left.plot([0, top], [0, top], color=PALE)
+    left.scatter(greedy_s, refined_s, s=9, color=INK, alpha=0.6)
+    left.set(xlabel="greedy (s)", ylabel="refined (s)", xlim=(0, top), ylim=(0, top), title="duration of an episode")
+    gain = 100 * (1 - np.asarray(refined_s) / np.asarray(greedy_s))
+    right.hist(gain, bins=40, color=PALE)
+    right.axvline(float(gain.mean()), color=ACCENT, label=f"mean {gain.mean():.1f} %")
+    right.set(xlabel="improvement (%)", ylabel="episodes", title="improvement of an episode")
+    right.legend(frameon=False)
+    return _saved(figure, path)
+
+
+def draw_horizons(rows: Sequence[dict[str, Any]], path: Path) -> Path:
+    """Improvement over greedy by horizon, with 95 % intervals."""
+    figure = Figure(figsize=(5.5, 4), layout="constrained")
+    axis = figure.subplots()
+    names = [f"h = {row['horizon']}" for row in rows]
+    means = [row["improvement_pct"] for row in rows]
+    errors = [(row["improvement_pct"] - row["ci95"][0], row["ci95"][1] - row["improvement_pct"]) for row in rows]
+    axis.bar(names, means, color=PALE, yerr=np.transpose(errors), ecolor=INK, capsize=4)
+    axis.axhline(0, color=INK, linewidth=0.8)
+    axis.set(ylabel="improvement over greedy (%)")
+    return _saved(figure, path)
+
+
+def draw_shares(row: dict[str, Any], path: Path) -> Path:
+    """Approaches that succeed before and after, and the four fields of the paper's table."""
+    figure = Figure(figsize=(9, 3.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    left.bar(
+        ["as they are", "with assertion"], [row["success_before_pct"], row["success_after_pct"]], color=[PALE, ACCENT]
+    )
+    left.set(ylabel="approaches that succeed (%)", ylim=(0, 100))
+    fields = [
+        [row[f"predicted_{said}_observed_{seen}_pct"] for seen in ("fail", "success")] for said in ("fail", "success")
+    ]
+    right.imshow(fields, cmap="Greens", vmin=0, vmax=100)
+    right.set_xticks([0, 1], ["observed: fail", "success"])
+    right.set_yticks([0, 1], ["predicted: fail", "success"])
+    for i, line in enumerate(fields):
+        for j, share in enumerate(line):
+            right.text(j, i, f"{share:.1f} %", ha="center", va="center")
+    return _saved(figure, path)
+
+
+def _saved(figure: Figure, path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=110)
+    return path
