@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 Pose2 = tuple[float, float, float]  # x m, y m, heading rad
 Piece = tuple[int, float]  # turn, length m
+SAME_M = 1e-9  # circles with centres so near to each other are one
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +83,8 @@ def _with_straight(start: Pose2, goal: Pose2, radius: float) -> list[tuple[Piece
     for first, last in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
         ax, ay = _centre(start, first, radius)
         bx, by = _centre(goal, last, radius)
-        distance, direction = math.hypot(bx - ax, by - ay), math.atan2(by - ay, bx - ax)
+        distance = math.hypot(bx - ax, by - ay)
+        direction = math.atan2(by - ay, bx - ax) if distance > SAME_M else start[2]
         heading, straight = direction, distance
         if first != last:
             if distance < 2 * radius:
