@@ -22,9 +22,9 @@ class FailureForest(FailureModel):
 
     def __init__(
         self,
-        trees: int = 60,
+        trees: int = 32,
         cost_ratio: float = 1.0,
-        min_rows: int = 5,
+        min_rows: int = 8,
         random_state: int | np.random.Generator | None = 0,
     ) -> None:
         self.trees = trees
