@@ -81,8 +81,8 @@ def refinement(message: m.RefinementReport) -> Fields:
         "finished": message.finished,
         "evaluations": message.evaluations,
         "checks": message.checks,
-        "greedy": number(message.greedy_s),
-        "best": number(message.best_s),
+        "greedy": _cost(message.greedy_s),
+        "best": _cost(message.best_s),
         "trace": [[evaluations, number(best_s)] for evaluations, best_s in trace],
     }
 
@@ -131,6 +131,11 @@ def numbers(message: m.Message) -> dict[str, float | None]:
             named = next((label for label in labels if len(label) == len(value)), None)
             found |= {f"{name} {named[i] if named else i}": number(v) for i, v in enumerate(value)}
     return found
+
+
+def _cost(value: float) -> float | None:
+    """A cost; None where it is INVALID, which a message says as infinite or, as floats must be finite, as negative."""
+    return number(value) if value >= 0 else None
 
 
 def _pose(x: float, y: float, phi: float, v: float) -> Fields:

@@ -3,7 +3,8 @@
 /** Actions: predicted (pale, above) against actual (full, below). */
 function actionLane(run, x, top) {
   const parts = [];
-  for (const action of run.actions()) {
+  for (const [i, action] of run.actions().entries()) {
+    const next = run.actions()[i + 1];
     const [left, right] = [x(action.begin), x(action.until)];
     if (right < x.low || left > x.high) continue;
     const bar = (kind, until, y) => {
@@ -15,7 +16,8 @@ function actionLane(run, x, top) {
     const words = action.ended
       ? `${action.action}  ${action.ended.actual.toFixed(1)} s (${signed(action.ended.actual - action.predicted)})`
       : action.action;
-    const room = Math.max(right, x(action.begin + action.predicted)) - Math.max(x.low, left);
+    const free = next ? x(next.begin) - 4 : Math.max(right, x(action.begin + action.predicted));
+    const room = free - Math.max(x.low, left);
     const short = room > 6.2 * words.length ? words : room > 6.2 * action.action.length ? action.action : "";
     const label = svg("text", { class: "ink", x: Math.max(x.low, left), y: top + 11, text: short });
     const reason = action.ended?.reason ? `, ${action.ended.outcome}: ${action.ended.reason}` : "";
