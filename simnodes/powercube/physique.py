@@ -48,7 +48,7 @@ class Physique:
     coulomb_nm: float = 4.0
     viscous_nms: float = 3.0
     velocity_max_radps: float = 1.2
-    acceleration_max_radps2: float = 4.0
+    acceleration_max_radps2: float = 5.0
     position_max_rad: float = 2.0
     brake_nm_per_rad: float = 6000.0  # a braked module gives a little
     friction_spread: float = 0.10  # one draw a reset: how warm the grease is

@@ -9,7 +9,7 @@ PAN_RAD = 1.3  # where waypoints may lie
 LIFT_RAD = 0.9
 PASSING_RADPS = 0.7  # fastest passage that is asked of a joint
 ACCELERATION_RADPS2 = 0.87  # a random reach then takes 2.9 s on average (paper Table 1)
-ACCELERATION_MAX_RADPS2 = 2.5  # the driver ramps at 4
+ACCELERATION_MAX_RADPS2 = 4.0  # the driver ramps at 5; hardly a reach needs more than 2.5
 
 
 def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:
