@@ -82,14 +82,17 @@ class Cutter:
             run.said, run.goal, run.ticks = said, _goal(run.action, said), []
 
     def _arguments(self, run: _Running, status: ExecStatus) -> Array:
-        """The controller's arguments with the believed state in place of the start."""
+        """The controller's arguments with the believed state in place of the start, as instantiation tells it."""
         names = (name.split(" ")[0] for name in self.domain.belief_names)
         believed = dict(zip(names, status.belief, strict=True))
-        arguments = run.goal.copy()
+        values = np.array([parameter.value for parameter in run.said.parameters])
+        from_ball = _starts_at_ball(run.action, values)
         for k, parameter in enumerate(run.action.parameters):
             if parameter.argument == 0:
-                arguments[k] = believed[parameter.name]
-        return arguments
+                name = f"ball_{parameter.name}" if from_ball and parameter.name in ("x", "y") else parameter.name
+                values[k] = believed[name]
+        arguments = run.action.arguments(values[None, :])[0]
+        return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 
     def _see(self, truth: SimTruth) -> None:
         run = self._running
@@ -117,3 +120,9 @@ class Cutter:
 def _goal(action: Action, said: InstantiatedAction) -> Array:
     values = np.array([[parameter.value for parameter in said.parameters]])
     return action.arguments(values)[0]
+
+
+def _starts_at_ball(action: Action, values: Array) -> bool:
+    """Whether the start is the ball's place: the controller then takes another pose than the parameters say."""
+    half = len(values) // 2
+    return not np.allclose(action.arguments(values[None, :])[0, :half], values[:half])

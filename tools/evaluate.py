@@ -16,6 +16,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "feature-spaces": ("tools.evaluations.feature_spaces", "Figure 6 b: error in three feature spaces"),
     "duration-learners": ("tools.evaluations.duration_learners", "ours, boosting and WEKA's M5P on the same folds"),
     "failure-learners": ("tools.evaluations.failure_learners", "trees, forest, network, SVM, boosting, J48"),
+    "on-policy": ("tools.evaluations.on_policy", "what a round of the optimiser's own choices changes"),
     "table3": ("tools.evaluations.table3", "refined against greedy subgoals, paired"),
     "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
