@@ -83,3 +83,12 @@ def test_what_was_aborted_is_no_episode_and_what_failed_is_not_finished() -> Non
     [(name, episode)] = cut(*begun, finished("dribbleBall", 0, 1.0, "failed"))
     assert name == "dribbleBall"
     assert (episode.finished, episode.success, episode.failure) == (False, False, "lost")
+
+
+def test_a_dribble_starts_where_the_ball_is() -> None:
+    [(_, episode)] = cut(
+        subgoals("dribbleBall", {"xg": 2.0}), *drive("dribbleBall", 0, 5), finished("dribbleBall", 0, 0.5)
+    )
+    believed_ball = np.array([1.0, 0.0])
+    reach = np.linalg.norm(believed_ball - episode.ticks[0, :2])
+    assert 0.2 < reach < 0.4  # from the axle to a ball in the rail

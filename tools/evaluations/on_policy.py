@@ -20,6 +20,7 @@ from tools.evaluations.report import Report, tell
 from tools.run_gathering import Policy, actions, run_policy
 
 LEVEL = 0.9
+SCENARIOS = ["approach-dribble", "waypoints"]
 ROUND_SEED, FRESH_SEED = 1, 2  # of the runs to learn from, and of those to judge by
 
 

@@ -1,0 +1,80 @@
+"""tailor models, train and evaluate: what they say, and that they refuse in one line."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models import runtime
+from models.features import projective
+from models.linear_tree import LinearTree
+from models.rules import duration_rules
+from tools.main import main
+
+
+def tree() -> LinearTree:
+    """Two leaves: near, and far with a slope in distance and angle."""
+    nodes = [(2, 1.5, 1, 2, -1), (-1, 0.0, 0, 0, 0), (-1, 0.0, 0, 0, 1)]
+    near = (np.zeros(5), 2.0, 1.0, 3.0, 0.1, 10)
+    far = (np.array([0, -0.5, 1.6, 0.573, 0]), 0.4, 2.0, 12.0, 0.25, 90)
+    return LinearTree.of(nodes, [near, far])
+
+
+def test_rules_read_like_the_paper_s_with_units_and_degrees() -> None:
+    assert duration_rules(tree(), projective.features) == [
+        "if dist <= 1.50 m\nthen time = 2 s   [1.0 .. 3.0 s, ± 0.10 s]",
+        "if dist > 1.50 m\nthen time = 0.4 s - 0.5 s/(m/s) · v_g + 1.6 s/m · dist + 0.01 s/° · angle_to"
+        "   [2.0 .. 12.0 s, ± 0.25 s]",
+    ]
+
+
+def test_every_model_that_ships_is_sound(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["models", "check", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert "agilo/goToPose/duration" in said["checked"]
+    assert said["failed"] == {}
+
+
+def test_a_model_that_is_not_sound_is_told_and_fails_the_check(tmp_path: Path, capsys) -> None:
+    folder = tmp_path / "agilo" / "goToPose"
+    folder.mkdir(parents=True)
+    for name in ("duration.onnx", "duration.card.json"):
+        (folder / name).write_bytes((runtime.ZOO / "agilo" / "goToPose" / name).read_bytes() + b" ")
+    assert main(["models", "check", "--zoo", str(tmp_path)]) == 1
+    assert "sha256" in capsys.readouterr().out
+
+
+def test_list_and_show_are_readable_by_scripts(capsys) -> None:
+    assert main(["models", "list", "--json"]) == 0
+    assert {"model", "learner", "episodes", "test"} <= json.loads(capsys.readouterr().out)[0].keys()
+    assert main(["models", "show", "agilo/goToPose", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["kind"] == "duration"
+
+
+def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
+    assert main(["models", "rules", "agilo/goToPose"]) == 0
+    first, _, rule, *_ = capsys.readouterr().out.splitlines()
+    assert "rules, which differ from the model by" in first
+    assert rule.startswith("if ")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["models", "show", "agilo/fly"], "no such file"),
+        (["models", "list", "--zoo", "nowhere"], "no action models"),
+        (["train", "agilo", "--data", "nowhere"], "no data sets"),
+        (["evaluate", "table9"], "evaluation 'table9' is unknown"),
+        (["evaluate"], "no evaluation named"),
+        (["evaluate", "table1", "--robot", "r2d2"], "no action models for robot 'r2d2'"),
+        (["gather", "agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
+        (["gather", "agilo", "--on-policy", "chess"], "no scenario 'chess'"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, capsys, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
