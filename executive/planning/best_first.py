@@ -73,26 +73,27 @@ class BestFirst(Generic[P]):
                 yield self._limited(f"{self._limit} plans generated")
                 return
             _, plan = heapq.heappop(plans)
+            if space.length(plan) > self._steps:
+                self._too_long = True
+                continue
             if space.solved(plan):
                 yield Result("solved", space.extract(plan), "", self.generated, self.visited)
                 return
-            self._expand(plan, queue)
+            self.visited += 1
+            queue.generated += self._push(space.refine(plan, queue.order), plans)
             yield None
 
-    def _expand(self, plan: P, queue: _Queue[P]) -> None:
-        """Pushes all refinements of a plan; those that have become too long are left out."""
-        space = self._space
-        self.visited += 1
-        for child in space.refine(plan, queue.order):
-            rank = space.rank(child, self.generated)
-            if rank is None:
-                continue
-            if space.length(child) > self._steps:
-                self._too_long = True
-                continue
-            heapq.heappush(queue.plans, (rank, child))
-            self.generated += 1
-            queue.generated += 1
+    def _push(self, children: list[P], plans: list[tuple[Rank, P]]) -> int:
+        """Pushes the plans that a solution may come of; returns how many."""
+        rank, number = self._space.rank, self.generated
+        for child in children:
+            ranked = rank(child, number)
+            if ranked is not None:
+                heapq.heappush(plans, (ranked, child))
+                number += 1
+        pushed = number - self.generated
+        self.generated = number
+        return pushed
 
     def _limited(self, reason: str) -> Result:
         return Result("limit", None, reason, self.generated, self.visited)

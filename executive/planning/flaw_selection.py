@@ -77,49 +77,50 @@ class FlawSelection(Generic[P, C, T]):
     def choose(self, plan: P) -> C | T:
         """The flaw of a plan that has one."""
         for criterion, threat_key, condition_key in self._criteria:
-            best: list[C | T] = []
-            least = 0.0
-            for flaw, value in self._valued(plan, criterion, threat_key, condition_key):
-                if not best or value < least or (value == least and criterion.order == "FIFO"):
-                    best, least = [flaw], value
-            if best:
-                return best[0]
+            oldest = criterion.order == "FIFO"
+            threats = self._threats(plan, criterion)
+            conditions = self._conditions(plan, criterion)
+            if len(threats) + len(conditions) == 1:
+                return threats[0] if threats else conditions[0]
+            valued: list[tuple[float, C | T]] = [(threat_key(plan, threat), threat) for threat in threats]
+            valued += [(condition_key(plan, condition), condition) for condition in conditions]
+            if valued:
+                return min(reversed(valued) if oldest else valued, key=_first)[1]
         raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
 
-    def _valued(
-        self,
-        plan: P,
-        criterion: Criterion,
-        threat_key: Callable[[P, T], float],
-        condition_key: Callable[[P, C], float],
-    ) -> Iterator[tuple[C | T, float]]:
-        """The flaws that a criterion applies to, threats first, with what orders them."""
+    def _threats(self, plan: P, criterion: Criterion) -> list[T]:
+        """The threats that a criterion applies to."""
         measures, types, limit = self._measures, criterion.types, criterion.limit
-        if "n" in types or "s" in types:
-            both = "n" in types and "s" in types
-            for threat in measures.threats(plan):
-                if (both or ("s" in types) == measures.separable(plan, threat)) and (
-                    limit is None or measures.threat_choices(plan, threat) <= limit
-                ):
-                    yield threat, threat_key(plan, threat)
-        if not types <= {"n", "s"}:
-            for condition in self._conditions(plan, types):
-                if limit is None or measures.condition_choices(plan, condition) <= limit:
-                    yield condition, condition_key(plan, condition)
+        if not types & {"n", "s"}:
+            return []
+        threats = list(measures.threats(plan))
+        if not {"n", "s"} <= types:
+            threats = [threat for threat in threats if measures.separable(plan, threat) == ("s" in types)]
+        if limit is not None:
+            threats = [threat for threat in threats if measures.threat_choices(plan, threat) <= limit]
+        return threats
 
-    def _conditions(self, plan: P, types: frozenset[str]) -> Iterator[C]:
+    def _conditions(self, plan: P, criterion: Criterion) -> list[C]:
+        """The open conditions that a criterion applies to."""
+        measures, types, limit = self._measures, criterion.types, criterion.limit
+        if types <= {"n", "s"}:
+            return []
+        conditions = list(measures.conditions(plan))
+        if "o" not in types and conditions:
+            local = measures.step(conditions[0]) if "l" in types else None
+            conditions = [condition for condition in conditions if self._is(plan, condition, types, local)]
+        if limit is not None:
+            conditions = [c for c in conditions if measures.condition_choices(plan, c) <= limit]
+        return conditions
+
+    def _is(self, plan: P, condition: C, types: frozenset[str], local: int | None) -> bool:
+        """Whether a condition is of one of the types; `local` is the step of the newest one."""
         measures = self._measures
-        local = None
-        for condition in measures.conditions(plan):
-            step = measures.step(condition)
-            local = step if local is None else local  # the first is the newest
-            if (
-                "o" in types
-                or ("l" in types and step == local)
-                or ("u" in types and measures.unsafe(plan, condition))
-                or ("t" in types and measures.static(condition))
-            ):
-                yield condition
+        return (
+            (local is not None and measures.step(condition) == local)
+            or ("u" in types and measures.unsafe(plan, condition))
+            or ("t" in types and measures.static(condition))
+        )
 
     # --- which comes first: the smallest key -----------------------------------------------------
     def _threat_key(self, criterion: Criterion) -> Callable[[P, T], float]:
@@ -156,3 +157,7 @@ class FlawSelection(Generic[P, C, T]):
             return sign * measures.value(plan, condition)[field]
 
         return key
+
+
+def _first(valued: tuple[float, object]) -> float:
+    return valued[0]

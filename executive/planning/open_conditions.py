@@ -32,12 +32,15 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
         return [_opened(rest, part, flaw) for part in condition.parts]
     if isinstance(condition, Every):
         return [_opened(rest, condition, flaw)]
-    new = (_by_new_step(task, rest, flaw, action, effect) for action, effect in task.achievers[condition])
-    children = [child for child in new if child is not None]
+    children = []
+    for action, effect in task.achievers[condition]:
+        child = _by_new_step(task, rest, flaw, condition, action, effect)
+        if child is not None:
+            children.append(child)
     for node in _nodes(reusable(plan, flaw)):
-        children += _by_old_step(task, rest, flaw, node)
+        children += _by_old_step(task, rest, flaw, condition, node)
     if condition in task.initial:
-        children.append(_linked(task, rest, flaw, INITIAL, plan.orderings))
+        children.append(_linked(task, rest, flaw, condition, INITIAL, plan.orderings))
     return children
 
 
@@ -69,14 +72,18 @@ def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> Parti
 
 # --- the three ways ------------------------------------------------------------------------------
 def _by_new_step(
-    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
+    task: GroundTask,
+    plan: PartialPlan,
+    flaw: OpenCondition,
+    literal: int,
+    action: GroundAction,
+    effect: GroundEffect,
 ) -> PartialPlan | None:
-    literal, first, last, _ = flaw
+    _, first, last, _ = flaw
     node = len(plan.orderings.late)
     orderings = plan.orderings.with_step(action, effect.moment, first)
     if orderings is None:
         return None
-    assert isinstance(literal, int)
     steps = (*plan.steps, action)
     link = Link(node + effect.moment, literal, first, last, plan.links)
     undoing = plan.effects.masks()[literal ^ 1] | action.bits.get(literal ^ 1, 0) << node
@@ -103,26 +110,27 @@ def _opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> Op
     return cell
 
 
-def _by_old_step(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, node: int) -> list[PartialPlan]:
+def _by_old_step(
+    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, node: int
+) -> list[PartialPlan]:
     orderings = plan.orderings.ordered(node, flaw.first)
     if orderings is None:
         return []
     step = step_of(task, node)
     if step == 0 or plan.steps[step - 1].simple:
-        return [_linked(task, plan, flaw, node, orderings)]
+        return [_linked(task, plan, flaw, literal, node, orderings)]
     start = first_node(task) + (step - 1) * task.moments
     return [
-        _linked(task, _with_conditions(plan, effect.conditions, start), flaw, node, orderings)
+        _linked(task, _with_conditions(plan, effect.conditions, start), flaw, literal, node, orderings)
         for effect in plan.steps[step - 1].effects
-        if effect.literal == flaw.condition and effect.moment == node - start
+        if effect.literal == literal and effect.moment == node - start
     ]
 
 
 def _linked(
-    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, producer: int, orderings: Orderings
+    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, producer: int, orderings: Orderings
 ) -> PartialPlan:
-    literal, first, last, _ = flaw
-    assert isinstance(literal, int)
+    _, first, last, _ = flaw
     link = Link(producer, literal, first, last, plan.links)
     undoing = plan.effects.masks()[literal ^ 1]
     threats, count = _threats_to(task, plan.steps, orderings, undoing, link, plan.threats, plan.threat_count)

@@ -70,6 +70,8 @@ class Ranking(Generic[P]):
         if reusing and plain:
             raise UsageError("rankings ADD* and ADDR* exclude each other")
         self._estimate = estimates.reusing if reusing else estimates.plain if plain else None
+        if chosen[-1:] == ("LIFO",):
+            chosen = chosen[:-1]  # the last word of every rank
         self._terms = tuple(_term(name, estimates, weight) for name in chosen)
 
     def rank(self, plan: P, number: int) -> Rank | None:
