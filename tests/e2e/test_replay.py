@@ -34,7 +34,7 @@ def recording(tmp_path):
 
 
 def command(path, endpoint, *options):
-    return [sys.executable, "-m", "tools.main", "replay", path, "--connect", endpoint, *options]
+    return [sys.executable, "-m", "tools.main", "replay", path, "--connect", endpoint, "--wait", "0.2", *options]
 
 
 def heard(session, names):
@@ -83,11 +83,16 @@ def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
         wait_until(session.inbox(["driver"], "agilo").drain, what="driver state")
         commands = heard(session, ["cmd_vel", "arm_request"])
         said = subprocess.run(
-            command(recording, endpoint), capture_output=True, text=True, timeout=30, cwd=ROOT, check=True
+            command(recording, endpoint, "--rate", "8"),
+            capture_output=True,
+            text=True,
+            timeout=30,
+            cwd=ROOT,
+            check=True,
         )
         assert commands() == []
         assert "a driver is live" in said.stderr
-        subprocess.run(command(recording, endpoint, "--drive", "--rate", "4"), timeout=30, cwd=ROOT, check=True)
+        subprocess.run(command(recording, endpoint, "--drive", "--rate", "8"), timeout=30, cwd=ROOT, check=True)
         wait_until(commands, what="commands of --drive")
 
 
@@ -104,7 +109,7 @@ def test_a_substitute_executive_hears_the_sensors_and_a_driver_that_obeys_it(rec
         thread.start()
         driver, commands = heard(session, ["driver", "odom"]), heard(session, ["cmd_vel", "arm_request"])
         try:
-            options = ("--substitute", "executive", "--rate", "2")
+            options = ("--substitute", "executive", "--rate", "4")
             subprocess.run(command(recording, endpoint, *options), timeout=30, cwd=ROOT, check=True)
         finally:
             over.set()
@@ -118,7 +123,7 @@ def test_a_substitute_executive_hears_the_sensors_and_a_driver_that_obeys_it(rec
 def test_the_clock_of_a_replay_tells_recorded_time(recording):
     with bus_system() as (session, endpoint, _):
         clock = heard(session, ["clock"])
-        options = ("--clock", "50", "--rate", "2", "--start", "1.0", "--wait", "0.2")
+        options = ("--clock", "50", "--rate", "2", "--start", "1.0")
         player = subprocess.Popen(command(recording, endpoint, *options), cwd=ROOT)
         wait_until(lambda: clock() and player.poll() is not None, what="end of the replay")
         times = [s.message.stamp_ns / 1e9 - 1_700_000_000 for s in clock()]

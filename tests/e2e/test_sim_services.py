@@ -45,9 +45,10 @@ def test_in_a_pause_nothing_moves_and_steps_are_exact(system):
     session, *_ = system
     odometry = session.inbox(["odom"], "agilo")
     assert ask(session, "step", 1) == (False, "step: pause first")
+    first = wait_until(odometry.drain)
     assert ask(session, "pause", True) == (True, "paused")
-    time.sleep(0.1)
-    before = odometry.drain()[-1].sequence
+    time.sleep(0.2)
+    before = (odometry.drain() or first)[-1].sequence
     time.sleep(0.3)
     assert odometry.drain() == ()
     assert ask(session, "step", 50) == (True, "50 periods")  # of 10 ms; odometry comes every 20 ms

@@ -5,6 +5,8 @@ import subprocess
 import sys
 import time
 
+import pytest
+
 from runtime.processes import Child
 from runtime.recording import open_recording
 from schemas import codec
@@ -35,7 +37,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
             publisher = session.publisher("odom", "agilo")
             wait_until(publisher.matched, what="recorder")
             slowest = 0.0
-            for number in range(3000):
+            for number in range(1500):
                 began = time.monotonic()
                 publisher.publish(noise(number))
                 slowest = max(slowest, time.monotonic() - began)
@@ -54,6 +56,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
     assert recording.account.damaged_chunks == 0
 
 
+@pytest.mark.slow
 def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     path = tmp_path / "flood.mcap"
     with bus_system() as (session, endpoint, start):
