@@ -38,7 +38,19 @@ class Examples:
     weights: Array  # (n,), 0 leaves a row out
     bins: NDArray[np.uint8]  # (n, f)
     edges: tuple[NDArray[np.float32], ...]  # per feature: thresholds in the feature's own units
-    products: Array  # (n, q) packed moments of each row
+    products: Array  # (n, q) packed moments of each row, weighted
+
+    @classmethod
+    def of(
+        cls,
+        features: Array,
+        targets: Array,
+        weights: Array,
+        bins: NDArray[np.uint8],
+        edges: tuple[NDArray[np.float32], ...],
+    ) -> Examples:
+        """Examples with the moments of each row."""
+        return cls(features, targets, weights, bins, edges, moments.row_products(features, targets, weights))
 
 
 def quantile_bins(

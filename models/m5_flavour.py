@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import moments
-from models.linear_flavour import Scale
 from models.linear_tree import LinearTree
+from models.scaling import Scale
 from models.split_tree import LEAF
 
 Array = NDArray[np.float64]
