@@ -19,18 +19,17 @@ from models.card import (
     MAX_MODEL_BYTES,
     Card,
     card_path,
-    identity,
     read_bytes,
     read_card,
     sha256_of,
 )
+from models.card_checks import check_identity, check_place, check_ranges
 from schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
 ZOO = Path(__file__).parent / "zoo"
 GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
-COVER_TOLERANCE = 1e-6  # of a range's bounds, for decimals that were rounded
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +81,7 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
     if sha256_of(content) != card["sha256"]:
         raise UsageError(f"{path}: sha256 is {sha256_of(content)[:12]}…, expected {card['sha256'][:12]}… by its card")
     session = _session(content, path)
-    _check_identity(session, card, path)
+    check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
     loaded = _wrapped(session, card, path)
     _check_golden(loaded, card, path)
     return loaded
@@ -110,8 +109,8 @@ def load_robot(
     successes: dict[str, OnnxSuccess] = {}
     for name in _names(folder):
         model = load_model(folder / f"{name}.onnx")
-        _check_place(model.card, f"{robot}/{name}", folder)
-        _check_ranges(model.card, (declared or {}).get(name.split("/", maxsplit=1)[0], {}), folder / name)
+        check_place(model.card, f"{robot}/{name}", folder)
+        check_ranges(model.card, (declared or {}).get(name.split("/", maxsplit=1)[0], {}), folder / name)
         if isinstance(model, OnnxDuration):
             durations[name] = model
         else:
@@ -147,35 +146,6 @@ def _session(content: bytes, path: Path) -> Any:
         return open_session(content)
     except Exception as error:  # the runtime's own family has no common base
         raise UsageError(f"{path}: not a model that runs here ({str(error).splitlines()[0]})") from None
-
-
-def _check_identity(session: Any, card: Card, path: Path) -> None:
-    inside = session.get_modelmeta().custom_metadata_map
-    for key, value in identity(card).items():
-        if inside.get(key) != value:
-            raise UsageError(f"{path}: the model's {key} is '{inside.get(key)}', expected '{value}' by its card")
-    shape, expected = session.get_inputs()[0].shape, len(card["arguments"])
-    if len(shape) != 2 or shape[1] != expected:
-        raise UsageError(f"{path}: the model takes arguments {shape}, expected (n, {expected}) by its card")
-
-
-def _check_place(card: Card, place: str, folder: Path) -> None:
-    name = f"{card['robot']}/{card['action']}/{card['kind']}"
-    if name != place:
-        raise UsageError(f"{folder}: holds a model of {name}, expected {place} by its place in the zoo")
-
-
-def _check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: Path) -> None:
-    seen = {argument["name"]: argument for argument in card["arguments"]}
-    for name, (lower, upper) in declared.items():
-        if name not in seen:
-            raise UsageError(f"{path}: the model knows no argument '{name}' (its arguments: {', '.join(seen)})")
-        low, high = seen[name]["lower"], seen[name]["upper"]
-        if lower < low - COVER_TOLERANCE or upper > high + COVER_TOLERANCE:
-            raise UsageError(
-                f"{path}: {name} was learned in [{low:g}, {high:g}] {seen[name]['unit']}, "
-                f"expected to cover [{lower:g}, {upper:g}] as the action declares"
-            )
 
 
 def _wrapped(session: Any, card: Card, path: Path) -> OnnxModel:

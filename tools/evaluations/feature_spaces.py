@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from models import scores
-from models.examples import duration_examples
+from models.examples import Examples, duration_examples
 from models.features import SPACES
 from models.training import fit
 from tools.evaluations import fresh
@@ -40,6 +41,24 @@ def run(arguments: argparse.Namespace) -> int:
         mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))
         rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
     remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
-    tell(Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks), arguments.json, arguments.report)
+    plots = _plots(rows, test, arguments.report) if arguments.report else {}
+    tell(Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots), arguments.json, arguments.report)
     errors = [row["mae_s"] for row in rows[:3]]
     return 0 if errors == sorted(errors, reverse=True) else 1
+
+
+def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str, Path]:
+    from tools.figures import learned_reports
+
+    columns = {
+        "direct: x [m]": test.arguments[:, 0],
+        "relative: dx [m]": SPACES["relative"](test.arguments)[:, 0],
+        "projective: dist [m]": SPACES["projective"](test.arguments)[:, 2],
+    }
+    names, errors, intervals = ([row[key] for row in rows] for key in ("space", "mae_s", "mae_ci95"))
+    return {
+        "error by feature space": learned_reports.bars(folder / "feature-spaces.png", names, errors, intervals),
+        "time against a feature of each": learned_reports.against_features(
+            folder / "figure6b.png", columns, test.targets
+        ),
+    }

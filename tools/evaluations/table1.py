@@ -35,15 +35,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when no action's relative error is worse than the paper's."""
     durations, _ = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
     rows = [row(model, arguments) for _, model in sorted(durations.items())]
+    plots = _plots(list(durations.values()), arguments) if arguments.report else {}
     remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs, other noise"]
-    tell(Report("table1", "Table 1: duration models", rows, remarks), arguments.json, arguments.report)
+    tell(Report("table1", "Table 1: duration models", rows, remarks, plots), arguments.json, arguments.report)
     return 0 if all(r["relative_pct"] <= r.get("paper_relative_pct", np.inf) for r in rows) else 1
 
 
 def row(model: OnnxDuration, arguments: argparse.Namespace) -> dict[str, Any]:
     """The figures of one action."""
     robot, action = model.card["robot"], model.card["action"]
-    data = fresh.evaluation(robot, action, arguments.episodes, arguments.seed, arguments.jobs, arguments.store)
+    data = _fresh(model, arguments)
     mae, ci, bias = error(model, data, arguments.seed)
     mean = float(np.mean([episode.duration_s for episode in data.episodes if episode.finished]))
     figures = {
@@ -64,6 +65,24 @@ def row(model: OnnxDuration, arguments: argparse.Namespace) -> dict[str, Any]:
         figures |= {"paper_episodes": count, "paper_mean_duration_s": paper_mean, "paper_mae_s": paper_mae}
         figures |= {"paper_relative_pct": relative}
     return figures
+
+
+def _fresh(model: OnnxDuration, arguments: argparse.Namespace) -> DataSet:
+    robot, action = model.card["robot"], model.card["action"]
+    return fresh.evaluation(robot, action, arguments.episodes, arguments.seed, arguments.jobs, arguments.store)
+
+
+def _plots(models: list[OnnxDuration], arguments: argparse.Namespace) -> dict[str, Path]:
+    from tools.figures import learned_reports
+
+    predicted, observed = {}, {}
+    for model in models:
+        finished = [episode for episode in _fresh(model, arguments).episodes if episode.finished]
+        rows = duration_examples(finished, 1)
+        predicted[model.card["action"]] = model.predict(rows.arguments)[0]
+        observed[model.card["action"]] = rows.targets
+    path = learned_reports.scatter(arguments.report / "table1.png", predicted, observed)
+    return {"predicted against observed, fresh episodes": path}
 
 
 def error(model: OnnxDuration, data: DataSet, seed: int) -> tuple[float, tuple[float, float], float]:
