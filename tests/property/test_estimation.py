@@ -52,6 +52,12 @@ def test_seeing_never_makes_the_pose_less_certain(true, seen, variance):
     assert all(after.covariance[i] <= pose.covariance[i] + 1e-12 for i in (0, 3, 5))
 
 
+def test_heading_seen_across_the_seam_of_angles_turns_the_short_way():
+    pose = Pose(0.0, 0.0, math.pi - 0.1, (0.01, 0.0, 0.0, 0.01, 0.0, 0.01))
+    after = correct(pose, 0.0, 0.0, -math.pi + 0.1, (0.01, 0.01, 0.01))
+    assert abs(after.phi) == pytest.approx(math.pi)
+
+
 def test_prediction_agrees_with_the_jacobian_of_the_motion():
     pose, v, omega, t = Pose(0.3, -0.2, 0.7, (0.02, 0.004, 0.001, 0.03, -0.002, 0.01)), 0.6, 0.9, 0.2
     none = OdometryNoise(0.0, 0.0, 0.0, 0.0)

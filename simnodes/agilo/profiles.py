@@ -1,0 +1,33 @@
+"""Named AGILO robots: as it is meant to be, and one worse than its models were learned on.
+
+The degraded one stands in for the real robot: worse camera, later and fewer percepts, tyres and floor that differ.
+"""
+
+from __future__ import annotations
+
+import math
+
+from simnodes.agilo.body import AgiloBody
+from simnodes.agilo.physique import Physique
+from simnodes.agilo.sensing import Sensing
+
+PROFILES = {
+    "nominal": (Physique(), Sensing()),
+    "degraded": (
+        Physique(wheel_friction=0.7, servo_gain=0.8, rail_friction=0.13, ball_rolling_m=0.0092),
+        Sensing(
+            pose_sigma_m=0.06,
+            pose_sigma_rad=math.radians(3),
+            pose_dropout=0.15,
+            ball_dropout=0.15,
+            encoder_scale=0.03,
+            camera_delay_ns=80_000_000,
+        ),
+    ),
+}
+
+
+def body(profile: str = "nominal") -> AgiloBody:
+    """A body of that profile; raises KeyError for another name."""
+    physique, sensing = PROFILES[profile]
+    return AgiloBody(physique, sensing)
