@@ -24,6 +24,8 @@ from tools.viewer.recorded import timed
 from tools.viewer.rows import number
 from tools.viewer.wording import durations, effort, in_words, nearness, seen
 
+NAMED = 3  # actions of a sequence; a word that the arm writes has dozens
+
 
 @dataclass(frozen=True, slots=True)
 class Reason:
@@ -37,8 +39,9 @@ class Reason:
     def title(self) -> str:
         """When, and which actions."""
         actions = self.decision.subgoals.actions
-        names = ", then ".join(a.action + " (detour)" * a.asserted for a in actions)
-        return f"{self.decision.at_s:.1f} s: {names}"
+        names = ", then ".join(a.action + " (detour)" * a.asserted for a in actions[:NAMED])
+        more = f" and {len(actions) - NAMED} more" if len(actions) > NAMED else ""
+        return f"{self.decision.at_s:.1f} s: {names}{more}"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

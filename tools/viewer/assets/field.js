@@ -15,8 +15,8 @@ class Field {
   /** Show a moment. What stands still is drawn anew only when rows have come or another episode is shown. */
   show(at) {
     if (this.drawn !== this.run.version) this.lay();
-    const number = this.starts.filter((start) => start <= at).length - 1;
-    if (number !== this.number) this.layEpisode(Math.max(0, number));
+    const [from, to] = this.run.episode(at);
+    if (from !== this.from) this.layEpisode(from, to);
     this.colourStrokes(at);
     this.moving.replaceChildren(...this.movingParts(at));
   }
@@ -24,8 +24,7 @@ class Field {
   /** The frame for the whole run: two drawings, so that what moves does not make the rest be painted again. */
   lay() {
     this.drawn = this.run.version;
-    this.number = -1;
-    this.starts = this.run.episodes();
+    this.from = null;
     const { map, width, height } = this.frame();
     this.map = map;
     const box = `0 0 ${width} ${height}`;
@@ -39,9 +38,8 @@ class Field {
   }
 
   /** One episode's path: a drawing for each action, pale until it has happened. */
-  layEpisode(number) {
-    this.number = number;
-    const [from, to] = [this.starts[number], this.starts[number + 1] ?? Infinity];
+  layEpisode(from, to) {
+    this.from = from;
     this.path = this.run.between(this.run.source(), from, to);
     this.segments = segmentsOf(this.path);
     for (const segment of this.segments) segment.element = svg("path", { d: this.strokes(segment.points) });

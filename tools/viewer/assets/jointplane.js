@@ -3,14 +3,14 @@
 const JOINTS = { width: 760, height: 430, left: 46, right: 14, top: 12, bottom: 28 };
 
 class JointPlane {
-  constructor(run, waypoints) {
-    this.run = run;
+  constructor(run, waypoints, [from, to]) {
     const names = run.about().beliefNames;
     const chosen = names.map((name, i) => [name, i]).filter(([name]) => name.endsWith("(rad)")).slice(0, 2);
     this.places = chosen.map(([, i]) => i);
     const rows = run.all("belief").filter((row) => row.values.length > Math.max(...this.places));
-    const begin = run.actions()[0]?.begin ?? 0; // before it the belief may be a guess
-    this.points = rows.filter((row) => row.at >= begin).map((row) => ({ at: row.at, x: row.values[this.places[0]], y: row.values[this.places[1]] }));
+    this.actions = run.actions().filter((action) => action.begin >= from && action.begin < to);
+    const begin = this.actions[0].begin - 0.05; // before it the belief may be a guess
+    this.points = rows.filter((row) => row.at >= begin && row.at < to).map((row) => ({ at: row.at, x: row.values[this.places[0]], y: row.values[this.places[1]] }));
     this.lay(chosen.map(([name]) => name), waypoints);
   }
 
@@ -22,7 +22,7 @@ class JointPlane {
     this.x = (v) => (width + left - right) / 2 + (v - (x0 + x1) / 2) * perUnit;
     this.y = (v) => (height + top - bottom) / 2 - (v - (y0 + y1) / 2) * perUnit;
     const way = (points) => through(points.map((p) => [this.x(p.x), this.y(p.y)]));
-    this.stretches = this.run.actions().map((action, i, all) => {
+    this.stretches = this.actions.map((action, i, all) => {
       const end = all[i + 1]?.begin ?? action.until; // between two actions the arm moves on
       return { action, points: this.points.filter((p) => p.at >= action.begin - 0.05 && p.at <= end + 0.05) };
     });

@@ -1,6 +1,6 @@
 // The plan as a graph: steps from top to bottom, causal links solid with what they carry, bare orderings dashed.
 
-const GRAPH = { width: 560, row: 74, node: 26, glyph: 6.7 };
+const GRAPH = { width: 560, row: 74, tight: 52, node: 26, glyph: 6.7, many: 6 };
 
 class PlanGraph {
   constructor(run, target) {
@@ -52,6 +52,16 @@ class PlanGraph {
       ...linkParts(base, places), ...orderingParts(base, places),
       ...[...places.values()].map((place) => nodePart(place, done, running)));
     this.panel.body.replaceChildren(drawing);
+    this.showRunning();
+  }
+
+  /** A long plan scrolls; its running step is kept in the middle. */
+  showRunning() {
+    const body = this.panel.body;
+    const node = body.querySelector(".running");
+    if (!node) return;
+    const below = node.getBoundingClientRect().top - body.getBoundingClientRect().top;
+    body.scrollTop += below - body.clientHeight / 2;
   }
 }
 
@@ -66,11 +76,12 @@ function layOut(plan) {
   level.set("goal", deepest + 1);
   const words = new Map([[0, "initial state"], ["goal", "goal"], ...plan.steps.map((step) => [step.id, step.words.join(" ")])]);
   const places = new Map();
+  const row = plan.steps.length > GRAPH.many ? GRAPH.tight : GRAPH.row;
   for (let at = 0; at <= deepest + 1; at += 1) {
     const here = [...level.keys()].filter((id) => level.get(id) === at);
     here.forEach((id, i) => {
       const width = Math.min(GRAPH.width / here.length - 8, words.get(id).length * GRAPH.glyph + 22);
-      places.set(id, { id, words: words.get(id), level: at, x: (GRAPH.width * (i + 0.5)) / here.length, y: at * GRAPH.row + 2, width });
+      places.set(id, { id, words: words.get(id), level: at, x: (GRAPH.width * (i + 0.5)) / here.length, y: at * row + 2, width });
     });
   }
   return places;
@@ -92,13 +103,19 @@ function linkParts(plan, places) {
     if (!bundles.has(key)) bundles.set(key, { from: places.get(link.from), to: places.get(link.to), literals: [] });
     bundles.get(key).literals.push(link.literal);
   }
-  return [...bundles.values()].flatMap(({ from, to, literals }) => {
+  const crowded = plan.steps.length > GRAPH.many; // then what holds from the start is written beside its step
+  const drawn = [...bundles.values()].map(({ from, to, literals }) => {
+    if (crowded && from.id === 0 && to.level > 1) {
+      const words = `${literals.join(" ")} →`;
+      return [null, [svg("text", { x: to.x - to.width / 2 - 6, y: to.y + 17, "text-anchor": "end", text: words })]];
+    }
     const kind = from.id === 0 ? "start" : "link";
     const line = route(from, to, from.id === 0 && to.level > 1 ? -1 : 1);
     const shown = literals.length > 3 ? [...literals.slice(0, 2), `and ${literals.length - 2} more`] : literals;
     const label = shown.map((words, i) => svg("text", { class: "halo", x: line.x + line.side * 6, y: line.y + 3 + (i - (shown.length - 1) / 2) * 12, "text-anchor": line.side < 0 ? "end" : "start", text: words }));
-    return [svg("path", { class: `link ${kind}`, d: line.d, "marker-end": `url(#head-${kind})` }, svg("title", { text: literals.join(" ") })), ...label];
+    return [svg("path", { class: `link ${kind}`, d: line.d, "marker-end": `url(#head-${kind})` }, svg("title", { text: literals.join(" ") })), label];
   });
+  return [...drawn.map(([line]) => line).filter(Boolean), ...drawn.flatMap(([, label]) => label)]; // words above all lines
 }
 
 function orderingParts(plan, places) {
@@ -118,7 +135,7 @@ function route(from, to, side, shift = 0) {
   }
   const [x1, x2] = [from.x + (side * from.width) / 2, to.x + side * (to.width / 2 + 5)];
   const [y1, y2] = [from.y + GRAPH.node / 2, to.y + GRAPH.node / 2];
-  const widest = Math.max(x1 * side, x2 * side) * side + side * 22 * span;
+  const widest = Math.max(x1 * side, x2 * side) * side + side * Math.min(22 * span, 130);
   return { d: `M${x1} ${y1}C${widest} ${y1} ${widest} ${y2} ${x2} ${y2}`, side, x: (x1 + x2) / 8 + widest * 0.75, y: (y1 + y2) / 2 };
 }
 

@@ -90,6 +90,13 @@ class Run {
     return starts;
   }
 
+  /** The stretch of time of the episode at a moment: [from, to). */
+  episode(at) {
+    const starts = this.episodes();
+    const number = Math.max(0, starts.filter((start) => start <= at).length - 1);
+    return [starts[number], starts[number + 1] ?? Infinity];
+  }
+
   /** Times at which something happened, for jumping to. */
   landmarks() {
     const kinds = ["state", "plan", "action", "finished", "subgoals", "estop"];

@@ -10,7 +10,8 @@ class Series {
   }
 
   show(at, view) {
-    const key = `${this.run.version} ${view[0]} ${view[1]}`;
+    this.episode = this.run.episode(at);
+    const key = `${this.run.version} ${view[0]} ${view[1]} ${this.episode[0]}`;
     if (this.drawn !== key) { this.drawn = key; this.lay(view); }
     for (const plot of this.plots) plot.move(at);
     this.plane?.move(at);
@@ -18,7 +19,7 @@ class Series {
 
   lay(view) {
     const [beliefs, others] = [this.beliefs(), this.others()].map((lines) => lines.map((line) => timePlot(line, view)));
-    this.plane = this.waypoints.length ? new JointPlane(this.run, this.waypoints) : null;
+    this.plane = this.waypoints.length ? new JointPlane(this.run, this.waypoints, this.episode) : null;
     this.plots = [...beliefs, ...others];
     const wasOpen = this.panel.body.querySelector("details")?.open ?? false;
     const more = html("details", wasOpen ? { open: "" } : {}, html("summary", { text: `${others.length} more: sensors and commands` }), plotGrid(others));
@@ -28,9 +29,10 @@ class Series {
     this.panel.note.textContent = beliefs.length ? "as believed; dots are the goals where they are due, hollow ones were free to choose" : "";
   }
 
-  /** For each started action the values that its goal has for the two quantities that the belief names first. */
+  /** For each action that was started in the episode the values that its goal has for the two quantities that the belief names first. */
   get waypoints() {
-    return this.run.actions().flatMap((action) => {
+    const [from, to] = this.episode;
+    return this.run.actions().filter((action) => action.begin >= from && action.begin < to).flatMap((action) => {
       const goal = this.goalOf(action);
       const [first, second] = this.axes().map((name) => goal.find((p) => p.name === `${name}g`));
       return first && second ? [{ action, place: first.place, x: first.value, y: second.value }] : [];
