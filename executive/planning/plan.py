@@ -32,6 +32,7 @@ class Link:
 
 
 GOAL = GOAL_STEP
+DEFAULT_TICK_S = 0.01  # VHPOP's tolerance
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ class Plan:
     orderings: tuple[tuple[int, int], ...] = ()
     durative: bool = False
     bounds: tuple[tuple[int | None, ...], ...] = ()
-    tick_s: float = 0.01
+    tick_s: float = DEFAULT_TICK_S
     bindings: tuple[str, ...] = ()
 
     @property

@@ -21,6 +21,23 @@ NAMES = (
     "ADDR_WORK", "MAKESPAN",
 )  # fmt: skip
 
+_PLAIN = ("ADD", "ADD_COST", "ADD_WORK")
+
+
+def check_rankings(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names in upper case.
+
+    Raises:
+      UsageError: Unknown ones, or rankings with and without reuse beside each other.
+    """
+    chosen = tuple(name.upper() for name in names)
+    for given, name in zip(names, chosen, strict=True):
+        if name not in NAMES:
+            raise UsageError(f"ranking '{given}' is unknown; expected some of {', '.join(NAMES)}, joined by '/'")
+    if any(name.startswith("ADDR") for name in chosen) and any(name in _PLAIN for name in chosen):
+        raise UsageError("rankings ADD* and ADDR* exclude each other")
+    return chosen
+
 
 class Ranked(Protocol):
     """What every plan knows of itself."""
@@ -61,14 +78,9 @@ class Ranking(Generic[P]):
     """The rank of a plan, with its number of creation as the last word: of equals the newest first."""
 
     def __init__(self, names: tuple[str, ...], estimates: PlanEstimates[P], weight: float) -> None:
-        chosen = tuple(name.upper() for name in names)
-        for name in chosen:
-            if name not in NAMES:
-                raise UsageError(f"ranking '{name}' is unknown; expected some of {', '.join(NAMES)}, joined by '/'")
+        chosen = check_rankings(names)
         reusing = any(name.startswith("ADDR") for name in chosen)
-        plain = any(name in ("ADD", "ADD_COST", "ADD_WORK") for name in chosen)
-        if reusing and plain:
-            raise UsageError("rankings ADD* and ADDR* exclude each other")
+        plain = any(name in _PLAIN for name in chosen)
         self._estimate = estimates.reusing if reusing else estimates.plain if plain else None
         if chosen[-1:] == ("LIFO",):
             chosen = chosen[:-1]  # the last word of every rank

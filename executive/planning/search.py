@@ -31,10 +31,7 @@ class GroundCache:
 
 
 class Search:
-    """A search for a plan, advanced by as much as each tick can spare.
-
-    A wrong ranking or flaw order raises `UsageError` from the first `advance`.
-    """
+    """A search for a plan, advanced by as much as each tick can spare."""
 
     def __init__(
         self, domain: Domain, problem: Problem, settings: Settings = DEFAULT, ground: GroundCache | None = None
@@ -83,7 +80,9 @@ class Search:
             if settings.ground:
                 yield from self._explore(GroundSpace(task, grounded.world, settings, rng))
             else:
-                yield from self._explore(LiftedSpace(lifted_task(task, grounded.world), settings, rng))
+                yield from self._explore(
+                    LiftedSpace(lifted_task(task, grounded.world, settings.action_cost), settings, rng)
+                )
         except UnsupportedLifted as feature:
             yield Result("unsupported", None, f"lifted planning does not support {feature}; ground planning does", 0, 0)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
+from executive.planning.flaw_orders import parse_flaw_order
+from executive.planning.ranking import check_rankings
 from schemas.errors import UsageError
 
 
@@ -18,7 +20,7 @@ class FlawOrder:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """All options of a search; the defaults are those of `tailor plan`.
+    """All options of a search; a wrong one raises `UsageError` when the settings are made.
 
     An empty `rankings` is ADDR/ADDR_WORK/BUC/LIFO, or ADDR/MAKESPAN/LIFO when the problem's metric is the makespan.
     Several flaw orders take turns (round robin). `weight` is of the heuristic against the cost of the steps.
@@ -42,6 +44,9 @@ class Settings:
     def __post_init__(self) -> None:
         if not self.flaw_orders:
             raise UsageError("planner settings: expected at least one flaw order")
+        for order in self.flaw_orders:
+            parse_flaw_order(order.text)
+        check_rankings(self.rankings)
         if not self.weight >= 0:
             raise UsageError(f"planner settings: expected a weight of at least 0, found {self.weight}")
         if not 0 < self.tolerance_s <= 1e3:

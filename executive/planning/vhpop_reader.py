@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 from executive.library import Fact
 from executive.planning.language import Literal
-from executive.planning.plan import GOAL, Link, Plan, Step
+from executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
 from executive.planning.schedule import levels
 from schemas.errors import UsageError
 
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
+MAX_STEPS = 200  # as many as our own plans may have
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
 _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
@@ -39,6 +40,7 @@ class _Draft:
     orderings: list[tuple[int, int]] = field(default_factory=list)
     bounds: list[tuple[int | None, ...]] = field(default_factory=list)
     bindings: list[str] = field(default_factory=list)
+    tick_s: float = DEFAULT_TICK_S
     consumer: int | None = None
     part: str = ""  # "orderings" or "bindings" while their lines follow
     has_goal: bool = False
@@ -62,6 +64,8 @@ def parse_plan(text: str) -> Plan:
             _read_line(line.rstrip(), draft)
         except ValueError as error:
             raise PlanTextError(f"plan text, line {row}: {error}") from None
+    if max(len(draft.actions), len(draft.plain)) > MAX_STEPS:
+        raise PlanTextError(f"plan text: more than {MAX_STEPS} steps")
     if draft.has_goal:
         return _from_links(draft)
     if draft.plain:
@@ -84,6 +88,8 @@ def _read_line(line: str, draft: _Draft) -> None:
     elif stripped.startswith("orderings"):
         draft.part = "orderings"
         draft.orderings += [(int(i), int(j)) for i, j in _PAIR.findall(stripped)]
+    elif stripped.startswith("tolerance"):
+        draft.tick_s = float(stripped.partition("=")[2])
     elif stripped.startswith("bindings"):
         draft.part = "bindings"
     elif draft.part == "bindings":
@@ -149,7 +155,7 @@ def _from_links(draft: _Draft) -> Plan:
 
 
 def _durative(draft: _Draft) -> Plan:
-    tick_s = 0.01
+    tick_s = draft.tick_s
     steps = []
     for number, action in draft.actions.items():
         start, end = draft.bounds[2 * number - 1][0], draft.bounds[2 * number][0]
@@ -175,5 +181,6 @@ def _plan(draft: _Draft, steps: tuple[Step, ...], orderings: tuple[tuple[int, in
         orderings,
         bool(draft.bounds),
         tuple(draft.bounds),
+        draft.tick_s,
         bindings=tuple(draft.bindings),
     )

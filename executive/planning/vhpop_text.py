@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from executive.library import Fact
-from executive.planning.plan import GOAL, Link, Plan
+from executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan
 
 
 def format_plan(plan: Plan) -> str:
@@ -18,13 +18,18 @@ def format_plan(plan: Plan) -> str:
 
 
 def format_links(plan: Plan) -> str:
-    """The causal-link form; a durative plan's orderings are printed as the bounds of its temporal network."""
+    """The causal-link form; a durative plan's orderings are printed as the bounds of its temporal network.
+
+    Their unit is 0.01 s as VHPOP's; for another tolerance a line of ours says so.
+    """
     lines = [f";{plan.problem}", "Initial  :" + "".join(" " + atom(fact) for fact in plan.initial)]
     for step in plan.steps:
         lines += ["", f"Step {step.id:<3} : {atom(step.action)}", *_links(plan.links_to(step.id))]
     lines += ["", "Goal     : ", *_links(plan.links_to(GOAL))]
     if plan.bounds:
         lines += ["orderings = ", *_matrix(plan)]
+        if plan.tick_s != DEFAULT_TICK_S:
+            lines.append(f"tolerance = {plan.tick_s!r}")
     else:
         lines.append("orderings = {" + "".join(f" {i}<{j}" for i, j in plan.orderings) + " }")
     if plan.bindings:

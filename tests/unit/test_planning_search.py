@@ -5,7 +5,17 @@ import dataclasses
 import pytest
 
 from executive.budget import CheckBudget
-from executive.planning import DEFAULT, MATCHING, FlawOrder, GroundCache, Search, Settings, validate
+from executive.planning import (
+    DEFAULT,
+    MATCHING,
+    FlawOrder,
+    GroundCache,
+    Search,
+    Settings,
+    format_links,
+    parse_plan,
+    validate,
+)
 from executive.planning.flaw_orders import NAMED, parse_flaw_order
 from executive.planning.ranking import NAMES
 from schemas.errors import UsageError
@@ -235,3 +245,4 @@ def test_deepening_finds_plans_as_short_as_best_first():
 def test_a_tick_is_what_the_tolerance_says():
     plan = solve(*own("soccer-durative-p1"), dataclasses.replace(MATCHING, tolerance_s=0.1)).plan
     assert plan.steps[0].start == pytest.approx(0.1)
+    assert parse_plan(format_links(plan)) == plan

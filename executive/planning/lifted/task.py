@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from executive.library import Fact
 from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value
 from executive.planning.ground_formula import World
-from executive.planning.ground_task import GroundTask
+from executive.planning.ground_task import CostOf, GroundTask
 from executive.planning.lifted.bindings import Bindings
 from executive.planning.lifted.schema import LiftedLiteral, Schema, UnsupportedLifted, conjuncts, schemata
 from executive.planning.orderings import FIRST
@@ -74,7 +74,7 @@ def _fits(fact: Fact, known: tuple[str | None, ...]) -> bool:
     return all(name is None or name == own for name, own in zip(known, fact[1:], strict=True))
 
 
-def lifted_task(ground: GroundTask, world: World) -> LiftedTask:
+def lifted_task(ground: GroundTask, world: World, cost: CostOf = "unit") -> LiftedTask:
     """The lifted task of a problem.
 
     Raises:
@@ -92,5 +92,15 @@ def lifted_task(ground: GroundTask, world: World) -> LiftedTask:
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
     made = schemata(world, ground.tick_s)
+    costs = _costs(made, cost)
     facts = {predicate: tuple(own) for predicate, own in initial.items()}
-    return LiftedTask(ground, world, made, facts, tuple(goal), {schema.name: 1.0 for schema in made})
+    return LiftedTask(ground, world, made, facts, tuple(goal), costs)
+
+
+def _costs(made: tuple[Schema, ...], kind: CostOf) -> dict[str, float]:
+    """By schema, 1, its duration in seconds, or that relative to the shortest one."""
+    durations = {schema.name: schema.duration_s or 1.0 for schema in made}
+    if kind == "unit" or not durations:
+        return dict.fromkeys(durations, 1.0)
+    unit = min(durations.values()) if kind == "relative" else 1.0
+    return {name: duration / unit for name, duration in durations.items()}
