@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 
 from models import scores
-from models.episodes import Episode, read_data_set
+from models.episodes import UNOBSERVED, Episode, read_data_set
 from models.examples import Examples, duration_examples, success_examples
 from models.runtime import OnnxDuration, OnnxSuccess
 from tools.figures import learned_shapes
@@ -83,7 +83,7 @@ def _learning_curve(figure: Any, test: Any) -> None:
 
 
 def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
-    rows = success_examples(episodes, 1)
+    rows = success_examples([e for e in episodes if e.failure != UNOBSERVED], 1)
     said, seen, count = zip(*model.card["test"]["reliability"], strict=True)
     probability = model.probability(rows.arguments)
     axes, right = figure.subplots(1, 2)
