@@ -43,7 +43,7 @@ class Reach:
     feedback_per_s: float = 2.0  # velocity for an error of angle
     strayed_rad: float = 0.15
     reached_rad: float = 0.05
-    reached_radps: float = 0.15
+    reached_radps: float = 0.25
 
     def __call__(self, memory: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
         """See executive.library.Controller; the command is a velocity (rad/s) for each joint.

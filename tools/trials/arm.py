@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from executive.domains.arm.belief import ArmBelief
+from executive.domains.arm.library import PASSING_RADPS, fastest_radps
 from executive.domains.arm.meaning import named
 from executive.library import Action, Array
 from schemas.messages import Message
@@ -24,7 +25,7 @@ class ArmTrials:
     """See tools.lockstep.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments, shape (8,): all uniform, distances too, but for those at rest."""
+        """Controller arguments, shape (8,): all uniform, distances too, as fast as they allow; some at rest."""
         lower = np.array([p.lower for p in action.parameters])
         upper = np.array([p.upper for p in action.parameters])
         distance = rng.uniform(*DISTANCE_RAD)
@@ -35,6 +36,7 @@ class ArmTrials:
             arguments[BG] = arguments[B] + distance * np.sin(direction)
             if np.all((lower <= arguments) & (arguments <= upper)):
                 break
+        arguments[[WA, WB, WAG, WBG]] *= fastest_radps(distance) / PASSING_RADPS
         for velocities in ([WA, WB], [WAG, WBG]):
             if rng.random() < AT_REST:
                 arguments[velocities] = 0.0

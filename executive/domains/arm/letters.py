@@ -6,14 +6,17 @@ at every waypoint, as the upper row of the paper's Figure 13 (b).
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from itertools import pairwise
 
 import numpy as np
 
+from executive.domains.arm.library import fastest_radps
 from executive.library import Scenario
 from schemas.errors import UsageError
 
@@ -89,7 +92,10 @@ def _scenario(name: str, writing: Writing, stops: bool) -> Scenario:
     """All strokes in one chain of waypoints p1, p2, …; the arm must come to rest at the last one, or at all."""
     points = [point for stroke in writing.strokes for point in stroke]
     labels = [f"p{k}" for k in range(1, len(points) + 1)]
-    places = {label: {"a": a, "b": b} for label, (a, b) in zip(labels, points, strict=True)}
+    ways = [math.dist(one, other) for one, other in pairwise([writing.home, *points])]
+    places = {}
+    for label, (a, b), before, after in zip(labels, points, ways, [*ways[1:], ways[-1]], strict=True):
+        places[label] = {"a": a, "b": b, "fastest": fastest_radps(min(before, after))}
     for label in labels if stops else labels[-1:]:
         places[label] |= {"wa": 0.0, "wb": 0.0}
     counts = tuple((letter, len(stroke)) for letter, stroke in zip(writing.text, writing.strokes, strict=True))

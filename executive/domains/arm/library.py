@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from executive.actions.reach import Reach
 from executive.library import Action, Parameter
 
@@ -10,6 +12,15 @@ LIFT_RAD = 0.9
 PASSING_RADPS = 0.7  # fastest passage that is asked of a joint
 ACCELERATION_RADPS2 = 0.87  # a random reach then takes 2.9 s on average (paper Table 1)
 ACCELERATION_MAX_RADPS2 = 4.0  # the driver ramps at 5; hardly a reach needs more than 2.5
+
+
+def fastest_radps(distance_rad: float) -> float:
+    """How fast a joint may pass a waypoint whose nearer neighbour lies so far away.
+
+    Up to there a reach's duration has one minimum. Beyond, rushing through and looping back can cost alike, and what is
+    best on paper turns out to be the other one.
+    """
+    return min(PASSING_RADPS, math.sqrt(ACCELERATION_RADPS2 * distance_rad))
 
 
 def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:

@@ -12,14 +12,17 @@ def value(quantity: str, label: str, holds: tuple[Fact, ...], belief: ArmBelief,
     """See executive.library.Domain.value.
 
     `at` says where the arm will be when the next action begins, `next` where the scenario put the waypoint. The
-    velocities at a waypoint are free unless the scenario names them, which it does for the last.
+    velocities at a waypoint are free up to the fastest that its neighbours allow, unless the scenario names them, which
+    it does for the last.
     """
     known: Mapping[str, float] = {}
     if ("at", label) in holds:
         known = named(*ahead(belief))
     elif any(fact[0] == "next" and fact[2] == label for fact in holds):
         known = scenario.places[label]
-    return Interval(known[quantity], known[quantity]) if quantity in known else None
+    if quantity in known:
+        return Interval(known[quantity], known[quantity])
+    return Interval(-known["fastest"], known["fastest"]) if "fastest" in known else None
 
 
 def named(angles: Joints, velocities: Joints) -> dict[str, float]:
