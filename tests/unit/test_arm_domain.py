@@ -10,7 +10,7 @@ from executive.budget import CheckBudget
 from executive.domains.arm import belief as believing
 from executive.domains.arm import letters
 from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.library import LIFT_RAD, PAN_RAD
+from executive.domains.arm.library import LIFT_RAD, PAN_RAD, PASSING_RADPS, fastest_radps
 from executive.refinement.instantiation import instantiate
 from schemas.errors import UsageError
 from schemas.messages import JointState, Sample
@@ -81,6 +81,18 @@ def test_velocities_are_free_at_every_waypoint_but_the_last():
     bound = {(v.label, v.quantity): v.value for v in sequence.variables if v.value is not None}
     assert bound["p4", "wa"] == bound["p4", "wb"] == 0.0
     assert bound["home", "a"] == pytest.approx(start["a"])
+
+
+def test_a_waypoint_with_a_near_neighbour_is_passed_more_slowly():
+    scenario, start = load("word-HI")
+    belief = ArmBelief(0, (start["a"], start["b"]), (0.0, 0.0), 0)
+    sequence = instantiate(planned(scenario), ARM, belief, scenario)
+    free = [variable for variable in sequence.variables if variable.value is None]
+    assert all(v.upper == -v.lower == scenario.places[v.label]["fastest"] for v in free)
+    points = np.array([(place["a"], place["b"]) for place in scenario.places.values()])
+    nearest = np.linalg.norm(np.diff(points, axis=0), axis=1).min()
+    assert min(v.upper for v in free) == pytest.approx(fastest_radps(nearest))
+    assert fastest_radps(nearest) < fastest_radps(3.0) == PASSING_RADPS
 
 
 def test_a_hand_that_stops_has_the_same_letters_and_nothing_free():
