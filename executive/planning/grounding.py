@@ -22,8 +22,10 @@ from executive.planning.ground_formula import (
     TooMuchToGround,
     World,
     bindings,
+    conjunction,
     conjuncts,
     ground,
+    negation,
 )
 from executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
 from executive.planning.problem import Problem
@@ -215,11 +217,24 @@ def _useful(
     A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
     action's own condition promises to hold up to that very moment changes nothing.
     """
-    added = {(effect.literal, effect.moment) for effect in effects if effect.literal % 2 == 0 and not effect.conditions}
     kept = []
     for effect in effects:
         demanded = any(part == effect.literal and span[1] == effect.moment for part, span in conditions)
-        undone = effect.literal % 2 == 1 and (effect.literal ^ 1, effect.moment) in added
-        if not demanded and not undone:
-            kept.append(effect)
+        remaining = effect if effect.literal % 2 == 0 else _unless_added(effect, effects)
+        if not demanded and remaining is not None:
+            kept.append(remaining)
     return tuple(kept)
+
+
+def _unless_added(effect: GroundEffect, effects: list[GroundEffect]) -> GroundEffect | None:
+    """A delete effect under the condition that no add effect of the same moment wins; None when one always does."""
+    conditions = effect.conditions
+    for other in effects:
+        if other.literal == effect.literal ^ 1 and other.moment == effect.moment:
+            spans = {span for _, span in other.conditions}
+            lost = negation(conjunction(condition for condition, _ in other.conditions))
+            if lost == FALSE:
+                return None
+            # conditions at several moments have no negation at one: their last moment decides
+            conditions = (*conditions, *((part, max(spans)) for part in conjuncts(lost)))
+    return replace(effect, conditions=conditions)

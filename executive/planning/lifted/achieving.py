@@ -15,7 +15,7 @@ from executive.planning.lifted.lifted_plan import (
     opposing,
     unifying,
 )
-from executive.planning.lifted.schema import LiftedEffect, LiftedLiteral, Schema
+from executive.planning.lifted.schema import LiftedEffect, LiftedLiteral, Pairs, Schema
 from executive.planning.lifted.task import LiftedTask
 from executive.planning.orderings import INITIAL, Orderings
 
@@ -23,13 +23,23 @@ from executive.planning.orderings import INITIAL, Orderings
 def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> list[LiftedPlan]:
     """All plans that mend the flaw: new steps by name, old steps newest first, then initial facts in their order."""
     rest = plan._replace(open=_without(plan.open, flaw), open_count=plan.open_count - 1)
-    new = (_by_new_step(task, rest, flaw, schema, effect) for schema, effect in new_achievers(task, flaw.literal))
-    old = (_by_old_step(task, rest, flaw, step, effect) for step, effect in old_achievers(task, plan, flaw))
+    new = (
+        child
+        for schema, effect in new_achievers(task, flaw.literal)
+        for apart in effect.apart
+        if (child := _by_new_step(task, rest, flaw, schema, effect, apart))
+    )
+    old = (
+        child
+        for step, effect in old_achievers(task, plan, flaw)
+        for apart in effect.apart
+        if (child := _by_old_step(task, rest, flaw, step, effect, apart))
+    )
     start = (
         _linked(task, rest._replace(bindings=bindings), flaw, INITIAL, plan.orderings)
         for bindings in initial_achievers(task, plan.bindings, flaw.literal)
     )
-    return [child for child in itertools.chain(new, old, start) if child is not None]
+    return [*new, *old, *start]
 
 
 def new_achievers(task: LiftedTask, literal: LiftedLiteral) -> Iterator[tuple[Schema, LiftedEffect]]:
@@ -76,12 +86,12 @@ def _objects(task: LiftedTask, bindings: Bindings, term: Term) -> tuple[str, ...
 
 # --- the ways ------------------------------------------------------------------------------------
 def _by_new_step(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, schema: Schema, effect: LiftedEffect
+    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, schema: Schema, effect: LiftedEffect, apart: Pairs
 ) -> LiftedPlan | None:
     step = len(plan.steps) + 1
     node = len(plan.orderings.late)
     bindings = _bound(task, plan.bindings, schema, step)
-    bindings = bindings and _achieving(bindings, effect, step, flaw.literal)
+    bindings = bindings and _achieving(bindings, effect, apart, step, flaw.literal)
     orderings = plan.orderings.with_step(schema, effect.moment, flaw.first)
     if bindings is None or orderings is None:
         return None
@@ -113,21 +123,23 @@ def _tagged(name: str, step: int) -> Term:
     return (name, step) if name[0] == "?" else name
 
 
-def _achieving(bindings: Bindings, effect: LiftedEffect, step: int, literal: LiftedLiteral) -> Bindings | None:
-    """The bindings with which an effect becomes a literal, and is no no-op."""
+def _achieving(
+    bindings: Bindings, effect: LiftedEffect, apart: Pairs, step: int, literal: LiftedLiteral
+) -> Bindings | None:
+    """The bindings with which an effect becomes a literal, and neither a no-op nor undone."""
     terms = effect.literal.of_step(step).terms
     bound = bindings.unified(zip(terms, literal.terms, strict=True))
-    for left, right in effect.apart:
+    for left, right in apart:
         bound = bound and bound.separated(_tagged(left, step), _tagged(right, step))
     return bound
 
 
 def _by_old_step(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, step: int, effect: LiftedEffect
+    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, step: int, effect: LiftedEffect, apart: Pairs
 ) -> LiftedPlan | None:
     node = task.node_of(step) + effect.moment
     orderings = plan.orderings.ordered(node, flaw.first)
-    bindings = _achieving(plan.bindings, effect, step, flaw.literal)
+    bindings = _achieving(plan.bindings, effect, apart, step, flaw.literal)
     if orderings is None or bindings is None:
         return None
     return _linked(task, plan._replace(bindings=bindings), flaw, node, orderings)

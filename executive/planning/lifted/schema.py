@@ -30,12 +30,19 @@ class LiftedLiteral(NamedTuple):
         return self._replace(terms=tuple((t, step) if isinstance(t, str) and t[0] == "?" else t for t in self.terms))
 
 
+Pairs = tuple[tuple[str, str], ...]
+
+
 class LiftedEffect(NamedTuple):
-    """A literal that becomes true at a moment; to achieve anything, each of the pairs must differ (the no-op rule)."""
+    """A literal that becomes true at a moment.
+
+    To achieve anything, each pair of one of the alternatives in `apart` must differ: lest the action demands the
+    effect already (the no-op rule), or adds again what it deletes.
+    """
 
     literal: LiftedLiteral
     moment: int
-    apart: tuple[tuple[str, str], ...]
+    apart: tuple[Pairs, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,29 +137,42 @@ def _effects(
     durative: bool,
     where: str,
 ) -> tuple[LiftedEffect, ...]:
-    effects = []
+    made = []
     for effect in action.effects:
         if effect.condition or effect.variables:
             raise UnsupportedLifted(f"{where}: a conditional or quantified effect")
-        moment = (MOMENTS[effect.when] if durative else INSTANT)[0]
-        literal = _renamed(LiftedLiteral(effect.atom.predicate, effect.atom.terms, effect.positive), names)
-        apart = _no_op(literal, moment, conditions)
-        if apart is not None:
-            effects.append(LiftedEffect(literal, moment, apart))
+        literal = LiftedLiteral(effect.atom.predicate, effect.atom.terms, effect.positive)
+        made.append((_renamed(literal, names), (MOMENTS[effect.when] if durative else INSTANT)[0]))
+    effects = []
+    for literal, moment in made:
+        demanded = _no_op(literal, moment, conditions)
+        restored = _unless_added(literal, [other for other, when in made if when == moment])
+        if demanded is not None and restored:
+            effects.append(LiftedEffect(literal, moment, tuple(demanded + pairs for pairs in restored)))
     return tuple(effects)
 
 
-def _no_op(
-    literal: LiftedLiteral, moment: int, conditions: tuple[tuple[LiftedLiteral, Span], ...]
-) -> tuple[tuple[str, str], ...] | None:
+def _no_op(literal: LiftedLiteral, moment: int, conditions: tuple[tuple[LiftedLiteral, Span], ...]) -> Pairs | None:
     """The pairs that must differ lest the effect be demanded already; None when it always is."""
-    apart = []
+    apart: list[tuple[str, str]] = []
     for condition, span in conditions:
         if condition[0] == literal[0] and condition.positive == literal.positive and span[1] == moment:
-            differing = [pair for pair in zip(literal.terms, condition.terms, strict=True) if pair[0] != pair[1]]
+            differing = _differing(literal, condition)
             if not differing:
                 return None
-            if len(differing) == 1:  # with more, no single pair need differ
-                a, b = differing[0]
-                apart.append((str(a), str(b)))  # schema terms are plain names
+            apart += differing if len(differing) == 1 else ()  # with more, no single pair need differ
     return tuple(apart)
+
+
+def _unless_added(literal: LiftedLiteral, effects: list[LiftedLiteral]) -> list[Pairs]:
+    """The ways in which a delete effect escapes the add effects of its moment, which win; one way for an add effect."""
+    ways: list[Pairs] = [()]
+    for other in effects:
+        if other.positive and not literal.positive and other.predicate == literal.predicate:
+            ways = [(*way, pair) for way in ways for pair in _differing(literal, other)]
+    return ways
+
+
+def _differing(a: LiftedLiteral, b: LiftedLiteral) -> Pairs:
+    """The pairs of terms that are not the same name; schema terms are plain names."""
+    return tuple((str(x), str(y)) for x, y in zip(a.terms, b.terms, strict=True) if x != y)
