@@ -261,3 +261,39 @@ def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> Non
         thread.join()
         browser.wait("Number(document.documentElement.dataset.rows) >= 150", 2)
         assert browser.errors == []
+
+
+def test_the_wheel_with_shift_zooms_the_timeline_and_a_double_click_shows_all(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    labels = (
+        "[...document.querySelectorAll('#timeline svg > g:first-of-type text')].map((e) => parseFloat(e.textContent))"
+    )
+    whole = browser.value(labels)
+    wheel = "new WheelEvent('wheel', {deltaY: -100, shiftKey: %s, clientX: 600, bubbles: true, cancelable: true})"
+    for shift, changes in (("false", False), ("true", True)):
+        browser.value(f"document.querySelector('#timeline svg').dispatchEvent({wheel % shift})")
+        browser.frame()
+        assert (browser.value(labels) != whole) == changes, "plain scrolling stays the page's"
+    browser.value("document.querySelector('#timeline svg').dispatchEvent(new MouseEvent('dblclick', {bubbles: true}))")
+    browser.frame()
+    assert browser.value(labels) == whole
+
+
+def test_a_long_plan_keeps_its_running_step_in_sight(browser: Browser, tmp_path: Path) -> None:
+    steps = range(1, 21)
+    text_of = "".join(f"\nStep {k:<3} : (reach p{k - 1} p{k})\n          {k - 1:<3} -> (at p{k - 1})\n" for k in steps)
+    pairs = " ".join(f"{k}<{k + 1}" for k in steps[:-1])
+    plan = f";long\nInitial  : (at p0)\n{text_of}\nGoal     :\n          20  -> (at p20)\norderings = {{ {pairs} }}\n"
+    running = m.Subgoals(0, 1, 1, (m.InstantiatedAction("reach", 18, False, 1.0, 0.1, ()),))
+    status = synthetic_run.status(0, "EXECUTING", "", "reach", 17, 0.0, 1.0, ())
+    messages = [
+        synthetic_run.Told(0, "exec/plan", m.PlanReport(0, "solved", "searched", plan, 1, 1, "")),
+        synthetic_run.Told(0, "exec/subgoals", running),
+        synthetic_run.Told(0, "exec/status", status),
+    ]
+    opened(browser, written(tmp_path / "long.html", rows_of(messages, Story())))
+    seen = """((box, node) => node.top >= box.top && node.bottom <= box.bottom)(
+      document.querySelector('#plan .body').getBoundingClientRect(),
+      document.querySelector('#plan .running').getBoundingClientRect())"""
+    assert browser.value("document.querySelector('#plan .body').scrollTop") > 0
+    assert browser.value(seen)

@@ -9,17 +9,20 @@ from importlib import resources
 
 from tools.viewer.story import Row
 
+STYLES = ("page.css", "controls.css", "drawing.css")
 # In the order in which they build on each other; together they are one module.
 SCRIPTS = (
     "elements.js",
     "scales.js",
     "run.js",
     "places.js",
+    "subgoals.js",
     "field.js",
     "jointplane.js",
     "series.js",
     "lanes.js",
     "timeline.js",
+    "graph.js",
     "plan.js",
     "polar.js",
     "choice.js",
@@ -40,7 +43,7 @@ def page(title: str, rows: Iterable[Row], live: bool = False) -> str:
     embedded = json.dumps({"title": title, "live": live, "rows": [row.json_value() for row in rows]}, allow_nan=False)
     parts = {
         "TITLE": html.escape(title),
-        "STYLE": _asset("page.css"),
+        "STYLE": "\n".join(_asset(name) for name in STYLES),
         "SCRIPT": "\n".join(_asset(name) for name in SCRIPTS),
         # "<" must not end the script element, whatever a recording's strings say.
         "DATA": embedded.replace("<", "\\u003c"),

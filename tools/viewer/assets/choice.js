@@ -15,7 +15,10 @@ class ChoicePanel {
     const key = [subgoals?.at, report?.at, report?.evaluations, fitting?.at, this.picked].join(" ");
     if (key === this.drawn) return;
     this.drawn = key;
-    this.again = () => { this.drawn = ""; this.show(at); };
+    this.again = () => {
+      this.drawn = "";
+      this.show(at);
+    };
     this.panel.note.textContent = report ? this.search(report) : "";
     if (!subgoals) this.panel.body.replaceChildren(html("p", { class: "empty", text: "Nothing chosen yet." }));
     else this.panel.body.replaceChildren(...(fitting ? this.explained(fitting) : this.told(subgoals)));
@@ -23,7 +26,10 @@ class ChoicePanel {
 
   search(report) {
     const state = report.finished ? "search finished" : "still searching";
-    const found = report.greedy === null || report.best === null ? "" : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
+    const found =
+      report.greedy === null || report.best === null
+        ? ""
+        : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
     return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}`;
   }
 
@@ -32,11 +38,25 @@ class ChoicePanel {
     const free = why.parameters;
     const key = (a) => `${a.place} ${a.quantity}`;
     const shown = free.find((a) => key(a) === this.picked) ?? free.find((a) => a.periodic) ?? free[0];
-    const chips = free.map((a) => html("button", { type: "button", "aria-pressed": a === shown, onclick: () => { this.picked = key(a); this.again(); } },
-      `${a.quantity} at ${a.place}: ${quantity(a.chosen, a.unit)} (greedy ${quantity(a.greedy, a.unit)})`));
+    const chips = free.map((a) =>
+      html(
+        "button",
+        {
+          type: "button",
+          "aria-pressed": a === shown,
+          onclick: () => {
+            this.picked = key(a);
+            this.again();
+          },
+        },
+        `${a.quantity} at ${a.place}: ${quantity(a.chosen, a.unit)} (greedy ${quantity(a.greedy, a.unit)})`,
+      ),
+    );
     return [
-      this.verdict(why), this.table(why, sum(why.chosen), sum(why.greedy)),
-      html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips), this.plots(why, shown),
+      this.verdict(why),
+      this.table(why, sum(why.chosen), sum(why.greedy)),
+      html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips),
+      this.plots(why, shown),
     ];
   }
 
@@ -44,29 +64,77 @@ class ChoicePanel {
   verdict(why) {
     const [chosen, greedy] = why.cost;
     const words = why.actions.length === 1 ? "the next action" : `the next ${why.actions.length} actions`;
-    if (greedy === null || chosen === null) return html("p", { class: "verdict" }, html("b", { text: greedy === null ? "Greedy is predicted to fail" : "Accepted although predicted to fail" }), `, over ${words}.`);
+    if (greedy === null || chosen === null)
+      return html(
+        "p",
+        { class: "verdict" },
+        html("b", { text: greedy === null ? "Greedy is predicted to fail" : "Accepted although predicted to fail" }),
+        `, over ${words}.`,
+      );
     const saved = greedy - chosen;
-    const said = Math.abs(saved) < 0.005 ? "as good as greedy" : `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "better" : "worse"} than greedy (${((100 * Math.abs(saved)) / greedy).toFixed(1)} %)`;
+    const said =
+      Math.abs(saved) < 0.005
+        ? "as good as greedy"
+        : `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "better" : "worse"} than greedy (${((100 * Math.abs(saved)) / greedy).toFixed(1)} %)`;
     return html("p", { class: "verdict" }, html("b", { text: said }), ` by the objective over ${words}.`);
   }
 
   table(why, chosen, greedy) {
     const cells = (...words) => words.map((text) => html("td", { text }));
     const first = this.firstIndex(why.at);
-    const rows = why.actions.map((action, i) => html("tr", {}, html("td", {}, html("span", { class: `key ${colour(first + i)}` }), action), ...cells(seconds(why.chosen[i]), seconds(why.greedy[i]), signed(why.chosen[i] - why.greedy[i], 2))));
-    return html("table", {},
-      html("tr", {}, ...["predicted", "chosen", "greedy", "difference"].map((text) => html("th", { text }))), ...rows,
+    const rows = why.actions.map((action, i) =>
+      html(
+        "tr",
+        {},
+        html("td", {}, html("span", { class: `key ${colour(first + i)}` }), action),
+        ...cells(seconds(why.chosen[i]), seconds(why.greedy[i]), signed(why.chosen[i] - why.greedy[i], 2)),
+      ),
+    );
+    return html(
+      "table",
+      {},
+      html("tr", {}, ...["predicted", "chosen", "greedy", "difference"].map((text) => html("th", { text }))),
+      ...rows,
       html("tr", { class: "sum" }, ...cells("sum", seconds(chosen), seconds(greedy), signed(chosen - greedy, 2))),
-      html("tr", { title: "duration, its spread, and the risk of failing: what refinement minimised" }, ...cells("objective", ...why.cost.map((s) => seconds(s)), why.cost.includes(null) ? "" : signed(why.cost[0] - why.cost[1], 2))));
+      html(
+        "tr",
+        { title: "duration, its spread, and the risk of failing: what refinement minimised" },
+        ...cells(
+          "objective",
+          ...why.cost.map((s) => seconds(s)),
+          why.cost.includes(null) ? "" : signed(why.cost[0] - why.cost[1], 2),
+        ),
+      ),
+    );
   }
 
   plots(why, said) {
     const first = this.firstIndex(why.at);
-    const curves = said.touched.map((i, k) => ({ name: why.actions[i], seconds: said.seconds[k], kind: colour(first + i) }));
-    const both = said.touched.length > 1 || why.actions.length > 1 ? [{ name: "sum", seconds: said.total, kind: "sum", beside: said.cost }] : [];
-    const common = { values: said.values, valid: said.cost.map((s) => s !== null), chosen: said.chosen, greedy: said.greedy, unit: said.unit };
-    if (!said.periodic) return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
-    return html("div", { class: "plots" }, ...[...curves, ...both].map((c) => polarPlot({ ...common, seconds: c.seconds, beside: c.beside, kind: c.kind, caption: c.name })));
+    const curves = said.touched.map((i, k) => ({
+      name: why.actions[i],
+      seconds: said.seconds[k],
+      kind: colour(first + i),
+    }));
+    const both =
+      said.touched.length > 1 || why.actions.length > 1
+        ? [{ name: "sum", seconds: said.total, kind: "sum", beside: said.cost }]
+        : [];
+    const common = {
+      values: said.values,
+      valid: said.cost.map((s) => s !== null),
+      chosen: said.chosen,
+      greedy: said.greedy,
+      unit: said.unit,
+    };
+    if (!said.periodic)
+      return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
+    return html(
+      "div",
+      { class: "plots" },
+      ...[...curves, ...both].map((c) =>
+        polarPlot({ ...common, seconds: c.seconds, beside: c.beside, kind: c.kind, caption: c.name }),
+      ),
+    );
   }
 
   /** The place in the run of the action that a decision begins with, for its colour. */
@@ -77,10 +145,31 @@ class ChoicePanel {
 
   /** Without models: what the messages tell. */
   told(subgoals) {
-    const rows = subgoals.actions.flatMap((action) => action.parameters.filter((p) => !p.bound).map((p) => [`${action.action}: ${p.name} at ${p.place}`, quantity(p.value, p.unit), `${quantity(p.lower, p.unit)} … ${quantity(p.upper, p.unit)}`]));
-    const durations = subgoals.actions.slice(0, subgoals.horizon).map((action) => [action.action, seconds(action.predicted), `± ${seconds(action.spread)}`]);
-    const table = (head, body) => html("table", {}, html("tr", {}, ...head.map((text) => html("th", { text }))), ...body.map((row) => html("tr", {}, ...row.map((text) => html("td", { text })))));
-    return [table(["action", "predicted", "spread"], durations), rows.length ? table(["free parameter", "chosen", "range"], rows) : html("p", { class: "empty", text: "Nothing was free to choose." })];
+    const rows = subgoals.actions.flatMap((action) =>
+      action.parameters
+        .filter((p) => !p.bound)
+        .map((p) => [
+          `${action.action}: ${p.name} at ${p.place}`,
+          quantity(p.value, p.unit),
+          `${quantity(p.lower, p.unit)} … ${quantity(p.upper, p.unit)}`,
+        ]),
+    );
+    const durations = subgoals.actions
+      .slice(0, subgoals.horizon)
+      .map((action) => [action.action, seconds(action.predicted), `± ${seconds(action.spread)}`]);
+    const table = (head, body) =>
+      html(
+        "table",
+        {},
+        html("tr", {}, ...head.map((text) => html("th", { text }))),
+        ...body.map((row) => html("tr", {}, ...row.map((text) => html("td", { text })))),
+      );
+    return [
+      table(["action", "predicted", "spread"], durations),
+      rows.length
+        ? table(["free parameter", "chosen", "range"], rows)
+        : html("p", { class: "empty", text: "Nothing was free to choose." }),
+    ];
   }
 }
 

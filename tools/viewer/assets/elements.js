@@ -61,7 +61,10 @@ function through(points) {
   let path = "";
   let pen = "M";
   for (const point of points) {
-    if (point === null) { pen = "M"; continue; }
+    if (point === null) {
+      pen = "M";
+      continue;
+    }
     path += `${pen}${point[0].toFixed(2)} ${point[1].toFixed(2)}`;
     pen = "L";
   }

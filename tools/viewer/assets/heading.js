@@ -12,10 +12,19 @@ class Heading {
   show(at) {
     const [about, state, belief] = [this.run.about(), this.run.last("state", at), this.run.last("belief", at)];
     const action = this.run.last("action", at);
-    const facts = [about.domain, state?.scenario || about.scenario, about.robot, about.horizon && `horizon ${about.horizon}`, about.seed !== undefined && `seed ${about.seed}`];
+    const facts = [
+      about.domain,
+      state?.scenario || about.scenario,
+      about.robot,
+      about.horizon && `horizon ${about.horizon}`,
+      about.seed !== undefined && `seed ${about.seed}`,
+    ];
     this.facts.textContent = facts.filter(Boolean).join(" · ");
     const parts = [];
-    if (action?.index >= 0 && belief) parts.push(html("span", { text: `${action.action} ${belief.elapsed.toFixed(1)} of ${seconds(belief.predicted, 1)}` }));
+    if (action?.index >= 0 && belief)
+      parts.push(
+        html("span", { text: `${action.action} ${belief.elapsed.toFixed(1)} of ${seconds(belief.predicted, 1)}` }),
+      );
     if (state?.mode) parts.push(pill(state.mode, state.reason));
     if (state?.result) parts.push(pill(state.result.split(":")[0], state.result));
     const driver = this.run.last("driver", at);
@@ -25,5 +34,9 @@ class Heading {
 }
 
 function pill(kind, reason, words = kind) {
-  return html("span", { class: `pill ${kind}`, title: reason || null, text: reason && reason !== kind ? `${words}: ${reason.replace(/^failed: /, "")}` : words });
+  return html("span", {
+    class: `pill ${kind}`,
+    title: reason || null,
+    text: reason && reason !== kind ? `${words}: ${reason.replace(/^failed: /, "")}` : words,
+  });
 }

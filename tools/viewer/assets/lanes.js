@@ -9,10 +9,19 @@ function actionLane(run, x, top) {
     if (right < x.low || left > x.high) continue;
     const bar = (kind, until, y) => {
       const [begin, end] = [Math.max(x.low, left), Math.min(x.high, x(until))];
-      return svg("rect", { class: `bar ${kind} ${colour(action.index)}`, x: begin, y, width: Math.max(1.5, end - begin - 1), height: 9, rx: 2 });
+      return svg("rect", {
+        class: `bar ${kind} ${colour(action.index)}`,
+        x: begin,
+        y,
+        width: Math.max(1.5, end - begin - 1),
+        height: 9,
+        rx: 2,
+      });
     };
     parts.push(bar("predicted", action.begin + action.predicted, top + 16));
-    parts.push(bar(action.ended && action.ended.outcome !== "done" ? "actual failed" : "actual", action.until, top + 27));
+    parts.push(
+      bar(action.ended && action.ended.outcome !== "done" ? "actual failed" : "actual", action.until, top + 27),
+    );
     const words = action.ended
       ? `${action.action}  ${action.ended.actual.toFixed(1)} s (${signed(action.ended.actual - action.predicted)})`
       : action.action;
@@ -21,7 +30,17 @@ function actionLane(run, x, top) {
     const short = room > 6.2 * words.length ? words : room > 6.2 * action.action.length ? action.action : "";
     const label = svg("text", { class: "ink", x: Math.max(x.low, left), y: top + 11, text: short });
     const reason = action.ended?.reason ? `, ${action.ended.outcome}: ${action.ended.reason}` : "";
-    parts.push(svg("g", {}, svg("title", { text: `${action.action}: predicted ${seconds(action.predicted)}, took ${seconds(action.until - action.begin)}${reason}` }), label, ...parts.splice(-2)));
+    parts.push(
+      svg(
+        "g",
+        {},
+        svg("title", {
+          text: `${action.action}: predicted ${seconds(action.predicted)}, took ${seconds(action.until - action.begin)}${reason}`,
+        }),
+        label,
+        ...parts.splice(-2),
+      ),
+    );
   }
   return parts;
 }
@@ -29,7 +48,8 @@ function actionLane(run, x, top) {
 /** What happened when: decisions (diamond), plans (square), changes of mode (line). */
 function eventLane(run, x, top) {
   const y = top + 8;
-  const mark = (row, shape, words) => (x.shows(row.at) ? svg("g", {}, svg("title", { text: `${row.at.toFixed(1)} s: ${words}` }), shape(x(row.at))) : null);
+  const mark = (row, shape, words) =>
+    x.shows(row.at) ? svg("g", {}, svg("title", { text: `${row.at.toFixed(1)} s: ${words}` }), shape(x(row.at))) : null;
   const diamond = (px) => svg("path", { d: `M${px} ${y - 4}l4 4l-4 4l-4 -4z`, style: "fill:var(--good)" });
   const square = (px) => svg("rect", { x: px - 3.2, y: y - 3.2, width: 6.4, height: 6.4, style: "fill:var(--a0)" });
   const post = (px) => svg("line", { class: "event", x1: px, x2: px, y1: y - 6, y2: y + 6 });
@@ -47,7 +67,12 @@ function curveLane(x, top, height, lines, [low, high], unit) {
     svg("line", { class: "grid", x1: x.low, x2: x.high, y1: y(v), y2: y(v) }),
     svg("text", { x: x.low - 6, y: y(v) + 4, "text-anchor": "end", text: String(v) }),
   ]);
-  const curves = lines.map((line) => svg("path", { class: line.kind, d: through(line.points.filter((p) => x.shows(p[0])).map((p) => (p[1] === null ? null : [x(p[0]), y(p[1])]))) }));
+  const curves = lines.map((line) =>
+    svg("path", {
+      class: line.kind,
+      d: through(line.points.filter((p) => x.shows(p[0])).map((p) => (p[1] === null ? null : [x(p[0]), y(p[1])]))),
+    }),
+  );
   return [...labels, svg("text", { x: x.high + 6, y: top + 14, text: unit }), ...curves];
 }
 
@@ -56,20 +81,33 @@ function tickLane(run, x, top, height, times) {
   const rows = run.all("tick").filter((row) => x.shows(row.at));
   const high = Math.max(times.period * 1.05, ...rows.map((row) => Math.min(row.work, 2 * times.period)));
   const y = scale(0, high, top + height - 4, top + 6);
-  const column = (value) => columns(rows, x, value).map(([px, v]) => `M${px} ${y(0).toFixed(1)}V${y(Math.min(v, high)).toFixed(1)}`).join("");
+  const column = (value) =>
+    columns(rows, x, value)
+      .map(([px, v]) => `M${px} ${y(0).toFixed(1)}V${y(Math.min(v, high)).toFixed(1)}`)
+      .join("");
   const width = Math.max(1, Math.min(5, ((x.high - x.low) / Math.max(1, rows.length)) * 0.7));
-  const limits = [[times.budget, "budget"], [times.period, "period"]].flatMap(([v, words]) => [
+  const limits = [
+    [times.budget, "budget"],
+    [times.period, "period"],
+  ].flatMap(([v, words]) => [
     svg("line", { class: "limit", x1: x.low, x2: x.high, y1: y(v), y2: y(v) }),
     svg("text", { x: x.high + 6, y: y(v) + 4, text: words }),
     svg("text", { x: x.low - 6, y: y(v) + 4, "text-anchor": "end", text: String(v) }),
   ]);
-  const late = rows.filter((row) => row.late > 1).map((row) => svg("circle", { class: "late", cx: x(row.at), cy: y(Math.min(row.late, high)), r: 1.8 }));
-  const missed = rows.filter((row) => row.skipped > 0).map((row) => svg("rect", { class: "late", x: x(row.at) - 1.5, y: top + 2, width: 3, height: height - 6, opacity: 0.35 }));
+  const late = rows
+    .filter((row) => row.late > 1)
+    .map((row) => svg("circle", { class: "late", cx: x(row.at), cy: y(Math.min(row.late, high)), r: 1.8 }));
+  const missed = rows
+    .filter((row) => row.skipped > 0)
+    .map((row) =>
+      svg("rect", { class: "late", x: x(row.at) - 1.5, y: top + 2, width: 3, height: height - 6, opacity: 0.35 }),
+    );
   return [
     ...missed,
     svg("path", { style: `stroke:var(--a0);opacity:.4;stroke-width:${width}`, d: column((row) => row.work) }),
     svg("path", { style: `stroke:var(--a0);stroke-width:${width}`, d: column((row) => row.control) }),
-    ...limits, ...late,
+    ...limits,
+    ...late,
     svg("text", { x: x.low - 6, y: y(0) + 3, "text-anchor": "end", text: "0" }),
   ];
 }

@@ -7,7 +7,12 @@ given.rows.forEach((row) => run.add(row));
 
 const player = new Player(run, given.live);
 const timeline = new Timeline(run, panel("timeline"), player);
-const views = [new Heading(run, given.title), new ChoicePanel(run, panel("choice")), new PlanGraph(run, panel("plan")), timeline];
+const views = [
+  new Heading(run, given.title),
+  new ChoicePanel(run, panel("choice")),
+  new PlanGraph(run, panel("plan")),
+  timeline,
+];
 let scene = null;
 
 /** A field for what moves on a plane, small multiples for everything else. */
@@ -32,9 +37,18 @@ function forget() {
 function listen() {
   const source = new EventSource("events");
   source.addEventListener("reset", forget);
-  source.addEventListener("rows", (event) => { JSON.parse(event.data).forEach((row) => run.add(row)); player.grown(); });
-  source.onopen = () => { root.dataset.connection = "open"; document.title = given.title; };
-  source.onerror = () => { root.dataset.connection = "lost"; document.title = `${given.title} (connection lost)`; };
+  source.addEventListener("rows", (event) => {
+    JSON.parse(event.data).forEach((row) => run.add(row));
+    player.grown();
+  });
+  source.onopen = () => {
+    root.dataset.connection = "open";
+    document.title = given.title;
+  };
+  source.onerror = () => {
+    root.dataset.connection = "lost";
+    document.title = `${given.title} (connection lost)`;
+  };
 }
 
 const asked = /^#t=([0-9.]+)$/.exec(location.hash);

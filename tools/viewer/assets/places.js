@@ -21,7 +21,13 @@ function placesOf(row) {
 /** Headings chosen earlier for a free place in the same action, oldest first, without the one that stands. */
 function earlierHeadings(run, at, label) {
   const now = run.last("subgoals", at);
-  const since = Math.max(0, ...run.all("action").filter((row) => row.index < 0 && row.at < at).map((row) => row.at));
+  const since = Math.max(
+    0,
+    ...run
+      .all("action")
+      .filter((row) => row.index < 0 && row.at < at)
+      .map((row) => row.at),
+  );
   const found = [];
   for (const row of run.between("subgoals", since, at)) {
     const place = placesOf(row).find((other) => other.label === label);

@@ -16,15 +16,44 @@ class Player {
   }
 
   build() {
-    this.button = html("button", { type: "button", class: "play", "aria-label": "play or pause", onclick: () => this.toggle() });
-    this.slider = html("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0, "aria-label": "time", oninput: () => this.go(Number(this.slider.value)) });
+    this.button = html("button", {
+      type: "button",
+      class: "play",
+      "aria-label": "play or pause",
+      onclick: () => this.toggle(),
+    });
+    this.slider = html("input", {
+      type: "range",
+      min: 0,
+      max: 1,
+      step: 0.01,
+      value: 0,
+      "aria-label": "time",
+      oninput: () => this.go(Number(this.slider.value)),
+    });
     this.clock = html("output");
     const choices = SPEEDS.map((speed) => html("option", { value: speed, text: `${speed}×` }));
-    this.speeds = html("select", { "aria-label": "speed", onchange: () => { this.speed = Number(this.speeds.value); } }, ...choices);
+    this.speeds = html(
+      "select",
+      {
+        "aria-label": "speed",
+        onchange: () => {
+          this.speed = Number(this.speeds.value);
+        },
+      },
+      ...choices,
+    );
     this.speeds.value = "1";
     this.newest = this.live ? html("button", { type: "button", onclick: () => this.catchUp(), text: "live" }) : null;
-    const keys = html("span", { class: "keys", text: "space ← → ⇧ [ ] home end + −", title: "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: event before and after; + and −: speed; shift and wheel over the timeline: zoom" });
-    document.getElementById("player").replaceChildren(...[this.button, this.slider, this.clock, this.speeds, this.newest, keys].filter(Boolean));
+    const keys = html("span", {
+      class: "keys",
+      text: "space ← → ⇧ [ ] home end + −",
+      title:
+        "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: event before and after; + and −: speed; shift and wheel over the timeline: zoom",
+    });
+    document
+      .getElementById("player")
+      .replaceChildren(...[this.button, this.slider, this.clock, this.speeds, this.newest, keys].filter(Boolean));
   }
 
   /** Call back with the shown moment whenever it or the run changes. */
@@ -58,7 +87,10 @@ class Player {
   refresh() {
     if (this.waiting) return;
     this.waiting = true;
-    requestAnimationFrame(() => { this.waiting = false; this.paint(); });
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.paint();
+    });
   }
 
   paint() {
@@ -71,7 +103,11 @@ class Player {
   }
 
   toggle() {
-    if (this.follow) { this.follow = false; this.refresh(); return; }
+    if (this.follow) {
+      this.follow = false;
+      this.refresh();
+      return;
+    }
     this.playing = !this.playing;
     if (this.playing && this.at >= this.run.end) this.at = this.run.start;
     if (this.playing) this.advance(performance.now());
@@ -82,14 +118,17 @@ class Player {
     requestAnimationFrame((now) => {
       if (!this.playing) return;
       this.set(this.at + ((now - then) / 1000) * this.speed);
-      if (this.at >= this.run.end) { this.playing = false; this.follow = this.live; }
-      else this.advance(now);
+      if (this.at >= this.run.end) {
+        this.playing = false;
+        this.follow = this.live;
+      } else this.advance(now);
     });
   }
 
   jump(direction) {
     const marks = this.run.landmarks();
-    const next = direction > 0 ? marks.find((m) => m > this.at + 0.005) : marks.filter((m) => m < this.at - 0.005).pop();
+    const next =
+      direction > 0 ? marks.find((m) => m > this.at + 0.005) : marks.filter((m) => m < this.at - 0.005).pop();
     this.go(next ?? (direction > 0 ? this.run.end : this.run.start));
   }
 
@@ -103,9 +142,16 @@ class Player {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = event.shiftKey ? 1 : 0.1;
     const actions = {
-      " ": () => this.toggle(), ArrowLeft: () => this.go(this.at - step), ArrowRight: () => this.go(this.at + step),
-      Home: () => this.go(this.run.start), End: () => (this.live ? this.catchUp() : this.go(this.run.end)),
-      "[": () => this.jump(-1), "]": () => this.jump(1), "+": () => this.faster(1), "-": () => this.faster(-1), l: () => this.live && this.catchUp(),
+      " ": () => this.toggle(),
+      ArrowLeft: () => this.go(this.at - step),
+      ArrowRight: () => this.go(this.at + step),
+      Home: () => this.go(this.run.start),
+      End: () => (this.live ? this.catchUp() : this.go(this.run.end)),
+      "[": () => this.jump(-1),
+      "]": () => this.jump(1),
+      "+": () => this.faster(1),
+      "-": () => this.faster(-1),
+      l: () => this.live && this.catchUp(),
     };
     const action = actions[event.key];
     const pressed = event.key === " " && event.target.tagName === "BUTTON" && event.target !== this.button;

@@ -70,11 +70,20 @@ class Run {
     started.forEach((row, position) => {
       if (row.index < 0) return;
       const next = started[position + 1]?.at ?? Infinity;
-      const ended = this.all("finished").find((end) => end.index === row.index && end.at >= row.at - 0.3 && end.at <= next + 0.3) ?? null;
+      const ended =
+        this.all("finished").find((end) => end.index === row.index && end.at >= row.at - 0.3 && end.at <= next + 0.3) ??
+        null;
       const first = this.all("belief")[this.count("belief", row.at - 1e-9)];
       const begin = first ? first.at - first.elapsed : row.at;
       const until = ended ? begin + ended.actual : Math.min(next, this.end);
-      found.push({ index: row.index, action: row.action, begin, until, ended, predicted: ended?.predicted ?? first?.predicted ?? 0 });
+      found.push({
+        index: row.index,
+        action: row.action,
+        begin,
+        until,
+        ended,
+        predicted: ended?.predicted ?? first?.predicted ?? 0,
+      });
     });
     this.actionsOf = this.version;
     this.known = found;

@@ -18,7 +18,8 @@ function ticks(from, to, count) {
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= raw * 0.999);
   const found = [];
-  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + step * 1e-6; k += 1) found.push(Number((k * step).toPrecision(12)));
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + step * 1e-6; k += 1)
+    found.push(Number((k * step).toPrecision(12)));
   return found;
 }
 

@@ -12,7 +12,10 @@ class Series {
   show(at, view) {
     this.episode = this.run.episode(at);
     const key = `${this.run.version} ${view[0]} ${view[1]} ${this.episode[0]}`;
-    if (this.drawn !== key) { this.drawn = key; this.lay(view); }
+    if (this.drawn !== key) {
+      this.drawn = key;
+      this.lay(view);
+    }
     for (const plot of this.plots) plot.move(at);
     this.plane?.move(at);
   }
@@ -22,26 +25,41 @@ class Series {
     this.plane = this.waypoints.length ? new JointPlane(this.run, this.waypoints, this.episode) : null;
     this.plots = [...beliefs, ...others];
     const wasOpen = this.panel.body.querySelector("details")?.open ?? false;
-    const more = html("details", wasOpen ? { open: "" } : {}, html("summary", { text: `${others.length} more: sensors and commands` }), plotGrid(others));
+    const more = html(
+      "details",
+      wasOpen ? { open: "" } : {},
+      html("summary", { text: `${others.length} more: sensors and commands` }),
+      plotGrid(others),
+    );
     const empty = html("p", { class: "empty", text: "No numbers yet." });
-    this.panel.body.replaceChildren(...[this.plane?.element, beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean));
+    this.panel.body.replaceChildren(
+      ...[this.plane?.element, beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean),
+    );
     this.panel.title.textContent = "State";
-    this.panel.note.textContent = beliefs.length ? "as believed; dots are the goals where they are due, hollow ones were free to choose" : "";
+    this.panel.note.textContent = beliefs.length
+      ? "as believed; dots are the goals where they are due, hollow ones were free to choose"
+      : "";
   }
 
   /** For each action that was started in the episode the values that its goal has for the two quantities that the belief names first. */
   get waypoints() {
     const [from, to] = this.episode;
-    return this.run.actions().filter((action) => action.begin >= from && action.begin < to).flatMap((action) => {
-      const goal = this.goalOf(action);
-      const [first, second] = this.axes().map((name) => goal.find((p) => p.name === `${name}g`));
-      return first && second ? [{ action, place: first.place, x: first.value, y: second.value }] : [];
-    });
+    return this.run
+      .actions()
+      .filter((action) => action.begin >= from && action.begin < to)
+      .flatMap((action) => {
+        const goal = this.goalOf(action);
+        const [first, second] = this.axes().map((name) => goal.find((p) => p.name === `${name}g`));
+        return first && second ? [{ action, place: first.place, x: first.value, y: second.value }] : [];
+      });
   }
 
   /** The first two angles of the belief: an arm's Figure 13 is drawn over them. */
   axes() {
-    return (this.run.about().beliefNames ?? []).filter((name) => name.endsWith("(rad)")).slice(0, 2).map(bare);
+    return (this.run.about().beliefNames ?? [])
+      .filter((name) => name.endsWith("(rad)"))
+      .slice(0, 2)
+      .map(bare);
   }
 
   goalOf(action) {
@@ -71,8 +89,14 @@ class Series {
     return this.run.series().flatMap((kind) => {
       const rows = this.run.all(kind);
       const names = Object.keys(rows[0]).filter((name) => name !== "at");
-      const lines = names.map((name) => ({ name: `${kind.slice(7)} ${name}`, points: rows.map((row) => [row.at, row[name]]), goals: [] }));
-      return lines.filter((line) => line.points.some(([, value]) => Math.abs(value - line.points[0][1]) > 1e-3)).slice(0, 24);
+      const lines = names.map((name) => ({
+        name: `${kind.slice(7)} ${name}`,
+        points: rows.map((row) => [row.at, row[name]]),
+        goals: [],
+      }));
+      return lines
+        .filter((line) => line.points.some(([, value]) => Math.abs(value - line.points[0][1]) > 1e-3))
+        .slice(0, 24);
     });
   }
 }
@@ -83,7 +107,11 @@ function bare(name) {
 }
 
 function plotGrid(plots) {
-  return html("div", { class: "plots", style: "grid-template-columns:repeat(auto-fit,minmax(17rem,1fr))" }, ...plots.map((p) => p.element));
+  return html(
+    "div",
+    { class: "plots", style: "grid-template-columns:repeat(auto-fit,minmax(17rem,1fr))" },
+    ...plots.map((p) => p.element),
+  );
 }
 
 /** One plot over time with a cursor that moves. */
@@ -94,11 +122,21 @@ function timePlot(line, [from, to]) {
   const y = scale(low, high, PLOT.height - PLOT.bottom, PLOT.top);
   const cursor = svg("line", { class: "cursor", y1: PLOT.top, y2: PLOT.height - PLOT.bottom });
   const now = svg("text", { class: "ink", x: PLOT.width - PLOT.right, y: 10, "text-anchor": "end" });
-  const element = svg("svg", { viewBox: `0 0 ${PLOT.width} ${PLOT.height}` },
-    ...ticks(low, high, 3).flatMap((v) => [svg("line", { class: "grid", x1: PLOT.left, x2: PLOT.width - PLOT.right, y1: y(v), y2: y(v) }), svg("text", { x: PLOT.left - 4, y: y(v) + 3.5, "text-anchor": "end", text: String(v) })]),
+  const element = svg(
+    "svg",
+    { viewBox: `0 0 ${PLOT.width} ${PLOT.height}` },
+    ...ticks(low, high, 3).flatMap((v) => [
+      svg("line", { class: "grid", x1: PLOT.left, x2: PLOT.width - PLOT.right, y1: y(v), y2: y(v) }),
+      svg("text", { x: PLOT.left - 4, y: y(v) + 3.5, "text-anchor": "end", text: String(v) }),
+    ]),
     svg("path", { class: "trace c0", d: through(seen.map(([at, value]) => [x(at), y(value)])) }),
-    ...line.goals.filter(([at]) => at >= from && at <= to).map(([at, value, bound]) => svg("circle", { class: bound ? "dot" : "dot lone", cx: x(at), cy: y(value), r: 3 })),
-    svg("text", { class: "strong", x: PLOT.left, y: 10, text: line.name }), now, cursor);
+    ...line.goals
+      .filter(([at]) => at >= from && at <= to)
+      .map(([at, value, bound]) => svg("circle", { class: bound ? "dot" : "dot lone", cx: x(at), cy: y(value), r: 3 })),
+    svg("text", { class: "strong", x: PLOT.left, y: 10, text: line.name }),
+    now,
+    cursor,
+  );
   const move = (at) => {
     const px = x(Math.min(to, Math.max(from, at)));
     cursor.setAttribute("x1", px);

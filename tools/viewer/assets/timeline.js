@@ -21,7 +21,10 @@ class Timeline {
   show(at) {
     const view = this.view();
     const key = `${this.run.version} ${view}`;
-    if (key !== this.drawn) { this.drawn = key; this.lay(view); }
+    if (key !== this.drawn) {
+      this.drawn = key;
+      this.lay(view);
+    }
     const px = this.x(Math.min(view[1], Math.max(view[0], at)));
     this.hand.style.left = `${(100 * px) / WIDE.width}%`;
   }
@@ -37,10 +40,19 @@ class Timeline {
       parts.push(svg("g", { "data-lane": lane.name }, ...lane.draw(x, top)));
       top += lane.height + 8;
     }
-    const axis = ticks(view[0], view[1], 12).flatMap((t) => [svg("line", { class: "grid", x1: x(t), x2: x(t), y1: 0, y2: top }), svg("text", { x: x(t), y: top + 12, "text-anchor": "middle", text: `${t} s` })]);
+    const axis = ticks(view[0], view[1], 12).flatMap((t) => [
+      svg("line", { class: "grid", x1: x(t), x2: x(t), y1: 0, y2: top }),
+      svg("text", { x: x(t), y: top + 12, "text-anchor": "middle", text: `${t} s` }),
+    ]);
     this.hand = html("div", { class: "hand" }); // above the drawing, which need not be painted again when it moves
     const hit = svg("rect", { class: "hit", x: x.low, y: 0, width: x.high - x.low, height: top });
-    const drawing = svg("svg", { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" }, svg("g", {}, ...axis), hit, ...parts);
+    const drawing = svg(
+      "svg",
+      { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" },
+      svg("g", {}, ...axis),
+      hit,
+      ...parts,
+    );
     this.listen(drawing);
     this.panel.body.replaceChildren(html("div", { class: "layers" }, drawing, this.hand));
     this.panel.note.textContent = this.summary();
@@ -56,12 +68,45 @@ class Timeline {
     const source = run.source();
     if (source) {
       const points = run.all(source).map((p) => [p.at, p.v]);
-      lanes.push({ name: "speed", height: 50, draw: (x, top) => curveLane(x, top, 50, [{ points, kind: "trace c0" }, ...this.commanded()], extent([0, ...points.map((p) => p[1])]), "m/s") });
+      lanes.push({
+        name: "speed",
+        height: 50,
+        draw: (x, top) =>
+          curveLane(
+            x,
+            top,
+            50,
+            [{ points, kind: "trace c0" }, ...this.commanded()],
+            extent([0, ...points.map((p) => p[1])]),
+            "m/s",
+          ),
+      });
     }
     if (run.all("tick").length) {
       lanes.push({ name: "tick ms", height: 74, draw: (x, top) => tickLane(run, x, top, 74, times) });
       const checks = run.all("tick").map((row) => [row.at, row.checks]);
-      lanes.push({ name: "checks", height: 42, draw: (x, top) => curveLane(x, top, 42, [{ points: checks, kind: "trace c2" }], [0, Math.max(1, extent(checks.map((c) => c[1]), 0.02)[1])], "granted") });
+      lanes.push({
+        name: "checks",
+        height: 42,
+        draw: (x, top) =>
+          curveLane(
+            x,
+            top,
+            42,
+            [{ points: checks, kind: "trace c2" }],
+            [
+              0,
+              Math.max(
+                1,
+                extent(
+                  checks.map((c) => c[1]),
+                  0.02,
+                )[1],
+              ),
+            ],
+            "granted",
+          ),
+      });
     }
     return lanes;
   }
@@ -85,14 +130,26 @@ class Timeline {
       const box = drawing.getBoundingClientRect();
       return this.x.invert(((event.clientX - box.left) / box.width) * WIDE.width);
     };
-    drawing.addEventListener("pointerdown", (event) => { this.dragging = true; this.player.go(at(event)); });
-    drawing.addEventListener("pointermove", (event) => { if (this.dragging && event.buttons) this.player.go(at(event)); });
-    drawing.addEventListener("dblclick", () => { this.window = null; this.player.refresh(); });
-    drawing.addEventListener("wheel", (event) => {
-      if (!event.ctrlKey && !event.shiftKey) return; // plain scrolling stays the page's
-      event.preventDefault();
-      this.zoom(at(event), event.deltaY + event.deltaX > 0 ? 1.25 : 0.8);
-    }, { passive: false });
+    drawing.addEventListener("pointerdown", (event) => {
+      this.dragging = true;
+      this.player.go(at(event));
+    });
+    drawing.addEventListener("pointermove", (event) => {
+      if (this.dragging && event.buttons) this.player.go(at(event));
+    });
+    drawing.addEventListener("dblclick", () => {
+      this.window = null;
+      this.player.refresh();
+    });
+    drawing.addEventListener(
+      "wheel",
+      (event) => {
+        if (!event.ctrlKey && !event.shiftKey) return; // plain scrolling stays the page's
+        event.preventDefault();
+        this.zoom(at(event), event.deltaY + event.deltaX > 0 ? 1.25 : 0.8);
+      },
+      { passive: false },
+    );
   }
 
   /** Widen or narrow the shown stretch about a moment. */
@@ -100,7 +157,9 @@ class Timeline {
     const [from, to] = this.view();
     const next = [about + (from - about) * factor, about + (to - about) * factor];
     const whole = next[0] <= this.run.start && next[1] >= this.run.end;
-    this.window = whole ? null : [Math.max(this.run.start, next[0]), Math.min(this.run.end, Math.max(next[1], next[0] + 0.5))];
+    this.window = whole
+      ? null
+      : [Math.max(this.run.start, next[0]), Math.min(this.run.end, Math.max(next[1], next[0] + 0.5))];
     this.player.refresh();
   }
 }
