@@ -30,7 +30,7 @@ class RefinementSettings:
     p_fail_assert: float = 0.2  # above it an action is predicted to fail and gets a detour; wider, so that a robot
     # that has arrived beside its subgoal is not sent around again
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
-    risk_cost_s: float = 6.0  # seconds that a failure costs: about one more approach
+    risk_cost_s: float = 3.0  # seconds that a failure costs: a ball that was bumped is fetched while dribbling
     gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for (paper 6.3.2)
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
@@ -41,7 +41,7 @@ class RefinementSettings:
     greedy_checks: int = 6  # batches spent on the first, greedy answer
     assertion_depth: int = 2  # detours in a row before one action
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
-    weigh_detours: bool = False  # a detour must pay: compare expected costs, failure priced at risk_cost_s
+    weigh_detours: bool = True  # a detour must pay: compare expected costs, failure priced at risk_cost_s
     weighing_checks: int = 40  # batches spent on each side of that comparison
 
     def __post_init__(self) -> None:

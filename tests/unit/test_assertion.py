@@ -15,7 +15,8 @@ from executive.refinement.sequence import ActionSequence, Failure
 from executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import APPROACH, DRIBBLE, GO, LIBRARY, MODELS, ConeSuccess, NeverSucceeds, sequence
 
-SETTINGS = RefinementSettings(arrival_spread=(), p_fail_assert=0.05, risk_cost_s=0.0)
+HARD = RefinementSettings(weigh_detours=False, risk_cost_s=6.0)  # the paper's: a threshold decides
+SETTINGS = replace(HARD, arrival_spread=(), p_fail_assert=0.05, risk_cost_s=0.0)
 TARGET = {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
 
 
@@ -61,7 +62,7 @@ def test_approach_that_fails_for_every_angle_gets_a_detour_with_a_free_goal():
 
 
 def test_refinement_puts_the_subgoal_where_success_is_predicted():
-    settings = RefinementSettings(arrival_spread=(("x", 0.03), ("y", 0.03), ("phi", 0.1)))
+    settings = replace(HARD, arrival_spread=(("x", 0.03), ("y", 0.03), ("phi", 0.1)))
     result = asserted(approach(3.0, (-0.3, 0.3)), settings)
     refinement = Refinement(result, MODELS, settings, np.random.default_rng(0))
     refinement.advance(CheckBudget(200))
@@ -96,7 +97,7 @@ def test_action_without_a_detour_fails_with_a_reason():
 
 def test_hopeless_action_fails_after_the_bounded_depth():
     hopeless = Models(MODELS.durations, {"goToPose/success": NeverSucceeds()})
-    failure = asserted(approach(-1.0, (-3.0, 3.0)), RefinementSettings(assertion_depth=2), hopeless)
+    failure = asserted(approach(-1.0, (-3.0, 3.0)), replace(HARD, assertion_depth=2), hopeless)
     assert isinstance(failure, Failure)
     assert "after 2 detours" in failure.reason
 
@@ -121,7 +122,7 @@ def test_margin_decides():
 
 def test_displaced_arrivals_must_succeed_too():
     """The margin counts for where the robot may really arrive, not only for the subgoal itself."""
-    wide = RefinementSettings(arrival_spread=(("x", 0.05), ("y", 0.05)))
+    wide = replace(HARD, arrival_spread=(("x", 0.05), ("y", 0.05)))
     result = asserted(approach(3.0, (-0.3, 0.3)), wide)
     worst = []
     for settings in (SETTINGS, wide):
