@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo test test-all lint types bench clean
+.PHONY: setup demo demo-arm test test-all lint types bench clean
 
 setup: .venv/.installed
 
@@ -14,6 +14,9 @@ setup: .venv/.installed
 
 demo: setup
 	$(BIN)/tailor demo
+
+demo-arm: setup
+	$(BIN)/tailor letters
 
 test: setup
 	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadgroup
