@@ -225,7 +225,7 @@ class Subgoals:
 
 @dataclass(frozen=True, slots=True)
 class RefinementReport:
-    """The refinement's search: what greedy would have cost, the best so far, and what it took."""
+    """The refinement's search: what greedy would have cost, the best so far, and what it took; -1 s is INVALID."""
 
     stamp_ns: int
     tick: int

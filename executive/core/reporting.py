@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from executive import planning
@@ -81,6 +82,11 @@ def _plan(context: Context, state: State, found: PlanFound) -> m.PlanReport:
     return m.PlanReport(stamp_ns, found.status, found.way, text, found.generated, found.visited, found.reason)
 
 
+def _finite(value_s: float) -> float:
+    """A predicted cost as it is told: the bus takes no infinities, so INVALID (Algorithm 4) is told as -1."""
+    return value_s if math.isfinite(value_s) else -1.0
+
+
 def _refinement(context: Context, state: State, deliberation: Deliberation) -> tuple[Output, ...]:
     if deliberation.refinement is None:
         return ()
@@ -94,8 +100,8 @@ def _refinement(context: Context, state: State, deliberation: Deliberation) -> t
         finished=deliberation.refinement.finished,
         evaluations=report.evaluations,
         checks=report.checks,
-        greedy_s=report.greedy_s,
-        best_s=report.best_s,
+        greedy_s=_finite(report.greedy_s),
+        best_s=_finite(report.best_s),
         trace_evaluations=tuple(evaluations for evaluations, _ in report.trace),
         trace_best_s=tuple(best_s for _, best_s in report.trace),
     )

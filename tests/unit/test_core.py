@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from executive import planning
@@ -13,8 +14,9 @@ from executive.core.context import Settings
 from executive.core.modes import Conditions, Mode, next_mode
 from executive.core.state import Inputs, initial_state
 from executive.core.step import step
-from executive.library import Axis
-from schemas.messages import ActionFinished, ArmRequest, PlanReport, Subgoals, VelocityCommand
+from executive.library import Axis, Models
+from schemas import codec
+from schemas.messages import ActionFinished, ArmRequest, PlanReport, RefinementReport, Subgoals, VelocityCommand
 from tests.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
 
 TICK = 100_000_000
@@ -327,3 +329,17 @@ def test_unsound_plan_is_not_executed(monkeypatch):
     run = list(drive(line_context(), ticks=5))
     assert run[-1][0].task.result.startswith("failed: no plan")
     assert all(state.command == (0.0,) for state, _, _ in run)
+
+
+def test_every_word_about_a_refinement_without_a_valid_choice_can_be_encoded():
+    class Never:
+        def predict(self, arguments):
+            return np.full(len(arguments), np.nan), np.full(len(arguments), np.nan)
+
+    context = line_context()
+    context = dataclasses.replace(context, models=Models({"slide/duration": Never()}, {}))
+    run = list(drive(context, ticks=5))
+    told = messages(run, RefinementReport)
+    assert told
+    assert all(isinstance(codec.decode(type(word), codec.encode(word)), RefinementReport) for word in told)
+    assert told[0].best_s == -1.0
