@@ -99,7 +99,7 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
 
 def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> None:
     """Improves what the action makes true, minimum by (cost, work)."""
-    before = _sum(_value(condition, values) for condition, _ in action.conditions)
+    before = _sum(_value(condition, values) for condition, _ in action.needs)
     if before.cost == math.inf:
         return
     for effect in action.effects:

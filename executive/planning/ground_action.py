@@ -39,5 +39,11 @@ class GroundAction:
     duration_s: float = 0.0  # of the shortest
     simple: bool = True  # no conditional effects
 
+    @property
+    def needs(self) -> tuple[tuple[GroundCondition, Span], ...]:
+        """The conditions that others must achieve: all but those after the start that the start itself makes true."""
+        own = {effect.literal for effect in self.effects if effect.moment == 0 and not effect.conditions}
+        return tuple((part, span) for part, span in self.conditions if span[1] == 0 or part not in own)
+
     def __str__(self) -> str:
         return f"({' '.join(self.name)})"

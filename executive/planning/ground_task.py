@@ -70,7 +70,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
 def _achievers(actions: tuple[GroundAction, ...], estimates: Estimates, count: int) -> tuple[tuple[Achiever, ...], ...]:
     achievers: list[list[Achiever]] = [[] for _ in range(count)]
     for action in actions:
-        if estimates.reaches(action.conditions):
+        if estimates.reaches(action.needs):
             for effect in action.effects:
                 if estimates.reaches(effect.conditions):
                     achievers[effect.literal].append((action, effect))

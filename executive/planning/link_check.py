@@ -14,17 +14,19 @@ Bound = dict[int, tuple[Action, Binding]]  # by step
 def faulty_link(plan: Plan, problem: Problem, bound: Bound) -> str:
     """The first causal link that supports nothing, and why; "" when all are sound."""
     starts = {0: -1.0, **{step.id: step.start for step in plan.steps}}
+    needed = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
     for link in plan.links:
-        fault = _fault(link, starts, problem, bound)
+        fault = _fault(link, starts, needed, problem, bound)
         if fault:
             return f"the causal link {link.producer} -> {link.literal} {fault}"
     return ""
 
 
-def _fault(link: Link, starts: dict[int, float], problem: Problem, bound: Bound) -> str:
+def _fault(link: Link, starts: dict[int, float], needed: dict[int, float], problem: Problem, bound: Bound) -> str:
+    """What is wrong with a link; `needed` is the last moment at which each step may need a condition."""
     if link.producer not in starts or (link.consumer != GOAL and link.consumer not in starts):
         return "names a step that is not in the plan"
-    if link.consumer != GOAL and starts[link.producer] >= starts[link.consumer]:
+    if link.consumer != GOAL and starts[link.producer] >= needed[link.consumer]:
         return "runs backward in time"
     if link.producer == 0:
         timed = any(t.literal == link.literal for t in problem.timed)

@@ -45,9 +45,15 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
 
 
 def reusable(plan: PartialPlan, flaw: OpenCondition) -> int:
-    """The mask of the nodes that make the (literal) condition true and may come before its consumer."""
+    """The mask of the nodes that make the (literal) condition true and may come before its consumer.
+
+    A condition over all of an action may be met by the action's own start.
+    """
     assert isinstance(flaw.condition, int)
-    return plan.effects.masks()[flaw.condition] & ~plan.orderings.late[flaw.first]
+    late = plan.orderings.late[flaw.first]
+    if flaw.first != flaw.last:
+        late ^= 1 << flaw.first
+    return plan.effects.masks()[flaw.condition] & ~late
 
 
 def _nodes(mask: int) -> Iterator[int]:
@@ -113,7 +119,7 @@ def _opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> Op
 def _by_old_step(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, node: int
 ) -> list[PartialPlan]:
-    orderings = plan.orderings.ordered(node, flaw.first)
+    orderings = plan.orderings if node == flaw.first else plan.orderings.ordered(node, flaw.first)
     if orderings is None:
         return []
     step = step_of(task, node)
@@ -154,7 +160,9 @@ def _threats_to(
     """Adds the threats to a new link by the nodes that undo it: newest first, so that the oldest ends at the head."""
     producer, literal, first, last, _ = link
     late = orderings.late
-    mask = undoing & ~late[last] & ~(1 << producer | 1 << first)
+    mask = undoing & ~late[last] & ~(1 << producer)
+    if first == last:
+        mask &= ~(1 << first)  # the consumer may undo its condition; not at its start what it needs over all
     while mask:
         node = mask.bit_length() - 1
         mask ^= 1 << node

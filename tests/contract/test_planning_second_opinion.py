@@ -3,6 +3,8 @@
 import dataclasses
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from executive.planning import DEFAULT, MATCHING, Settings, format_plan, validate
 from tests.planning_problems import DATA, OWN, SHARED, read, solve
@@ -27,12 +29,12 @@ def accepted(texts, plan):
     return kairos.validate(kairos.parse_problem(texts[1], domain), kairos.parse_plan(text)).valid
 
 
-@pytest.mark.parametrize("settings", [MATCHING, DEFAULT, Settings(ground=False, node_limit=400)])
+@pytest.mark.parametrize("options", [MATCHING, DEFAULT, Settings(ground=False, node_limit=400)])
 @pytest.mark.parametrize("name", TEXTS)
-def test_our_plans_are_sound_in_anothers_eyes(name, settings):
-    result = solve(*read(*TEXTS[name]), settings)
+def test_our_plans_are_sound_in_anothers_eyes(name, options):
+    result = solve(*read(*TEXTS[name]), options)
     if result.plan is None:
-        assert not settings.ground  # too much, or too rich, for lifted planning
+        assert not options.ground  # too much, or too rich, for lifted planning
     else:
         assert accepted(TEXTS[name], result.plan)
 
@@ -48,3 +50,37 @@ def test_both_refuse_the_same_plans(name):
                 steps = sorted([*plan.steps[:number], moved, *plan.steps[number + 1 :]], key=lambda s: s.start)
                 other = dataclasses.replace(plan, steps=tuple(steps))
                 assert (validate(other, domain, problem) == "") == accepted(TEXTS[name], other), format_plan(other)
+
+
+# --- random actions with durations ---------------------------------------------------------------
+LITERALS = st.sampled_from(["(p)", "(q)", "(r)", "(not (p))", "(not (r))"])
+CONDITION = st.builds("({} {})".format, st.sampled_from(["at start", "over all", "at end"]), LITERALS)
+EFFECT = st.builds("({} {})".format, st.sampled_from(["at start", "at end"]), LITERALS)
+ACTION = st.builds(
+    "(:durative-action a{} :parameters () :duration (and (>= ?duration {}) (<= ?duration 6))"
+    " :condition (and {}) :effect (and {}))".format,
+    st.integers(0, 10**9),
+    st.integers(1, 6),
+    st.lists(CONDITION, max_size=3).map(" ".join),
+    st.lists(EFFECT, min_size=1, max_size=3).map(" ".join),
+)
+TASK = st.builds(
+    lambda actions, initial, goal: [
+        "(define (domain d) (:requirements :durative-actions :negative-preconditions :duration-inequalities)"
+        f" (:predicates (p) (q) (r)) {' '.join(actions)})",
+        f"(define (problem x) (:domain d) (:init {' '.join(initial)}) (:goal (and {' '.join(goal)})))",
+    ],
+    st.lists(ACTION, min_size=1, max_size=3, unique_by=lambda action: action.split()[1]),
+    st.lists(st.sampled_from(["(p)", "(q)", "(r)"]), max_size=2, unique=True),
+    st.lists(LITERALS, min_size=1, max_size=2),
+)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(TASK)
+def test_plans_of_random_durative_actions_are_sound_in_both_eyes(texts):
+    domain, problem = read(*texts)
+    result = solve(domain, problem, Settings(node_limit=150))
+    if result.plan is not None and result.plan.steps:
+        assert validate(result.plan, domain, problem) == ""
+        assert accepted(texts, result.plan), format_plan(result.plan)

@@ -53,6 +53,8 @@ def new_achievers(task: LiftedTask, literal: LiftedLiteral) -> Iterator[tuple[Sc
 def old_achievers(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> Iterator[tuple[int, LiftedEffect]]:
     """Steps, newest first, with an effect that may become the condition and may come before it."""
     late = plan.orderings.late[flaw.first]
+    if flaw.first != flaw.last:
+        late ^= 1 << flaw.first  # the action's own start may make true what it needs over all
     for step in range(len(plan.steps), 0, -1):
         for effect in effects_of(plan, step):
             node = task.node_of(step) + effect.moment
@@ -138,7 +140,7 @@ def _by_old_step(
     task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, step: int, effect: LiftedEffect, apart: Pairs
 ) -> LiftedPlan | None:
     node = task.node_of(step) + effect.moment
-    orderings = plan.orderings.ordered(node, flaw.first)
+    orderings = plan.orderings if node == flaw.first else plan.orderings.ordered(node, flaw.first)
     bindings = _achieving(plan.bindings, effect, apart, step, flaw.literal)
     if orderings is None or bindings is None:
         return None
@@ -182,8 +184,8 @@ def _threatened(task: LiftedTask, plan: LiftedPlan, step: int, link: LiftedLink)
 def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
     """Whether the effect may still undo the link: by order, by bindings, and unless its own step restores it."""
     late, link, node = plan.orderings.late, threat.link, threat.node
-    if node in (link.producer, link.first, link.last):
-        return False
+    if node in (link.producer, link.last):
+        return False  # the consumer may undo its condition; not at its start what it needs over all
     if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
         return False
     if not opposing(link.literal, threat.effect, plan.bindings):
