@@ -1,4 +1,4 @@
-"""Tables of settings (TOML, JSON) into frozen dataclasses: an unknown key or a wrong type is an error, all told at once."""
+"""Tables of settings (TOML, JSON) into frozen dataclasses; unknown keys and wrong types are errors, all told at once."""
 
 from __future__ import annotations
 
