@@ -42,7 +42,7 @@ class Weighing:
         arrived = frozenset(direct.actions[position - 1].variables) if position else frozenset()
         stretches = (
             (accepting(direct, position, 1.0), position + 1),
-            (detoured, position + 2),
+            (accepting(detoured, position + 1, settings.p_fail_settle), position + 2),
         )
         self._solvers = []
         for sequence, end in stretches:

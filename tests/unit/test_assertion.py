@@ -223,3 +223,13 @@ def test_arrival_beside_the_subgoal_is_not_driven_around_again():
     refinement = Refinement(result, MODELS, lenient, np.random.default_rng(0))
     refinement.advance(CheckBudget(10))
     assert refinement.choice.valid
+
+
+def test_detour_is_weighed_even_where_no_start_is_certain():
+    """A model that is never surer than 86 % still tells a good start from a bad one."""
+    unsure = Models({"goToPose/duration": TwoSecondsAndTheWay()}, {"goToPose/success": AtBest(0.86)})
+    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=20.0, p_fail_assert=0.2)
+    behind = sequence(
+        [APPROACH], [{"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}]
+    )
+    assert names(asserted(behind, settings, unsure)) == ["goToPose", "approachBall"]
