@@ -1,4 +1,4 @@
-"""Tables of settings (TOML, JSON) into frozen dataclasses; unknown keys and wrong types are errors, all told at once."""
+"""Tables of settings (TOML, JSON) into frozen dataclasses; unknown keys and wrong types are told all at once."""
 
 from __future__ import annotations
 

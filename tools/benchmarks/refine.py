@@ -1,20 +1,19 @@
 """How fast the solvers come close to the optimum: gap to the best known against milliseconds, on one core.
 
 Chain solver, the paper's genetic algorithm and our differential evolution beside scipy's and, where installed, CMA-ES;
-all call the same objective: sequences of AGILO with its learned models. `python -m bench.refine [--quick] [--json]`.
+all call the same objective: sequences of AGILO with its learned models.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-
 import numpy as np
+from rich.console import Console
+from rich.table import Table
 
-from bench.refine_cases import Case, cases
-from bench.refine_runners import Found, ours, runners
 from executive.library import Models
 from models.runtime import load_robot
+from tools.benchmarks.refine_cases import Case, cases
+from tools.benchmarks.refine_runners import Found, ours, runners
 
 MOMENTS_MS = (5, 20, 60, 80)
 LONG_MS = 1500  # the search for the best known value
@@ -55,21 +54,13 @@ def _at(found: Found, moment_ms: float) -> float:
     return min((value for at, value in found if at <= moment_ms), default=float("inf"))
 
 
-def main() -> None:
+def run(console: Console, quick: bool) -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="fewer sequences a case")
-    parser.add_argument("--json", action="store_true", help="rows as JSON")
-    arguments = parser.parse_args()
-    table = rows(arguments.quick)
-    if arguments.json:
-        print(json.dumps(table, indent=1))
-        return
-    print(f"{'case':<16}{'solver':<30}" + "".join(f"{f'{m} ms':>10}" for m in MOMENTS_MS) + f"{'worst@60':>10}")
-    for row in table:
-        gaps = "".join(f"{row[f'gap_pct_at_{m}_ms']:>9.2f}%" for m in MOMENTS_MS)
-        print(f"{row['case']:<16}{row['solver']:<30}{gaps}{row['worst_pct_at_60_ms']:>9.2f}%")
-
-
-if __name__ == "__main__":
-    main()
+    table = Table("case", "solver", title="refinement: mean gap to the best known value")
+    for moment in MOMENTS_MS:
+        table.add_column(f"{moment} ms", justify="right")
+    table.add_column("worst at 60 ms", justify="right")
+    for row in rows(quick):
+        gaps = [f"{row[f'gap_pct_at_{moment}_ms']:.2f} %" for moment in MOMENTS_MS]
+        table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
+    console.print(table)

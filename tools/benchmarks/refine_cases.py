@@ -20,12 +20,15 @@ LEGS = {"2 free": 2, "4 free": 3, "8 free": 5, "12 free": 7}  # case -> legs of 
 
 @dataclass(frozen=True)
 class Case:
+    """One sequence to refine, with the starts that assertion hands on."""
+
     name: str
     actions: tuple[InstantiatedAction, ...]
     variables: tuple[Variable, ...]
     starts: tuple[Mapping[int, float], ...] = ()
 
     def objective(self, models: Models) -> SequenceObjective:
+        """The sequence's predicted cost with the default settings."""
         return SequenceObjective(self.actions, self.variables, models, RefinementSettings())
 
 

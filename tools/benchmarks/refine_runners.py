@@ -25,7 +25,7 @@ def runners() -> Iterator[tuple[str, Runner]]:
     """Every optimiser by name; CMA-ES where it is installed."""
     for name in OURS:
         yield name, ours(name)
-    yield "scipy differential evolution", _scipy
+    yield "scipy DE", _scipy
     try:
         import cma  # noqa: F401
     except ImportError:
