@@ -1,0 +1,23 @@
+"""The arm over the bus, with every process real: it writes, and the recording shows the letter."""
+
+import pytest
+
+from runtime.stopping import Stop
+from tools.deployment import Deployment, order_of
+from tools.letters import recorded
+from tools.live_status import screen
+from tools.system import Plan, free_endpoint, run_system
+from tools.writing.measures import waypoint_errors_rad
+
+
+@pytest.mark.slow
+def test_a_letter_written_live_passes_its_waypoints(tmp_path):
+    recording = tmp_path / "letter.mcap"
+    plan = Plan(order_of("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
+    with screen() as shown:
+        assert run_system(plan, shown, Stop()) == "achieved"
+    said = recorded("live", "I", recording)
+    assert said.result == "achieved"
+    assert len(said.arrivals_s) == len(said.waypoints) == 4
+    assert waypoint_errors_rad(said).max() < 0.03
+    assert said.peak_current_a > 1.0
