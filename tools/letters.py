@@ -17,12 +17,12 @@ from runtime.stopping import Stop, stop_on_signals
 from schemas.errors import Rejected, UsageError
 from schemas.messages import JointState
 from tools.deployment import Deployment, order_of
-from tools.figures.letters import draw_letters, draw_words
+from tools.figures.letters import draw_words
 from tools.live_status import screen
 from tools.system import Plan, free_endpoint, run_system
 from tools.writing.lockstep import Hand, ListenedBody, write
 from tools.writing.measures import roughness, waypoint_errors_rad
-from tools.writing.track import Written, written
+from tools.writing.track import PERIOD_S, Written, written
 
 REFINED = RefinementSettings()
 HANDS = (
@@ -58,21 +58,21 @@ def run(arguments: argparse.Namespace) -> int:
         return 130
     console = Console()
     console.print(summary(rows))
-    console.print(f"{_draw(rows, arguments.output)}", highlight=False)
+    console.print(*_draw(rows, arguments.output), highlight=False)
     return 0 if all(said.result == "achieved" for said in rows) else 1
 
 
 def summary(rows: Sequence[Written]) -> Table:
     """How long each hand took, how well it kept to the waypoints, and how smooth it was."""
     table = Table(title=f"{rows[0].text} by the arm")
-    for column in ("hand", "duration", "predicted", "off the waypoints", "peak current", "roughness", "result"):
+    for column in ("hand", "took", "predicted", "worst waypoint", "current", "roughness", "result"):
         table.add_column(column, justify="left" if column in ("hand", "result") else "right")
     for said in rows:
         table.add_row(
             said.title,
             f"{said.duration_s:.1f} s",
-            f"{said.predicted_s.sum():.1f} s",
-            f"{1e3 * waypoint_errors_rad(said).max():.1f} mrad at most",
+            f"{said.predicted_s.sum() + PERIOD_S * len(said.predicted_s):.1f} s",
+            f"{1e3 * waypoint_errors_rad(said).max():.1f} mrad",
             f"{said.peak_current_a:.1f} A",
             f"{roughness(said):.1f}",
             said.result,
@@ -122,11 +122,9 @@ def recorded(title: str, text: str, path: Path) -> Written:
     return written(title, text, kept)
 
 
-def _draw(rows: Sequence[Written], folder: Path) -> Path:
-    """In joint space for a letter, on the page for a word."""
-    path = folder / f"{rows[0].text}.png"
-    if len(rows[0].text) == 1:
-        draw_letters([[said] for said in rows], path)
-    else:
-        draw_words(rows, path)
-    return path
+def _draw(rows: Sequence[Written], folder: Path) -> list[str]:
+    """In joint space, as the paper's Figure 13 (b), and at the scale of the page."""
+    joints, page = folder / f"{rows[0].text}-joints.png", folder / f"{rows[0].text}-page.png"
+    draw_words(rows, joints, in_joints=True)
+    draw_words(rows, page)
+    return [str(joints), str(page)]

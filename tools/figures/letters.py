@@ -25,7 +25,8 @@ COLOURS = "viridis"
 GRID = 0.4  # rad in joint space; half of it in metres on the page
 CELL_INCHES = 2.1
 WORD_INCHES = 9.0
-MARGIN_M = 0.2
+HIGHEST_INCHES = 4.0  # of one hand
+MARGIN = 0.25  # m or rad around the waypoints
 
 
 def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
@@ -43,18 +44,21 @@ def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
     _finish(figure, axes, lines, path, GRID)
 
 
-def draw_words(rows: Sequence[Written], path: Path) -> None:
-    """Draw a word by several hands below each other, at the scale of the page, in metres."""
-    page = pen_m(rows[0].waypoints)
-    (left, low), (right, high) = page.min(axis=0) - MARGIN_M, page.max(axis=0) + MARGIN_M
-    height = WORD_INCHES * (high - low) / (right - left) + 0.3
-    figure = Figure(figsize=(WORD_INCHES + 1.5, height * len(rows) + 0.3), layout="constrained")
+def draw_words(rows: Sequence[Written], path: Path, in_joints: bool = False) -> None:
+    """Draw one text by several hands below each other, at the scale of the page in metres, or in joint space."""
+    place, unit = ((lambda angles: angles), "rad") if in_joints else (pen_m, "m")
+    page = place(rows[0].waypoints)
+    (left, low), (right, high) = page.min(axis=0) - MARGIN, page.max(axis=0) + MARGIN
+    scale = min(WORD_INCHES / (right - left), HIGHEST_INCHES / (high - low))
+    figure = Figure(
+        figsize=(scale * (right - left) + 2.0, (scale * (high - low) + 0.4) * len(rows) + 0.4), layout="constrained"
+    )
     axes = figure.subplots(len(rows), 1, squeeze=False, sharex=True, sharey=True)
     for (axis,), said in zip(axes, rows, strict=True):
-        lines = _draw(axis, said, pen_m(said.angles), pen_m(said.waypoints))
+        lines = _draw(axis, said, place(said.angles), place(said.waypoints))
         axis.set_title(f"{said.title}: {said.duration_s:.1f} s", fontsize="medium")
-        axis.set(ylabel="up (m)", xlim=(left, right), ylim=(low, high))
-    axes[-1, 0].set_xlabel("right (m)")
+        axis.set(ylabel=f"{'lift b' if in_joints else 'up'} ({unit})", xlim=(left, right), ylim=(low, high))
+    axes[-1, 0].set_xlabel(f"{'pan a' if in_joints else 'right'} ({unit})")
     _finish(figure, axes, lines, path, GRID / 2)
 
 
