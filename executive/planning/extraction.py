@@ -10,7 +10,7 @@ from executive.planning.ground_formula import World
 from executive.planning.ground_task import GroundTask
 from executive.planning.language import And, Atom, Formula, Literal, Not
 from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import PartialPlan, first_node, step_of
+from executive.planning.partial_plan import PartialPlan, step_of
 from executive.planning.plan import GOAL, Link, Plan, Step
 from executive.planning.problem import Problem
 from executive.planning.temporal_network import TemporalNetwork
@@ -73,7 +73,7 @@ class Frame:
 def extract(plan: PartialPlan, task: GroundTask, world: World) -> Plan:
     """The plan of a ground search in words."""
     names = tuple(action.name for action in plan.steps)
-    frame = Frame(names, plan.orderings, first_node(task), task.moments, task.tick_s)
+    frame = Frame(names, plan.orderings, task.first_node, task.moments, task.tick_s)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 

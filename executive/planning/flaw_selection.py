@@ -108,7 +108,10 @@ class FlawSelection(Generic[P, C, T]):
         conditions = list(measures.conditions(plan))
         if "o" not in types and conditions:
             local = measures.step(conditions[0]) if "l" in types else None
-            conditions = [condition for condition in conditions if self._is(plan, condition, types, local)]
+            if types & {"u", "t"}:
+                conditions = [condition for condition in conditions if self._is(plan, condition, types, local)]
+            else:
+                conditions = [condition for condition in conditions if measures.step(condition) == local]
         if limit is not None:
             conditions = [c for c in conditions if measures.condition_choices(plan, c) <= limit]
         return conditions

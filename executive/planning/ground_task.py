@@ -10,6 +10,7 @@ from executive.planning.ground_action import GroundAction, GroundEffect
 from executive.planning.ground_formula import Facts, GroundCondition, conjuncts, ground
 from executive.planning.grounding import GroundActions
 from executive.planning.language import Literal
+from executive.planning.orderings import FIRST
 from executive.planning.problem import Problem
 
 CostOf = OneOf["unit", "duration", "relative"]
@@ -34,11 +35,8 @@ class GroundTask:
     costs: tuple[float, ...]  # by the action's number
     estimates: Estimates
     simple: bool  # no action has conditional effects
-
-    @property
-    def moments(self) -> int:
-        """How many moments a step has: start and end, or only one when actions take no time."""
-        return 2 if self.temporal else 1
+    first_node: int  # of the first step: behind the initial state, the goal and the timed literals
+    moments: int  # of a step: start and end, or only one when actions take no time
 
 
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
@@ -50,11 +48,12 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         (facts.literal(t.literal.fact, t.literal.positive), round(t.time_s / grounded.tick_s)) for t in problem.timed
     )
     initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
+    temporal = problem.domain.durative or bool(timed)
     costs = action_costs(grounded.actions, cost)
     estimates = estimate(grounded.actions, costs, initial | {literal for literal, _ in timed}, 2 * len(facts))
     return GroundTask(
         problem,
-        problem.domain.durative or bool(timed),
+        temporal,
         grounded.tick_s,
         facts.names(),
         initial,
@@ -64,6 +63,8 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         costs,
         estimates,
         all(action.simple for action in grounded.actions),
+        FIRST + len(timed),
+        2 if temporal else 1,
     )
 
 

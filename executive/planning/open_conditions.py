@@ -16,7 +16,6 @@ from executive.planning.partial_plan import (
     OpenCondition,
     PartialPlan,
     Threat,
-    first_node,
     step_of,
     without_condition,
 )
@@ -33,8 +32,9 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
     if isinstance(condition, Every):
         return [_opened(rest, condition, flaw)]
     children = []
+    undoing = plan.effects.masks()[condition ^ 1]
     for action, effect in task.achievers[condition]:
-        child = _by_new_step(task, rest, flaw, condition, action, effect)
+        child = _by_new_step(task, rest, flaw, undoing, action, effect)
         if child is not None:
             children.append(child)
     for node in _nodes(reusable(plan, flaw)):
@@ -81,18 +81,20 @@ def _by_new_step(
     task: GroundTask,
     plan: PartialPlan,
     flaw: OpenCondition,
-    literal: int,
+    undoing: int,
     action: GroundAction,
     effect: GroundEffect,
 ) -> PartialPlan | None:
+    """The plan with one more step; `undoing` are the nodes that make the condition false."""
     _, first, last, _ = flaw
+    literal = effect.literal
     node = len(plan.orderings.late)
     orderings = plan.orderings.with_step(action, effect.moment, first)
     if orderings is None:
         return None
     steps = (*plan.steps, action)
     link = Link(node + effect.moment, literal, first, last, plan.links)
-    undoing = plan.effects.masks()[literal ^ 1] | action.bits.get(literal ^ 1, 0) << node
+    undoing |= action.bits.get(literal ^ 1, 0) << node
     threats, count = _threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
     threats, count = _threats_by(action, node, orderings.late, plan.links, threats, count)
     conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
@@ -125,7 +127,7 @@ def _by_old_step(
     step = step_of(task, node)
     if step == 0 or plan.steps[step - 1].simple:
         return [_linked(task, plan, flaw, literal, node, orderings)]
-    start = first_node(task) + (step - 1) * task.moments
+    start = task.first_node + (step - 1) * task.moments
     return [
         _linked(task, _with_conditions(plan, effect.conditions, start), flaw, literal, node, orderings)
         for effect in plan.steps[step - 1].effects
@@ -176,7 +178,7 @@ def _threats_to(
 def _deletions_at(task: GroundTask, steps: tuple[GroundAction, ...], node: int, literal: int) -> tuple[Spanned, ...]:
     """The conditions under which a node, of a step or of a timed literal, makes a literal true."""
     step = step_of(task, node)
-    return _deletions(steps[step - 1], literal, (node - first_node(task)) % task.moments) if step else _ALWAYS
+    return _deletions(steps[step - 1], literal, (node - task.first_node) % task.moments) if step else _ALWAYS
 
 
 def _threats_by(

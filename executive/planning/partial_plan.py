@@ -65,17 +65,12 @@ class PartialPlan(NamedTuple):
     cost: float
 
 
-def first_node(task: GroundTask) -> int:
-    """The node of the first step: after those of the initial state, the goal and the timed literals."""
-    return FIRST + len(task.timed)
-
-
 def step_of(task: GroundTask, node: int) -> int:
     """The step that a node belongs to: 0 is the initial state with its timed literals."""
     if node == GOAL:
         return GOAL_STEP
-    first = first_node(task)
-    return 0 if node < first else 1 + (node - first) // task.moments
+    beyond = node - task.first_node
+    return 1 + beyond // task.moments if beyond >= 0 else 0
 
 
 def initial_plan(task: GroundTask) -> PartialPlan:

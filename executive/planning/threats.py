@@ -6,7 +6,7 @@ from executive.planning.ground_action import Span
 from executive.planning.ground_formula import GroundCondition, conjunction, negation
 from executive.planning.ground_task import GroundTask
 from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, first_node, without_threat
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, without_threat
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:
@@ -54,7 +54,7 @@ def _without(plan: PartialPlan, threat: Threat, orderings: Orderings) -> Partial
 
 def separations(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
     """Plans in which the condition of the threatening (conditional) effect is made false."""
-    first = first_node(task)
+    first = task.first_node
     start = first + (threat.node - first) // task.moments * task.moments
     children = []
     for (begin, end), condition in _by_span(threat).items():
