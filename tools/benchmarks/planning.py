@@ -101,7 +101,8 @@ def bytes_per_plan(name: str = "kitchen-s3", limit: int = 20_000) -> float:
 
 def run(console: Console, quick: bool) -> None:
     """Print the table."""
-    table = Table("problem", title="planning: CPU time with parsing and grounding; counts beside VHPOP's")
+    table = Table(title="planning: CPU time with parsing and grounding; counts beside VHPOP's", box=None)
+    table.add_column("problem", no_wrap=True, min_width=19)
     for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "VHPOP gen.", "VHPOP vis."):
         table.add_column(column, justify="right", no_wrap=True)
     for row in rows(quick):
