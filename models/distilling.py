@@ -48,7 +48,7 @@ class DistilledModelTree(ModelTreeRegressor):
         min_rows: float = 40.0,
         smoothing: float = 0.0,
         ridge: float = 1e-4,
-        bins: int = 64,
+        bins: int = 128,
         clip: bool = True,
         random_state: int | np.random.Generator | None = 0,
     ) -> None:

@@ -23,7 +23,7 @@ class TreeSettings:
     min_rows: float = 40.0  # weighted rows on each side of a split
     smoothing: float = 0.0  # rows that an ancestor's formula counts for (M5's k)
     ridge: float = 1e-4  # on standardised features
-    bins: int = 64  # candidate thresholds per feature
+    bins: int = 128  # candidate thresholds per feature
     clip: bool = True  # keep each leaf within what was seen in it
 
 

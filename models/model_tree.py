@@ -26,7 +26,7 @@ class _TreeRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         min_rows: float = 40.0,
         smoothing: float = 0.0,
         ridge: float = 1e-4,
-        bins: int = 64,
+        bins: int = 128,
         clip: bool = True,
         random_state: int | Generator | None = 0,
     ) -> None:
@@ -71,7 +71,7 @@ class ModelTreeRegressor(_TreeRegressor):
         min_rows: float = 40.0,
         smoothing: float = 0.0,
         ridge: float = 1e-4,
-        bins: int = 64,
+        bins: int = 128,
         clip: bool = True,
         random_state: int | Generator | None = 0,
     ) -> None:
@@ -130,7 +130,7 @@ class BaggedModelTrees(_TreeRegressor):
         min_rows: float = 40.0,
         smoothing: float = 0.0,
         ridge: float = 1e-4,
-        bins: int = 64,
+        bins: int = 128,
         clip: bool = True,
         random_state: int | Generator | None = 0,
     ) -> None:
