@@ -49,6 +49,7 @@ class Deliberation:
         belief: Belief,
         problem: planning.Problem,
         number: int,
+        ground: planning.GroundCache,
         previous: planning.Plan | None = None,
         done: frozenset[int] = frozenset(),
     ) -> None:
@@ -56,6 +57,7 @@ class Deliberation:
 
         Args:
           number: Serial number of this deliberation; with the seed it fixes every random draw.
+          ground: The grounding of earlier deliberations, which serves again while the objects stand.
           previous: The plan so far, of which the steps `done` have been executed.
         """
         self.number = number
@@ -69,6 +71,7 @@ class Deliberation:
         self._problem = problem
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._assertion: Assertion | None = None
+        self._ground = ground
         self._search: planning.Search | None = None
         self._reuse(previous, done)
 
@@ -108,7 +111,8 @@ class Deliberation:
 
     def _plan(self, budget: Budget) -> None:
         if self._search is None:
-            self._search = planning.Search(self._context.pddl_domain, self._problem, self._context.settings.planner)
+            context = self._context
+            self._search = planning.Search(context.pddl_domain, self._problem, context.settings.planner, self._ground)
         result = self._search.advance(budget)
         if result is None:
             return

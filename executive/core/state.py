@@ -10,7 +10,7 @@ from executive.core.deliberation import Decision, Deliberation
 from executive.core.execution import Running
 from executive.core.modes import Mode
 from executive.library import Belief, Fact
-from executive.planning import Plan
+from executive.planning import GroundCache, Plan
 from schemas.messages import DriverState, Message, Sample
 
 
@@ -61,7 +61,7 @@ class Task:
 class State:
     """The executive between two ticks.
 
-    `deliberation` is resumable and therefore changes in place: a state is used for one step and then dropped.
+    `deliberation` is resumable and `ground` a cache: both change in place, so a state is used for one step only.
     """
 
     belief: Belief
@@ -77,6 +77,7 @@ class State:
     task: Task = field(default_factory=Task)
     coasted: int = 0  # ticks since the last action ended
     deliberation: Deliberation | None = None
+    ground: GroundCache = field(default_factory=GroundCache)
     deliberations: int = 0  # started so far; seeds their random generators
 
 

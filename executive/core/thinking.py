@@ -44,7 +44,7 @@ def _with_deliberation(context: Context, state: State) -> State:
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     problem = problem_of_now(context, facts, task.goal)
-    deliberation = Deliberation(context, state.belief, problem, number, task.plan, task.done)
+    deliberation = Deliberation(context, state.belief, problem, number, state.ground, task.plan, task.done)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 
