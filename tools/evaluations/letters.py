@@ -69,8 +69,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if refined["p_value"] < 0.01 and refined["improvement_pct"] > 0 else 1
 
 
+Found = Mapping[str, Mapping[Key, Figures]]  # by hand
+
+
 def evaluate(arguments: argparse.Namespace) -> tuple[list[dict[str, Any]], dict[str, Path]]:
     """One row for each hand, and the picture if a report is asked for."""
+    found = _write_all(arguments)
+    rows = _rows(found)
+    return rows, {} if arguments.report is None else _picture(arguments.report, arguments.zoo)
+
+
+def _write_all(arguments: argparse.Namespace) -> Found:
+    """Every letter at every seed by every hand."""
     hands = HANDS if arguments.no_oracle else (*HANDS, *ORACLES)
     keys = [(letter, FIRST_SEED + k) for k in range(arguments.seeds) for letter in sorted(font())]
     wanted = [(hand, key) for key in keys for hand in hands]
@@ -80,19 +90,27 @@ def evaluate(arguments: argparse.Namespace) -> tuple[list[dict[str, Any]], dict[
     found: dict[str, dict[Key, Figures]] = {hand.name: {} for hand in hands}
     for (hand, key), figures in zip(wanted, track(done, "letters", total=len(wanted), transient=True), strict=True):
         found[hand.name][key] = figures
-    rows = [_row(hand.name, found) for hand in hands]
-    if not arguments.no_oracle:
+    return found
+
+
+def _rows(found: Found) -> list[dict[str, Any]]:
+    rows = [_row(name, found) for name in found]
+    if ORACLES[-1].name in found:
         _add_share(rows)
-    return rows, {} if arguments.report is None else _picture(arguments.report, arguments.zoo)
+    return rows
 
 
-def table3_row(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The arm's row of Table 3 in that table's columns, over about as many letters as it has `episodes`."""
+def table3_row(arguments: argparse.Namespace) -> tuple[dict[str, Any], tuple[list[float], list[float]]]:
+    """The arm's row of Table 3 in that table's columns, over about as many letters as it has `episodes`.
+
+    With it the durations of greedy and refined letters.
+    """
     seeds = max(1, arguments.episodes // len(font()))
     asked = argparse.Namespace(
         seeds=seeds, no_oracle=not arguments.oracle, jobs=arguments.jobs, zoo=arguments.zoo, report=None
     )
-    rows = {row["hand"]: row for row in evaluate(asked)[0]}
+    found = _write_all(asked)
+    rows = {row["hand"]: row for row in _rows(found)}
     greedy, refined = rows["greedy"], rows["refined"]
     row = {
         "scenario": "arm",
@@ -109,12 +127,19 @@ def table3_row(arguments: argparse.Namespace) -> dict[str, Any]:
     if arguments.oracle:
         best = rows["oracle, all ahead"]
         row |= {"oracle_n": best["n"], "oracle_pct": best["improvement_pct"], "oracle_s": best["mean_s"]}
-    return row
+    greedy_s, refined_s = (
+        [found[hand][key].duration_s for key in _both_achieved("refined", found)] for hand in ("greedy", "refined")
+    )
+    return row, (greedy_s, refined_s)
 
 
-def _row(name: str, found: Mapping[str, Mapping[Key, Figures]]) -> dict[str, Any]:
+def _both_achieved(name: str, found: Found) -> list[Key]:
+    return [key for key, figures in found[name].items() if figures.achieved and found["greedy"][key].achieved]
+
+
+def _row(name: str, found: Found) -> dict[str, Any]:
     """One hand against the greedy one, over the letters that both finished."""
-    keys = [key for key, figures in found[name].items() if figures.achieved and found["greedy"][key].achieved]
+    keys = _both_achieved(name, found)
     mine, greedy = [found[name][key] for key in keys], [found["greedy"][key] for key in keys]
     said = compare([figures.duration_s for figures in greedy], [figures.duration_s for figures in mine])
     stopping = [found["stopping"][key].duration_s for key in keys]
