@@ -17,7 +17,7 @@ from runtime.processes import Child, tailor
 from runtime.session import Session, open_router
 from runtime.stopping import Stop
 from runtime.supervisor import Charge, Supervisor
-from schemas.messages import ExecStatus
+from schemas.messages import DriverState, ExecStatus
 from tools.live_status import Screen
 
 LOOK_NS = 50_000_000
@@ -80,7 +80,7 @@ def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, scree
 
 def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
     loop = Loop(LOOK_NS, MonotonicClock())
-    result = ""
+    result, stopped = "", ""
     while not stop.requested:
         turn = loop.next_turn()
         for sample in inbox.drain():
@@ -88,13 +88,24 @@ def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, sto
             if isinstance(sample.message, ExecStatus):
                 supervisor.heard("executive", turn.now_ns)
                 result = sample.message.result
+            elif isinstance(sample.message, DriverState):
+                stopped = _stopped(sample.message)
         supervisor.look(turn.now_ns)
-        dead = [name for name in ("sim", "executive") if supervisor.ended(name) is not None]
-        if dead:
-            return f"failed: {dead[0]} ended"
-        if plan.once and result:
-            return result
+        ended = _ended(supervisor) or (plan.once and (result or stopped))
+        if ended:
+            return ended
     return result
+
+
+def _ended(supervisor: Supervisor) -> str:
+    """What is missing for good, or ""."""
+    dead = [name for name in ("sim", "executive") if supervisor.ended(name) is not None]
+    return f"failed: {dead[0]} ended" if dead else ""
+
+
+def _stopped(driver: DriverState) -> str:
+    """Why the robot stands until people arm it again, or ""; nobody is there to do so in a run that is to end."""
+    return f"failed: the driver is {driver.mode}: {driver.reason}" if driver.mode in ("stopped", "estopped") else ""
 
 
 def _appeared(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop: Stop) -> bool:
