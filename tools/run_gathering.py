@@ -50,7 +50,8 @@ def run_policy(policy: Policy, jobs: int) -> Iterator[int]:
     """Run what has not been run yet, in parallel; yields runs finished."""
     from joblib import Parallel, delayed
 
-    prepare(policy.domain, policy.folder, {"source": "lock-step, refined choices", "seed": policy.seed}, policy.jobs)
+    about = {"source": "lock-step, refined choices", "seed": policy.seed, "scenarios": list(policy.scenarios)}
+    prepare(policy.domain, policy.folder, {**about, "episodes": policy.runs}, policy.jobs)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -59,7 +60,9 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
 
     if arguments.features not in SPACES:
         raise UsageError(f"no feature space '{arguments.features}' (expected one of: {', '.join(SPACES)})")
-    data, space = merge([read_data_set(folder) for folder in folders]), SPACES[arguments.features]
+    sets = [read_data_set(folder) for folder in folders]
+    data, space = merge(sets), SPACES[arguments.features]
+    command = _command(arguments, {folder: each.manifest for folder, each in zip(folders, sets, strict=True)})
     if data.manifest["robot"] != arguments.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{arguments.robot}'")
     if data.names != tuple(quantity.name for quantity in space.arguments):
@@ -70,7 +73,9 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
     rows = []
     for kind, learner, train in jobs:
         trained = train(data.episodes, space, learner, arguments.seed)
-        about = publishing.Publication(kind, learner, space, arguments.seed, _command(arguments, data.manifest))
+        about = publishing.Publication(
+            kind, learner, space, arguments.seed, _command(arguments, [each.manifest for each in sets])
+        )
         path = publishing.publish(arguments.zoo, data, trained, about)
         runtime.load_model(path)  # a model that does not pass its own check must not ship
         rows.append({"robot": arguments.robot, "action": data.manifest["action"], "kind": kind, **trained.test})
@@ -92,13 +97,23 @@ def _data_sets(arguments: argparse.Namespace) -> dict[str, list[Path]]:
     return {action: found[action] for action in arguments.actions or found}
 
 
-def _command(arguments: argparse.Namespace, manifest: dict[str, Any]) -> str:
-    """The two commands that make the model again."""
-    robot, action = arguments.robot, manifest["action"]
-    gather = f"tailor gather {robot} {action} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
+def _command(arguments: argparse.Namespace, manifests: Mapping[Path, Mapping[str, Any]]) -> str:
+    """The commands that make the model again, in their order; on-policy runs took the models of those before."""
+    robot, action = arguments.robot, next(iter(manifests.values()))["action"]
     data = "" if not arguments.data else " --data " + " ".join(map(str, arguments.data))
     train = f"tailor train {robot} {action}{data} --features {arguments.features} --learner {arguments.learner}"
-    return f"{gather} && {train} --failure-learner {arguments.failure_learner} --seed {arguments.seed}"
+    train += f" --failure-learner {arguments.failure_learner} --seed {arguments.seed}"
+    gathering = [f"{_gathering(robot, manifest)} --out {path.parent}" for path, manifest in manifests.items()]
+    return " && ".join([*gathering, train])
+
+
+def _gathering(robot: str, manifest: Mapping[str, Any]) -> str:
+    """The command that made a data set."""
+    if "recordings" in manifest:
+        return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
+    scenarios = manifest.get("scenarios")
+    what = manifest["action"] if scenarios is None else f"--on-policy {' '.join(scenarios)}"
+    return f"tailor gather {robot} {what} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:
