@@ -122,9 +122,9 @@ def test_oracle_chooses_for_the_plan_not_for_detours():
 def test_assertion_is_counted_as_the_paper_counts_it():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
     bumped = replace(approach, ball_moved_m=0.2)
-    detour = replace(approach, asserted=True, duration_s=11.0)
+    detour = replace(approach, asserted=True, actual_s=(4.4,))
     before = {1: approach, 2: bumped, 3: approach, 4: approach}
-    after = {1: approach, 2: detour, 3: detour, 4: replace(detour, duration_s=12.0)}
+    after = {1: approach, 2: detour, 3: detour, 4: replace(detour, actual_s=(4.8,))}
     row = figure16.summary(before, after)
     assert row["success_before_pct"] == 75.0
     assert row["success_after_pct"] == 100.0

@@ -57,6 +57,11 @@ def succeeded(outcome: Outcome) -> bool:
     return first == "done" and outcome.ball_moved_m <= MOVED_M
 
 
+def approached_s(outcome: Outcome) -> float:
+    """Seconds until the first approach had ended, detours included; what comes after it is not its doing."""
+    return sum(outcome.actual_s[: outcome.actions.index("approachBall") + 1])
+
+
 def summary(blind: dict[int, Outcome], asserted: dict[int, Outcome]) -> dict[str, Any]:
     """Shares in percent of all approaches."""
     seeds = sorted(set(blind) & set(asserted))
@@ -69,7 +74,9 @@ def summary(blind: dict[int, Outcome], asserted: dict[int, Outcome]) -> dict[str
     needless = [s for s in seeds if asserted[s].asserted and succeeded(blind[s])]
     both = [s for s in needless if succeeded(asserted[s])]
     cost = (
-        compare([blind[s].duration_s for s in both], [asserted[s].duration_s for s in both]) if len(both) > 1 else None
+        compare([approached_s(blind[s]) for s in both], [approached_s(asserted[s]) for s in both])
+        if len(both) > 1
+        else None
     )
     return {
         "n": n,
