@@ -73,9 +73,7 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
     rows = []
     for kind, learner, train in jobs:
         trained = train(data.episodes, space, learner, arguments.seed)
-        about = publishing.Publication(
-            kind, learner, space, arguments.seed, _command(arguments, [each.manifest for each in sets])
-        )
+        about = publishing.Publication(kind, learner, space, arguments.seed, command)
         path = publishing.publish(arguments.zoo, data, trained, about)
         runtime.load_model(path)  # a model that does not pass its own check must not ship
         rows.append({"robot": arguments.robot, "action": data.manifest["action"], "kind": kind, **trained.test})

@@ -59,6 +59,16 @@ def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert rule.startswith("if ")
 
 
+def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["gather", "agilo", "goToPose", "--episodes", "48", "--jobs", "1", "--json"]) == 0
+    settings = ["--learner", "linear", "--failure-learner", "tree", "--zoo", "zoo"]
+    assert main(["train", "agilo", "--data", "data/agilo", *settings, "--json"]) == 0
+    model = runtime.load_model("agilo/goToPose/duration", Path("zoo"))
+    assert model.card["command"].startswith("tailor gather agilo goToPose --episodes 48 --seed 7 --out data/agilo && ")
+    assert " tailor train agilo goToPose --data data/agilo --features projective " in model.card["command"]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
