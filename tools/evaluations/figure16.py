@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
 def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
     """The row of figures: every approach once as it is and once with assertion."""
     base = settings or RefinementSettings()
-    blind = replace(base, p_fail_max=1.0, risk_cost_s=0.0, weigh_detours=False)  # nothing is predicted to fail
+    blind = replace(base, p_fail_max=1.0, p_fail_assert=1.0, risk_cost_s=0.0)  # nothing is predicted to fail
     task = Task("soccer", "approach-dribble", "", arguments.zoo, GOAL, DRAWN)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     variants = [Variant("blind", blind), Variant("asserted", base)]
