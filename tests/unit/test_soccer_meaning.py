@@ -79,7 +79,7 @@ FINAL = ("final", "pos3")
         (believe(ball=(0.36, 0.40)), APART),
         (believe(ball=(0.9, 0.0)), APART),
         (believe(x=0.7, y=3.0, ball=(0.32, 0.0)), {("robot", "pos3"), ("ball", "pos3"), ("atball", "pos3")}),
-        (believe(x=-2.0, y=3.0, ball=(3.0, 0.0)), {("robot", "pos1"), ("ball", "pos3")}),
+        (believe(x=-2.0, y=3.0, ball=(3.0, 0.0)), APART),  # at the target, but not had
     ],
 )
 def test_abstract_state_is_read_off_the_belief(belief, expected):

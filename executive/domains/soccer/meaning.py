@@ -93,13 +93,14 @@ def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]
 
 
 def _observed(belief: SoccerBelief, scenario: Scenario) -> Iterator[Fact]:
-    ball_label = _at_target(belief, scenario) or str(scenario.settings["ball_label"])
-    yield ("ball", ball_label)
-    if before_ball(belief):
-        yield ("robot", ball_label)
-        yield ("atball", ball_label)
-    else:
+    """A ball at the target counts only when the robot has it: else it is to be approached where it really lies."""
+    ball_label = str(scenario.settings["ball_label"])
+    if not before_ball(belief):
+        yield ("ball", ball_label)
         yield ("robot", str(scenario.settings["robot_label"]))
+        return
+    together = _at_target(belief, scenario) or ball_label
+    yield from (("ball", together), ("robot", together), ("atball", together))
 
 
 def before_ball(belief: SoccerBelief) -> bool:
