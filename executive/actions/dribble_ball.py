@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from executive.actions.dubins import DubinsPath, shortest
+from executive.actions.dribble_path import DribblePath
 from executive.actions.fetch_ball import SEEKING, FetchBall, Stage
 from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, PlanarBelief
@@ -50,10 +50,9 @@ class DribbleBall:
 
     fetch: FetchBall
     in_rail_m: float  # axle to ball
-    radii_m: tuple[float, ...] = (0.48, 0.55, 0.65)  # of bends: the tighter, the slower
     v_max_mps: float = 0.75
-    bend_radps: float = 0.64  # what bends are planned for
-    omega_max_radps: float = 0.70  # the rest is for corrections; the rail holds 0.75 for ever
+    bend_radps: float = 0.60  # what bends are planned for
+    omega_max_radps: float = 0.66  # the rest is for corrections; the rail holds 0.75 for ever
     yaw_radps2: float = 1.0  # the ball must follow
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
@@ -62,8 +61,7 @@ class DribbleBall:
     bending_radps: float = 0.15  # turning faster than this counts as a bend
     preview_s: float = 0.6  # turning lags so far behind the command
     settle_m: float = 0.4
-    run_out_m: float = 0.15  # straight end of every path
-    slip_aside_m: float = 0.05  # so far aside or ahead of the rail's bottom the ball is slipping out
+    slip_aside_m: float = 0.035  # so far aside or ahead of the rail's bottom the ball is slipping out
     slip_ahead_m: float = 0.09  # the camera sees how far aside it is twice as well
     mended_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
@@ -72,11 +70,10 @@ class DribbleBall:
     gone_m: float = 0.90  # farther it is not worth fetching: another approach is
     seated_ahead_m: float = 0.035  # pushing begins when the ball is this near to the bottom
     seated_aside_m: float = 0.035
-    anew_m: float = 0.8  # with more than this to go, a path is planned anew after a slip
-    off_path_m: float = 0.35  # plan a new path
-    near_m: float = 0.25
+    off_path_m: float = 0.60  # plan a new path
+    near_m: float = 0.35  # past the end and not farther from the goal, it has arrived: another round is not worth it
+    heading_rad: float = 1.50
     reached_m: float = 0.05
-    heading_rad: float = 0.45
     speed_mps: float = 0.10
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
@@ -99,22 +96,7 @@ class DribbleBall:
         return self._push(memory, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
-        """The quickest path, of several radii, that can be driven from this speed on.
-
-        Its end lies before the goal and is run out straight.
-        """
-        x, y, phi = goal[0], goal[1], goal[2]
-        end = (x - self.run_out_m * math.cos(phi), y - self.run_out_m * math.sin(phi), phi)
-        start = (pose.x, pose.y, pose.phi)
-        tightest = v / self.bend_radps
-        radii = [radius for radius in self.radii_m if radius >= tightest] or [tightest]
-        paths = [shortest(start, end, radius) for radius in radii]
-        return Progress(min(paths, key=self._driving_s).extended(self.run_out_m), 0.0)
-
-    def _driving_s(self, path: DubinsPath) -> float:
-        """Roughly how long a path takes."""
-        bend, straight = self.bend_radps * path.radius, 0.85 * self.v_max_mps
-        return sum(length / (bend if turn else straight) for turn, length in path.pieces)
+        return Progress(DribblePath(self.v_max_mps, self.bend_radps).quickest(pose, v, goal), 0.0)
 
     def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
@@ -122,8 +104,7 @@ class DribbleBall:
         if self._arrived(progress, belief, goal):
             return Control(memory, (goal[3], 0.0), "done")
         slipping = self._slips(ball, memory.slipping)
-        mended = memory.slipping and not slipping and progress.remaining_m > self.anew_m
-        if mended or abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
+        if abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
             progress = self._plan(pose, memory.v, goal)
         pace = self._pace(progress.path.radius)
         limit = speed_limit(progress, goal[3], pace)

@@ -27,7 +27,7 @@ SHORT_M = (0.05, 0.15)  # how far from the rail the ball is when an approach has
 ASIDE_SIGMA_M = 0.04
 DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
 DRIBBLE_Y_M = 1.8
-DRIBBLE_M = (0.6, 2.7)  # from the ball to its target
+DRIBBLE_M = (0.9, 2.9)  # from the ball to its target
 DRIBBLE_ASIDE_RAD = 1.5  # the target's heading off the line to it
 
 
