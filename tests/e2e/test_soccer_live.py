@@ -10,8 +10,10 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
+from executive import domains
 from runtime.processes import Child, tailor
 from runtime.session import open_client
 from schemas.messages import ArmRequest, DriverState, ExecStatus, SimTruth, VelocityCommand
@@ -111,6 +113,7 @@ class Live:
     """Simulator and executives on a bus, with what they say of themselves."""
 
     def __init__(self, session, endpoint):
+        self.session = session
         self.endpoint = endpoint
         self.inbox = session.inbox(("driver", "status", "truth"), "agilo")
         self.arming = session.publisher("arm_request", "agilo")
@@ -132,6 +135,11 @@ class Live:
         status, truth = self.look().get(ExecStatus), self.latest.get(SimTruth)
         return status is not None and status.mode == "EXECUTING" and truth is not None and truth.v > 0.2
 
+    def put_back(self):
+        """Robot and ball where they were at the start; the driver stays as it is."""
+        _, start = domains.load_scenario("soccer", "approach-dribble", np.random.default_rng([0, 0]))
+        assert self.session.ask("agilo/sim/place", json.dumps({**start, "v": 0.0}))[0]
+
     def executive(self, *flags):
         self.latest.clear()
         return Child("executive", tailor("executive", "soccer", "--connect", self.endpoint, *flags))
@@ -150,6 +158,7 @@ def kill_in_motion(live, tries, phases):
     """Seconds from kill -9 to the guard's stop, once for each try."""
     times = []
     for number in range(tries):
+        live.put_back()
         executive = live.executive()
         if number > 0:  # it stopped once: somebody has to arm it again
             status = wait_until(lambda: live.look().get(ExecStatus), 20, "status")
