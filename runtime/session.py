@@ -45,7 +45,7 @@ def open_router(listen: str = bus_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
         opened = zenoh.open(config)
     except zenoh.ZError as error:
         why = "the port is in use" if "in use" in str(error) else "cannot listen there"
-        raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --listen") from error
+        raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --connect") from error
     with opened:
         # The threads that serve clients come up with the first one: be it ourselves, so that they can be elevated now.
         with suppress(zenoh.ZError), zenoh.open(zenoh.Config.from_json5(bus_config.client(listen, SELF_CONNECT_MS))):
