@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from executive.planning.cells import without
 from executive.planning.ground_action import GroundAction, GroundEffect, Span
 from executive.planning.ground_formula import Every, GroundCondition, Some
 from executive.planning.ground_task import GroundTask
@@ -17,7 +18,6 @@ from executive.planning.partial_plan import (
     PartialPlan,
     Threat,
     step_of,
-    without_condition,
 )
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
@@ -26,7 +26,7 @@ Spanned = tuple[tuple[GroundCondition, Span], ...]
 def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:
     """All plans that mend the flaw: by new steps in grounding order, then old ones, newest first, then the start."""
     condition = flaw.condition
-    rest = plan._replace(open=without_condition(plan.open, flaw), open_count=plan.open_count - 1)
+    rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
     if isinstance(condition, Some):
         return [_opened(rest, part, flaw) for part in condition.parts]
     if isinstance(condition, Every):

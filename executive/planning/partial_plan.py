@@ -85,29 +85,3 @@ def initial_plan(task: GroundTask) -> PartialPlan:
     for condition in reversed(task.goal):
         cell = OpenCondition(condition, GOAL, GOAL, cell)
     return PartialPlan((), orderings, StepEffects(masks), None, cell, None, len(task.goal), 0, 0)
-
-
-def without_condition(conditions: OpenCondition | None, gone: OpenCondition) -> OpenCondition | None:
-    """The list without one of its cells; what stands behind it is shared."""
-    before = []
-    while conditions is not gone:
-        assert conditions is not None
-        before.append(conditions)
-        conditions = conditions.rest
-    rest = gone.rest
-    for cell in reversed(before):
-        rest = cell._replace(rest=rest)
-    return rest
-
-
-def without_threat(threats: Threat | None, gone: Threat) -> Threat | None:
-    """The list without one of its cells; what stands behind it is shared."""
-    before = []
-    while threats is not gone:
-        assert threats is not None
-        before.append(threats)
-        threats = threats.rest
-    rest = gone.rest
-    for cell in reversed(before):
-        rest = cell._replace(rest=rest)
-    return rest

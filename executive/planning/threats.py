@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from executive.planning.cells import without
 from executive.planning.ground_action import Span
 from executive.planning.ground_formula import GroundCondition, conjunction, negation
 from executive.planning.ground_task import GroundTask
 from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, without_threat
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:
@@ -45,7 +46,7 @@ def _without(plan: PartialPlan, threat: Threat, orderings: Orderings) -> Partial
         plan.effects,
         plan.links,
         plan.open,
-        without_threat(plan.threats, threat),
+        without(plan.threats, threat),
         plan.open_count,
         plan.threat_count - 1,
         plan.cost,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
+from executive.planning.cells import without
 from executive.planning.lifted.bindings import Bindings, Term
 from executive.planning.lifted.lifted_plan import (
     LiftedCondition,
@@ -22,7 +23,7 @@ from executive.planning.orderings import INITIAL, Orderings
 
 def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> list[LiftedPlan]:
     """All plans that mend the flaw: new steps by name, old steps newest first, then initial facts in their order."""
-    rest = plan._replace(open=_without(plan.open, flaw), open_count=plan.open_count - 1)
+    rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
     new = (
         child
         for schema, effect in new_achievers(task, flaw.literal)
@@ -198,15 +199,3 @@ def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
         and not plan.bindings.differing(zip(effect.literal.of_step(step).terms, link.literal.terms, strict=True))
         for effect in effects_of(plan, step)
     )
-
-
-def _without(conditions: LiftedCondition | None, gone: LiftedCondition) -> LiftedCondition | None:
-    before = []
-    while conditions is not gone:
-        assert conditions is not None
-        before.append(conditions)
-        conditions = conditions.rest
-    rest = gone.rest
-    for cell in reversed(before):
-        rest = cell._replace(rest=rest)
-    return rest

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from executive.planning.cells import without
 from executive.planning.lifted.achieving import is_threat
 from executive.planning.lifted.bindings import Bindings
 from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat
@@ -12,7 +13,7 @@ from executive.planning.lifted.task import LiftedTask
 
 def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> list[LiftedPlan]:
     """All plans that mend the threat; only one, that forgets it, when it is none any more."""
-    rest = plan._replace(threats=_without(plan.threats, threat), threat_count=plan.threat_count - 1)
+    rest = plan._replace(threats=without(plan.threats, threat), threat_count=plan.threat_count - 1)
     if not is_threat(task, plan, threat):
         return [rest]
     children = [rest._replace(bindings=bindings) for bindings in separations(plan, threat)]
@@ -39,15 +40,3 @@ def choices(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1
     return promotion + demotion + sum(1 for _ in separations(plan, threat))
-
-
-def _without(threats: LiftedThreat | None, gone: LiftedThreat) -> LiftedThreat | None:
-    before = []
-    while threats is not gone:
-        assert threats is not None
-        before.append(threats)
-        threats = threats.rest
-    rest = gone.rest
-    for cell in reversed(before):
-        rest = cell._replace(rest=rest)
-    return rest
