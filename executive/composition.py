@@ -8,16 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from executive import domains
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
 from models.runtime import load_robot
 from schemas.errors import UsageError
 from schemas.settings import from_table
-
-SCENARIO_STREAM = 0  # of the seed; the simulator draws the same start from the same stream
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +33,7 @@ def compose(order: Order, sender: str, stamp_offset_ns: int = 0) -> Context:
       UsageError: Unknown domain or scenario, a PDDL error, a missing or altered model.
     """
     domain = domains.load(order.domain)
-    rng = np.random.default_rng([order.settings.seed, SCENARIO_STREAM])
-    scenario, _ = domains.load_scenario(order.domain, order.scenario, rng)
+    scenario, _ = domains.seeded_scenario(order.domain, order.scenario, order.settings.seed)
     durations, successes = load_robot(domain.robot, Path(order.zoo) if order.zoo else None)
     return make_context(domain, scenario, Models(durations, successes), order.settings, sender, stamp_offset_ns)
 

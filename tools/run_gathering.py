@@ -11,8 +11,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from executive import domains
 from executive.core.context import Settings, make_context
 from executive.library import Models
@@ -144,7 +142,7 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
     from tools.episodes import SENDER, run_episode
 
     domain = domains.load(policy.domain)
-    drawn, start = domains.load_scenario(policy.domain, scenario, np.random.default_rng([seed, 0]))
+    drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     context = make_context(domain, drawn, _models(domain.robot, policy.zoo), Settings(seed=seed), SENDER)
     return Cutter(domain).read(run_episode(context, lockstep.new_body(domain), start, seed).messages)
 

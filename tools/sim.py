@@ -8,8 +8,6 @@ import secrets
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from runtime import realtime
 from runtime.clock import MonotonicClock
 from runtime.session import open_client
@@ -26,7 +24,6 @@ ROBOTS = {
     "agilo": ("simnodes.agilo.body", "AgiloBody", "soccer"),
     "powercube": ("simnodes.powercube.body", "PowerCubeBody", "arm"),
 }
-SCENARIO_STREAM = 0  # of the seed; the executive draws the same scenario from the same stream
 MOST_SPEED = 10.0
 
 
@@ -74,7 +71,7 @@ def make_world(robot: str, scenario: str, seed: int) -> World:
 
     module, kind, domain = ROBOTS[robot]
     name = scenario or domains.scenarios(domain)[0]
-    drawn, start = domains.load_scenario(domain, name, np.random.default_rng([seed, SCENARIO_STREAM]))
+    drawn, start = domains.seeded_scenario(domain, name, seed)
     body = getattr(importlib.import_module(module), kind)()
     return World(body, start, seed, [_event(row) for row in drawn.settings.get("events", ())])
 

@@ -13,6 +13,7 @@ import numpy as np
 from executive.library import Domain, Scenario
 from schemas.errors import UsageError
 
+SCENARIO_STREAM = 0  # of a run's seed; noise and search are drawn from others
 DOMAINS = ("soccer", "arm")
 
 
@@ -54,6 +55,11 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
     start, places, events = _package(name).draw(declared, rng)
     settings = {**declared.get("settings", {}), "events": events}
     return Scenario(scenario, problem, places, settings), start
+
+
+def seeded_scenario(name: str, scenario: str, seed: int) -> tuple[Scenario, dict[str, float]]:
+    """`load_scenario` as a run's seed draws it: executive and simulator get the same world from the same seed."""
+    return load_scenario(name, scenario, np.random.default_rng([seed, SCENARIO_STREAM]))
 
 
 def _package(name: str) -> Any:

@@ -1,6 +1,5 @@
 """A bus on a free loopback port, with child processes that end with the test."""
 
-import socket
 import sys
 import time
 from contextlib import contextmanager
@@ -8,14 +7,9 @@ from pathlib import Path
 
 from runtime.processes import Child
 from runtime.session import open_router
+from tools.system import free_endpoint
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def free_endpoint():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import sys
 import tempfile
 import time
@@ -51,8 +52,6 @@ def _drive(recording: Path, seconds: float, burners: int) -> None:
 
 def _wait_for_router(endpoint: str) -> None:
     host, port = endpoint.removeprefix("tcp/").split(":")
-    import socket
-
     deadline = time.monotonic() + START_S
     while time.monotonic() < deadline:
         with socket.socket() as probe:

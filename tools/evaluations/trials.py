@@ -25,7 +25,6 @@ from tools.evaluations.journal import Journal
 from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tools.evaluations.pinned import PinnedDomain
 
-SCENARIO_STREAM = 0  # of the seed; noise is drawn from another
 PIN_STREAM = 4
 
 
@@ -80,9 +79,8 @@ def paired(first: dict[int, Outcome], second: dict[int, Outcome]) -> tuple[list[
 
 
 def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str, float]]:
-    rng = np.random.default_rng([seed, SCENARIO_STREAM])
     domain = domains.load(task.domain)
-    scenario, start = domains.load_scenario(task.domain, task.scenario, rng)
+    scenario, start = domains.seeded_scenario(task.domain, task.scenario, seed)
     pins = {(label, quantity): value for label, quantity, value in variant.pins}
     drawing = np.random.default_rng([seed, PIN_STREAM])
     pins |= {(label, quantity): float(drawing.uniform(lower, upper)) for label, quantity, lower, upper in task.drawn}

@@ -17,8 +17,6 @@ from simnodes.powercube.body import PowerCubeBody
 from tools.episodes import SENDER, run_episode
 from tools.writing.track import Written, written
 
-SCENARIO_STREAM = 0  # of the seed; noise is drawn from another
-
 
 @dataclass(frozen=True, slots=True)
 class Hand:
@@ -50,9 +48,7 @@ class ListenedBody(PowerCubeBody):
 
 def write(text: str, hand: Hand, models: Models, seed: int, body: ListenedBody) -> Written:
     """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
-    scenario, start = domains.load_scenario(
-        "arm", f"{'stops' if hand.stops else 'word'}-{text}", np.random.default_rng([seed, SCENARIO_STREAM])
-    )
+    scenario, start = domains.seeded_scenario("arm", f"{'stops' if hand.stops else 'word'}-{text}", seed)
     settings = Settings(seed=seed, refinement=hand.refinement)
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
     episode = run_episode(context, body, start, seed)
