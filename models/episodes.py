@@ -37,7 +37,7 @@ class Episode:
     success: bool
     failure: str  # kind of failure, empty if none
     finished: bool = True  # the controller said so; False: the time limit did
-    extra: Mapping[str, Array] | None = None  # further columns, (t,) each: truth, commands
+    work_j: Array | None = None  # (t,) joules of the drives from each tick to the next; None: nobody knows
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
@@ -63,7 +63,7 @@ def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
         "tick": np.arange(count, dtype=np.int32),
         **{name: episode.ticks[:, k] for k, name in enumerate(names)},
         **{f"asked_{name}": np.full(count, episode.arguments[k]) for k, name in enumerate(names)},
-        **(episode.extra or {}),
+        "work_j": np.full(count, np.nan) if episode.work_j is None else episode.work_j,
         "duration_s": np.full(count, episode.duration_s),
         "success": np.full(count, episode.success),
         "finished": np.full(count, episode.finished),
@@ -154,6 +154,7 @@ def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:
     ticks = np.column_stack([column[name] for name in names])
     asked = np.column_stack([column[f"asked_{name}"] for name in names])
     numbers = column["episode"]
+    work = column.get("work_j", np.full(len(numbers), np.nan))  # older data sets do not tell
     starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
     return [
         Episode(
@@ -164,6 +165,7 @@ def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:
             bool(column["success"][a]),
             failure[a],
             bool(column["finished"][a]),
+            work[a:b] if np.isfinite(work[a:b]).all() else None,
         )
         for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
     ]

@@ -19,7 +19,7 @@ class Examples:
     """n rows to learn from; rows of one episode are near copies and must stay together."""
 
     arguments: Array  # (n, k)
-    targets: Array  # (n,) seconds that remain, or 1 for success and 0 for failure
+    targets: Array  # (n,) seconds or joules that remain, or 1 for success and 0 for failure
     groups: Numbers  # (n,) number of the episode
 
     def of(self, episodes: Numbers) -> Examples:
@@ -31,6 +31,12 @@ class Examples:
 def duration_examples(episodes: Sequence[Episode], n_i: int) -> Examples:
     """Remaining durations at the first n_i ticks of each episode that its controller finished."""
     return _examples(episodes, n_i, lambda e: e.duration_s - TICK_S * np.arange(len(e.ticks)))
+
+
+def energy_examples(episodes: Sequence[Episode], n_i: int) -> Examples:
+    """Joules that remain at the first n_i ticks of each episode whose work was told."""
+    told = [episode for episode in episodes if episode.work_j is not None]
+    return _examples(told, n_i, lambda e: np.cumsum(e.work_j[::-1])[::-1])
 
 
 def success_examples(episodes: Sequence[Episode], n_i: int) -> Examples:

@@ -5,6 +5,7 @@ An episode begins where an action got its last goal: one that was changed on the
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -13,7 +14,17 @@ import numpy as np
 
 from executive.library import Action, Array, Domain
 from models.episodes import UNOBSERVED, Episode
-from schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Message, SimTruth, Subgoals
+from schemas.messages import (
+    ActionFinished,
+    ExecStatus,
+    InstantiatedAction,
+    JointState,
+    Message,
+    Odometry,
+    SimTruth,
+    Subgoals,
+)
+from tools.lockstep import trials_of
 
 COLLIDED_M = 0.05  # the ball moved by more before the goal state: the approach has failed (domains.md)
 LEAST_TICKS = 3
@@ -28,6 +39,7 @@ class _Running:
     action: Action
     goal: Array
     ticks: list[Array] = field(default_factory=list)
+    motions: list[Message | None] = field(default_factory=list)  # at each tick; None: not told
     begun_s: float = 0.0  # after the action's start
     ball: tuple[float, float] | None = None
     collided: bool = False
@@ -41,6 +53,7 @@ class Cutter:
     cut: list[tuple[str, Episode]] = field(default_factory=list)
     _newest: Subgoals | None = None
     _running: _Running | None = None
+    _motion: Message | None = None  # the newest: the truth, or what the sensors say where nobody tells it
 
     def read(self, messages: Iterable[Message]) -> list[tuple[str, Episode]]:
         """Episodes in these messages, by the action whose duration model they teach."""
@@ -52,7 +65,12 @@ class Cutter:
                 case ExecStatus() if message.action:
                     self._tick(message)
                 case SimTruth():
+                    self._motion = message
                     self._see(message)
+                case JointState():
+                    self._motion = message
+                case Odometry() if not isinstance(self._motion, SimTruth):
+                    self._motion = message
                 case ActionFinished():
                     self._finish(message)
         return self.cut
@@ -65,6 +83,7 @@ class Cutter:
             if not run.ticks:
                 run.begun_s = status.action_elapsed_s
             run.ticks.append(self._arguments(run, status))
+            run.motions.append(self._motion)
 
     def _begin(self, status: ExecStatus) -> _Running | None:
         if self._newest is None or not self._newest.actions or self._newest.actions[0].action != status.action:
@@ -79,7 +98,7 @@ class Cutter:
         said = subgoals.actions[0]
         same = (said.action, said.step, said.asserted) == (run.said.action, run.said.step, run.said.asserted)
         if same and not np.allclose(_goal(run.action, said), run.goal, atol=1e-6):
-            run.said, run.goal, run.ticks = said, _goal(run.action, said), []
+            run.said, run.goal, run.ticks, run.motions = said, _goal(run.action, said), [], []
 
     def _arguments(self, run: _Running, status: ExecStatus) -> Array:
         """The controller's arguments with the believed state in place of the start, as instantiation tells it."""
@@ -113,8 +132,17 @@ class Cutter:
         ticks = np.stack(run.ticks)
         duration_s = finished.actual_s - run.begun_s
         done = finished.outcome == "done"
-        episode = Episode(len(self.cut), ticks[0], ticks, duration_s, not failure, failure, done)
+        work_j = self._work(run.motions)
+        episode = Episode(len(self.cut), ticks[0], ticks, duration_s, not failure, failure, done, work_j)
         self.cut.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
+
+    def _work(self, motions: list[Message | None]) -> Array | None:
+        """Joules of the drives from each tick to the next; None where a motion was not told."""
+        if None in motions:
+            return None
+        told = trials_of(self.domain).work_j
+        work_j = np.array([*(told(a, b) for a, b in itertools.pairwise(motions) if a and b), 0.0])
+        return work_j if np.isfinite(work_j).all() else None
 
 
 def _goal(action: Action, said: InstantiatedAction) -> Array:

@@ -59,7 +59,7 @@ def run_one(work: Work, domain: Domain, body: Any, number: int) -> Episode:
     rng = work.rng(number)
     arguments = lockstep.sample_arguments(domain, work.action, rng)
     run = lockstep.run_action(body, domain, work.action, arguments, rng)
-    return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done)
+    return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
 
 
 def run_part(work: Work, first: int) -> tuple[int, float, float]:

@@ -42,6 +42,10 @@ class Trials(Protocol):
         """Controller arguments with the believed state in place of the start."""
         ...
 
+    def work_j(self, before: Message, after: Message) -> float:
+        """Joules that the drives have taken between two true states; NaN if that cannot be told."""
+        ...
+
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """What has gone wrong in the world by now, or ""."""
         ...
@@ -72,6 +76,7 @@ class Episode:
     success: bool
     failure: str
     done: bool  # the controller reached its goal, whatever else happened
+    work_j: Array  # (T,), joules of the drives from each tick to the next; 0 at the last
     trace: tuple[Tick, ...] = ()  # only if asked for
 
 
@@ -118,7 +123,7 @@ def run_action(
     belief = trials.belief(start, rng)
     body.reset(rng, start)
     memory: Any = None
-    failure, rows, trace = "", [], []
+    failure, rows, work, trace = "", [], [], []
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         truth = body.truth()
@@ -133,10 +138,13 @@ def run_action(
         body.command(control.command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
+        work.append(trials.work_j(truth, body.truth()))
     done = control.outcome == "done"
     if not done:
         failure = failure or control.reason or "time limit"
-    return Episode(action_name, arguments, np.array(rows), now_ns * 1e-9, not failure, failure, done, tuple(trace))
+    ticks = np.array(rows)
+    worked = np.array([*work, 0.0])[: len(ticks)]
+    return Episode(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, worked, tuple(trace))
 
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:

@@ -17,12 +17,13 @@ from executive.library import Models
 from models.episodes import Episode, write_manifest, write_part
 from models.runtime import load_robot
 from schemas.errors import Rejected, UsageError
-from schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals
+from schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
 from tools import gathering, lockstep
 from tools.cutting import Cutter
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
 CHUNK = 10  # runs whose episodes are kept together
+READ = (Subgoals, ExecStatus, SimTruth, JointState, Odometry, ActionFinished)
 MOST_ACTIONS = 100  # of one run; spaces the numbers of its episodes
 
 
@@ -116,7 +117,7 @@ def _messages(path: Path) -> Iterator[Message]:
 
     for recorded in sorted(open_recording(path).messages(), key=lambda m: m.publish_ns):
         kind = type_of(recorded.ros_type)
-        if kind in (Subgoals, ExecStatus, SimTruth, ActionFinished):
+        if kind in READ:
             message = decode(kind, recorded.data)
             if isinstance(message, Rejected):
                 raise UsageError(f"{path}: {recorded.key} number {recorded.sequence}: {message.reason}")

@@ -92,3 +92,15 @@ def test_a_dribble_starts_where_the_ball_is() -> None:
     believed_ball = np.array([1.0, 0.0])
     reach = np.linalg.norm(believed_ball - episode.ticks[0, :2])
     assert 0.2 < reach < 0.4  # from the axle to a ball in the rail
+
+
+def test_the_work_of_the_drives_is_cut_with_the_episode_where_motion_is_told() -> None:
+    def moving(k: int) -> SimTruth:
+        return SimTruth(k * 100_000_000, 0.0, 0.0, 0.0, 0.1 * k, 0.0, 1.0, 0.0, 0.0, 0.0)
+
+    ticks = [message for k, said in enumerate(drive("goToPose", 0, 5)) for message in (moving(k), said)]
+    [(_, told)] = cut(subgoals("goToPose", {"xg": 2.0}), *ticks, finished("goToPose", 0, 0.5))
+    assert told.work_j is not None and len(told.work_j) == len(told.ticks)
+    assert told.work_j[-1] == 0.0 and (np.diff(told.work_j[:-1]) > 0).all()  # faster and faster
+    [(_, untold)] = cut(subgoals("goToPose", {"xg": 2.0}), *drive("goToPose", 0, 5), finished("goToPose", 0, 0.5))
+    assert untold.work_j is None

@@ -12,6 +12,7 @@ from executive.domains.arm.library import PASSING_RADPS, fastest_radps
 from executive.domains.arm.meaning import named
 from executive.library import Action, Array
 from schemas.messages import Message
+from tools.trials.drive_work import joint_work_j
 
 STATE = ("a", "wa", "b", "wb")
 WA, WB, WAG, WBG = 1, 3, 5, 7
@@ -53,6 +54,10 @@ class ArmTrials:
     def arguments_now(self, action: Action, belief: ArmBelief, arguments: Array) -> list[float]:
         """The controller arguments with the believed state in place of the start: an example to learn from."""
         return [*named(belief.angles, belief.velocities).values(), *arguments[len(STATE) :].tolist()]
+
+    def work_j(self, before: Message, after: Message) -> float:
+        """Joules that the joints have taken between two states."""
+        return joint_work_j(before, after)
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """Nothing goes wrong in the air."""

@@ -16,7 +16,8 @@ from executive.domains.soccer import robot
 from executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
 from executive.domains.soccer.library import AT_BALL_MPS
 from executive.library import Action, Array
-from schemas.messages import SimTruth
+from schemas.messages import Message, SimTruth
+from tools.trials.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
 ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would be inside the robot
@@ -94,6 +95,10 @@ class SoccerTrials:
             x = belief.ball_xy[0] - robot.IN_RAIL_M * math.cos(pose.phi)
             y = belief.ball_xy[1] - robot.IN_RAIL_M * math.sin(pose.phi)
         return [x, y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
+
+    def work_j(self, before: Message, after: Message) -> float:
+        """Joules that the wheels have taken between two states."""
+        return wheel_work_j(before, after)
 
     def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
         """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""

@@ -1,0 +1,62 @@
+"""Energy: what the drives work in an episode, the models that learn it, and the executive that pays for it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from executive import domains
+from models.episodes import Episode, read_data_set, write_manifest, write_part
+from models.examples import energy_examples
+from schemas.messages import JointState, Odometry, SimTruth
+from tools import lockstep
+from tools.trials.drive_work import MASS_KG, joint_work_j, wheel_work_j
+
+
+def truth(at_s: float, v: float, omega: float = 0.0) -> SimTruth:
+    return SimTruth(round(at_s * 1e9), 0.0, 0.0, 0.0, v, omega, 0.0, 0.0, 0.0, 0.0)
+
+
+def joints(at_s: float, efforts: tuple[float, ...], velocities: tuple[float, ...]) -> JointState:
+    return JointState(round(at_s * 1e9), ("a", "b"), (0.0, 0.0), velocities, efforts)
+
+
+def test_wheels_work_to_gain_speed_and_get_nothing_back_when_they_brake() -> None:
+    assert wheel_work_j(truth(0.0, 0.0), truth(0.1, 0.5)) == pytest.approx(0.5 * MASS_KG * 0.25)
+    assert wheel_work_j(truth(0.0, 0.5), truth(0.1, 0.0)) == 0.0
+    assert wheel_work_j(truth(0.0, 0.0), truth(0.1, 0.0, 1.0)) > 0.1
+
+
+def test_motors_work_where_torque_and_motion_agree() -> None:
+    lifting = joints(0.0, (10.0, 0.0), (0.5, 0.0)), joints(0.1, (10.0, 0.0), (0.5, 0.0))
+    assert joint_work_j(*lifting) == pytest.approx(0.5)
+    lowering = joints(0.0, (10.0, 0.0), (-0.5, 0.0)), joints(0.1, (10.0, 0.0), (-0.5, 0.0))
+    assert joint_work_j(*lowering) == 0.0
+
+
+def test_states_that_tell_nothing_give_no_work() -> None:
+    assert math.isnan(wheel_work_j(truth(0.0, 0.0), joints(0.1, (1.0, 1.0), (1.0, 1.0))))
+    assert math.isnan(joint_work_j(joints(0.0, (), (0.1, 0.1)), joints(0.1, (), (0.1, 0.1))))
+    odom = [Odometry(k * 100_000_000, 0.0, 0.0, 0.0, 0.1 * k, 0.0) for k in range(2)]
+    assert wheel_work_j(*odom) == pytest.approx(0.5 * MASS_KG * 0.01)
+
+
+def test_an_episode_tells_its_work_tick_by_tick() -> None:
+    domain = domains.load("soccer")
+    arguments = np.array([0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
+    run = lockstep.run_action(lockstep.new_body(domain), domain, "goToPose", arguments, np.random.default_rng(3))
+    assert run.work_j.shape == (len(run.ticks),)
+    assert run.work_j[-1] == 0.0
+    assert 0.5 * MASS_KG * 0.4**2 < run.work_j.sum() < 2 * MASS_KG * 0.9**2  # it got going, once
+
+
+def test_work_survives_the_file_and_its_absence_is_kept(tmp_path) -> None:
+    ticks = np.zeros((3, 2))
+    told = Episode(0, ticks[0], ticks, 0.3, True, "", work_j=np.array([1.0, 2.0, 0.0]))
+    untold = Episode(1, ticks[0], ticks, 0.3, True, "")
+    write_manifest(tmp_path, {"robot": "r", "action": "a", "arguments": [{"name": "x"}, {"name": "y"}]})
+    write_part(tmp_path / "part-0.parquet", [told, untold], ["x", "y"])
+    first, second = read_data_set(tmp_path).episodes
+    assert first.work_j is not None and first.work_j.tolist() == [1.0, 2.0, 0.0]
+    assert second.work_j is None
+    assert energy_examples([first, second], 2).targets.tolist() == [3.0, 2.0]  # what remains; the untold left out

@@ -1,0 +1,56 @@
+"""Mechanical work of a robot's drives, from two of its 10 Hz states: what energy models learn (paper 8).
+
+Braking gives nothing back, and what motors turn into heat or electronics take is not in it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from schemas.messages import JointState, Message, Odometry, SimTruth
+from simnodes.agilo.physique import Physique
+
+AGILO = Physique()
+WHEELS = 2
+ARMATURE_KGM2 = 0.002  # of a wheel's motor and gear, as in the scene
+# each wheel weighs again what it takes to spin it up (an ellipsoid's 2/5 m r²), and its motor
+SPINNING_KG = WHEELS * (0.4 * AGILO.wheel_mass_kg + ARMATURE_KGM2 / AGILO.wheel_radius_m**2)
+MASS_KG = AGILO.chassis_mass_kg + WHEELS * AGILO.wheel_mass_kg + SPINNING_KG
+YAW_KGM2 = (
+    AGILO.chassis_mass_kg * ((AGILO.chassis_length_m**2 + AGILO.chassis_width_m**2) / 12 + AGILO.mass_ahead_m**2)
+    + (WHEELS * AGILO.wheel_mass_kg + SPINNING_KG) * (AGILO.track_m / 2) ** 2
+)
+
+
+def wheel_work_j(before: Message, after: Message) -> float:
+    """Work of AGILO's wheels between two states: what they add to its kinetic energy, never negative.
+
+    Its simulated wheels roll freely; what a pushed ball takes (0.2 N) is not in it either.
+
+    Args:
+      before, after: `SimTruth`, or `Odometry` where nobody knows the truth (its noise adds about 0.5 W).
+
+    Returns:
+      Joules; NaN if these are no such states.
+    """
+    if not isinstance(before, SimTruth | Odometry) or not isinstance(after, SimTruth | Odometry):
+        return math.nan
+    faster = after.v**2 - before.v**2, after.omega**2 - before.omega**2
+    return max(0.0, 0.5 * MASS_KG * faster[0] + 0.5 * YAW_KGM2 * faster[1])
+
+
+def joint_work_j(before: Message, after: Message) -> float:
+    """Work of an arm's motors between two states: torque times speed of each joint where it drives.
+
+    Returns:
+      Joules; NaN if these are no joint states with efforts.
+    """
+    if not isinstance(before, JointState) or not isinstance(after, JointState):
+        return math.nan
+    if not (before.efforts and after.efforts):
+        return math.nan
+    return 0.5 * (_power_w(before) + _power_w(after)) * 1e-9 * (after.stamp_ns - before.stamp_ns)
+
+
+def _power_w(state: JointState) -> float:
+    return sum(max(0.0, nm * radps) for nm, radps in zip(state.efforts, state.velocities, strict=True))
