@@ -14,7 +14,7 @@ from tools.viewer.rows import Fields
 
 STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.
-SILENT = (m.ArmRequest, m.BallPercept)
+SILENT = (m.ArmRequest, m.BallPercept, m.PlanRequest, m.PlanAnswer)
 
 
 @dataclass(frozen=True, slots=True)

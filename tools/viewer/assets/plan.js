@@ -39,7 +39,12 @@ class PlanGraph {
 
   lay(now, { base, done, running }) {
     const counted = now.generated ? `, ${now.generated} plans generated, ${now.visited} visited` : "";
-    const way = now.way === "suffix" ? "what is left of the last plan" : now.way;
+    const words = {
+      suffix: "what is left of the last plan",
+      improved: "better than what was left of the last plan",
+      external: "by the external planner",
+    };
+    const way = words[now.way] ?? now.way;
     const orderings = base.orderings?.length ? [["c1", "ordering"]] : [];
     this.panel.note.replaceChildren(
       html("span", { text: `${now.status}, ${way}${counted}${now.reason ? `: ${now.reason}` : ""}  ` }),
