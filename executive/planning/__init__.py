@@ -3,12 +3,14 @@
 Everything that other parts of the executive use is named here.
 """
 
+from executive.planning.completing import completed
 from executive.planning.domain_reader import parse_domain
 from executive.planning.errors import PddlError, Unsupported
 from executive.planning.language import Domain, Literal
 from executive.planning.plan import GOAL, Link, Plan, Result, Step
 from executive.planning.problem import Problem
 from executive.planning.problem_reader import parse_problem
+from executive.planning.problem_text import format_problem
 from executive.planning.progress import progress
 from executive.planning.search import GroundCache, Search
 from executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
@@ -35,8 +37,10 @@ __all__ = [
     "Settings",
     "Step",
     "Unsupported",
+    "completed",
     "format_links",
     "format_plan",
+    "format_problem",
     "parse_domain",
     "parse_plan",
     "parse_problem",
