@@ -38,6 +38,7 @@ class Episode:
     failure: str  # kind of failure, empty if none
     finished: bool = True  # the controller said so; False: the time limit did
     work_j: Array | None = None  # (t,) joules of the drives from each tick to the next; None: nobody knows
+    on_policy: bool = False  # an optimiser chose its arguments
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
@@ -125,7 +126,7 @@ def read_data_set(folder: Path) -> DataSet:
             table = pq.read_table(path)
         except (pa.ArrowException, OSError) as error:
             raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
-        episodes.extend(_episodes(table, names))
+        episodes.extend(_episodes(table, names, bool(manifest.get("on_policy"))))
     return DataSet(manifest, tuple(episodes), digest.hexdigest())
 
 
@@ -148,7 +149,7 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     return DataSet({**first.manifest, "on_policy": policy}, tuple(episodes), digest)
 
 
-def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:
+def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Episode]:
     column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
     failure = table["failure"].to_pylist()
     ticks = np.column_stack([column[name] for name in names])
@@ -166,6 +167,7 @@ def _episodes(table: pa.Table, names: Sequence[str]) -> list[Episode]:
             failure[a],
             bool(column["finished"][a]),
             work[a:b] if np.isfinite(work[a:b]).all() else None,
+            on_policy,
         )
         for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
     ]

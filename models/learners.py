@@ -53,12 +53,12 @@ SUCCESS: Mapping[str, Callable[[int], Any]] = {
 
 
 def make(kind: str, name: str, seed: int) -> Any:
-    """A fresh learner.
+    """A fresh learner; energy is learned as durations are.
 
     Raises:
       UsageError: No learner of that name for that kind.
     """
-    table = DURATION if kind == "duration" else SUCCESS
+    table = SUCCESS if kind == "success" else DURATION
     if name not in table:
         raise UsageError(f"learner '{name}' is unknown for {kind} (expected one of: {', '.join(table)})")
     return table[name](seed)

@@ -16,8 +16,10 @@ from models.onnx_graph import Graph
 from models.onnx_trees import add_bag, add_probability, add_tree
 
 
-def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
+def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str], unit: str = "s") -> onnx.ModelProto:
     """Double `arguments` (n, k) to float `mean_s` and `std_s`, (n,); `notes` become the file's metadata.
+
+    Energy goes the same way, its `unit` is "j".
 
     Raises:
       TypeError: The learner is none of ours.
@@ -36,7 +38,7 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str])
             mean, spread = add_regressor(graph, plain, learner.inner_, learner.low_, learner.high_, learner.spread_)
         case _:
             raise TypeError(f"no export for {type(learner).__name__}")
-    return graph.model(len(space.arguments), {"mean_s": mean, "std_s": spread}, notes)
+    return graph.model(len(space.arguments), {f"mean_{unit}": mean, f"std_{unit}": spread}, notes)
 
 
 def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:

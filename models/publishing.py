@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import onnx
 from numpy.typing import NDArray
 
-from models.card import FORMAT, card_path, identity, sha256_of, write_card
+from models.amounts import AMOUNTS
+from models.card import FORMAT, Card, card_path, identity, sha256_of, write_card
 from models.episodes import DataSet
 from models.features import FeatureSpace
 from models.onnx_export import export_duration, export_success
@@ -20,7 +22,7 @@ from models.training import Trained
 
 Array = NDArray[np.float64]
 GOLDEN = 32
-LONGEST_FACTOR = 3.0  # a prediction beyond three times the longest episode is no prediction
+LONGEST_FACTOR = 3.0  # a prediction beyond three times the longest episode, or its energy, is no prediction
 LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 
 
@@ -28,7 +30,7 @@ LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 class Publication:
     """What a card says beside what the data set and the training know."""
 
-    kind: str  # "duration" or "success"
+    kind: str  # "duration", "energy" or "success"
     learner: str
     space: FeatureSpace
     seed: int
@@ -38,8 +40,7 @@ class Publication:
 def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
     """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
     card = _card(data, trained, about)
-    export = export_duration if about.kind == "duration" else export_success
-    content = export(trained.learner, about.space, identity(card)).SerializeToString()
+    content = _exported(trained.learner, about, card).SerializeToString()
     path = zoo / card["robot"] / card["action"] / f"{about.kind}.onnx"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
@@ -47,10 +48,26 @@ def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> P
     return path
 
 
+def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
+    if about.kind == "success":
+        return export_success(learner, about.space, identity(card))
+    return export_duration(learner, about.space, identity(card), AMOUNTS[about.kind].unit)
+
+
+def _outputs(kind: str) -> list[str]:
+    """Names of the graph's outputs."""
+    return ["success"] if kind == "success" else [f"{name}_{AMOUNTS[kind].unit}" for name in ("mean", "std")]
+
+
+def _output_range(data: DataSet, kind: str) -> list[float]:
+    """Answers outside are no answers."""
+    if kind == "success":
+        return [0.0, 1.0]
+    return [0.0, LONGEST_FACTOR * max(AMOUNTS[kind].whole(episode) for episode in data.episodes)]
+
+
 def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]:
     manifest = data.manifest
-    longest = max(episode.duration_s for episode in data.episodes)
-    outputs = ["mean_s", "std_s"] if about.kind == "duration" else ["success"]
     return {
         "format": FORMAT,
         "robot": manifest["robot"],
@@ -59,8 +76,8 @@ def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]
         "features": about.space.name,
         "feature_units": {feature.name: feature.unit for feature in about.space.features},
         "arguments": manifest["arguments"],
-        "outputs": outputs,
-        "output_range": [0.0, LONGEST_FACTOR * longest] if about.kind == "duration" else [0.0, 1.0],
+        "outputs": _outputs(about.kind),
+        "output_range": _output_range(data, about.kind),
         **({"threshold": trained.learner.threshold_} if about.kind == "success" else {}),
         "episodes": {
             "count": len(data.episodes),
@@ -103,9 +120,9 @@ def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequenc
     half = arguments.shape[1] // 2
     arguments[-1, half:] = arguments[-1, :half]
     features = about.space(arguments)
-    if about.kind == "duration":
-        answers: Mapping[str, Array] = dict(zip(("mean_s", "std_s"), learner.predict_spread(features), strict=True))
+    if about.kind == "success":
+        answers: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
     else:
-        answers = {"success": learner.predict_proba(features)[:, 1]}
+        answers = dict(zip(_outputs(about.kind), learner.predict_spread(features), strict=True))
     rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in answers.items()}
     return {"arguments": arguments.tolist(), **rounded}

@@ -13,7 +13,8 @@ from models.linear_tree import LinearTree
 from models.split_tree import LEAF, SplitTree
 
 DEGREES = 180 / np.pi
-TOO_SMALL = 0.0005  # seconds per unit: not worth a term
+TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term
+NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +42,10 @@ def bounds(tree: SplitTree, features: int) -> Iterator[Bounds]:
     yield from visit(0, np.full(features, -np.inf), np.full(features, np.inf))
 
 
-def duration_rules(tree: LinearTree, quantities: Sequence[Quantity]) -> list[str]:
-    """One rule a leaf: "if ... then time = ..."."""
+def duration_rules(tree: LinearTree, quantities: Sequence[Quantity], unit: str = "s") -> list[str]:
+    """One rule a leaf: "if ... then time = ...", or "energy" where the unit is J."""
     return [
-        f"if {conditions(box, quantities)}\nthen time = {formula(tree, box.leaf, quantities)}"
+        f"if {conditions(box, quantities)}\nthen {NAMES[unit]} = {formula(tree, box.leaf, quantities, unit)}"
         for box in bounds(tree.splits, len(quantities))
     ]
 
@@ -71,16 +72,16 @@ def conditions(box: Bounds, quantities: Sequence[Quantity]) -> str:
     return " and ".join(said) or "in all cases"
 
 
-def formula(tree: LinearTree, leaf: int, quantities: Sequence[Quantity]) -> str:
-    """The linear formula of a leaf in seconds, slopes of angles per degree, and the range that it is kept in."""
+def formula(tree: LinearTree, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
+    """The linear formula of a leaf in its unit, slopes of angles per degree, and the range that it is kept in."""
     terms = []
     for quantity, slope in zip(quantities, tree.slopes[leaf].tolist(), strict=True):
         if abs(slope) >= TOO_SMALL:
-            shown, unit = (slope / DEGREES, "s/°") if quantity.unit == "rad" else (slope, f"s/({quantity.unit})")
+            shown, unit = (slope / DEGREES, f"{of}/°") if quantity.unit == "rad" else (slope, f"{of}/({quantity.unit})")
             sign = "-" if shown < 0 else "+"
             terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
-    start = f"{tree.intercept[leaf]:.3g} s{''.join(terms)}"
-    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} s, ± {tree.spread[leaf]:.2f} s]"
+    start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
+    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}, ± {tree.spread[leaf]:.2f} {of}]"
 
 
 def _value(value: float, quantity: Quantity) -> str:

@@ -34,7 +34,7 @@ GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learni
 
 @dataclass(frozen=True, slots=True)
 class OnnxDuration:
-    """Predicts how long an action takes."""
+    """Predicts how long an action takes, or how much energy: seconds or joules, as its card says."""
 
     session: Any
     card: Card
@@ -42,7 +42,7 @@ class OnnxDuration:
     longest_s: float
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Mean and standard deviation in seconds, shapes (n,), of arguments (n, k); NaN where they are invalid."""
+        """Mean and standard deviation in seconds (or joules), (n,), of arguments (n, k); NaN where they are invalid."""
         mean, std = self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
         valid = (mean >= self.shortest_s) & (mean <= self.longest_s) & (std >= 0)
         if not valid.all():
@@ -90,7 +90,7 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
 def load_robot(
     robot: str, zoo: Path | None = None, declared: Mapping[str, Mapping[str, tuple[float, float]]] | None = None
 ) -> tuple[dict[str, OnnxDuration], dict[str, OnnxSuccess]]:
-    """Load all models of a robot: durations and successes by "action/kind".
+    """Load all models of a robot: durations (and energies) and successes by "action/kind".
 
     Args:
       robot: Folder in the zoo.
@@ -149,7 +149,7 @@ def _session(content: bytes, path: Path) -> Any:
 
 
 def _wrapped(session: Any, card: Card, path: Path) -> OnnxModel:
-    if card["kind"] == "duration":
+    if card["kind"] in ("duration", "energy"):
         shortest, longest = card["output_range"]
         return OnnxDuration(session, card, float(shortest), float(longest))
     if card["kind"] == "success":

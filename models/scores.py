@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 BOOTSTRAPS = 2000
+LEAST_SPREAD = 1e-3  # no model is surer than that
 
 
 def mean_with_ci(values: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
@@ -42,7 +43,12 @@ def confusion(predicted: NDArray[np.bool_], observed: NDArray[np.bool_]) -> Conf
 
 def interval_factor(errors: Array, spread: Array, level: float = 0.9) -> float:
     """Factor on the spread that makes `mean ± factor · spread` hold a share `level` of the errors."""
-    return float(np.quantile(np.abs(errors) / np.maximum(spread, 1e-3), level))
+    return float(np.quantile(np.abs(errors) / np.maximum(spread, LEAST_SPREAD), level))
+
+
+def coverage(errors: Array, spread: Array, factor: float) -> float:
+    """Percent of the errors that `mean ± factor · spread` holds."""
+    return float(100 * np.mean(np.abs(errors) <= factor * np.maximum(spread, LEAST_SPREAD)))
 
 
 def reliability(probability: Array, success: NDArray[np.bool_], bins: int = 10) -> list[tuple[float, float, int]]:

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import learners, scores
+from models.amounts import DURATION, Amount
+from models.calibration import calibrated
 from models.episodes import UNOBSERVED, Episode
-from models.examples import Examples, duration_examples, folds, split, success_examples
+from models.examples import Examples, folds, split, success_examples
 from models.features import FeatureSpace
 from schemas.errors import UsageError
 
@@ -34,36 +36,42 @@ class Trained:
 
 
 def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
-    """Learn how long an action takes.
+    """Learn how long an action takes; see `train_amount`."""
+    return train_amount(DURATION, episodes, space, learner, seed)
+
+
+def train_amount(amount: Amount, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Learn how long an action takes, or how much energy.
 
     Raises:
-      UsageError: Too few finished episodes, or an unknown learner.
+      UsageError: Too few finished episodes that tell it, or an unknown learner.
     """
-    finished = [episode for episode in episodes if episode.finished]
+    finished = [episode for episode in episodes if episode.finished and amount.told(episode)]
     _check_count(finished, "finished")
     rng = np.random.default_rng(seed)
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
-    n_i = _best_n_i(finished, kept, space, rng)
-    rows = duration_examples(finished, n_i)
-    first = duration_examples(finished, 1).of(apart)
-    twin = fit("duration", learner, rows.of(kept), space, seed)
+    n_i = _best_n_i(amount, finished, kept, space, rng)
+    rows = amount.examples(finished, n_i)
+    first = amount.examples(finished, 1).of(apart)
+    twin = fit(amount.kind, learner, rows.of(kept), space, seed)
     mean, spread = twin.predict_spread(space(first.arguments))
     errors = first.targets - mean
     mae, ci = scores.mean_with_ci(np.abs(errors), rng)
-    factor = scores.interval_factor(errors, spread)
+    chosen = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
+    unit = amount.unit
     test = {
         "n": len(apart),
         "training_episodes": len(kept),
-        "mean_duration_s": float(np.mean([episode.duration_s for episode in finished])),
-        "mae_s": mae,
+        f"mean_{amount.kind}_{unit}": float(np.mean([amount.whole(episode) for episode in finished])),
+        f"mae_{unit}": mae,
         "mae_ci95": list(ci),
-        "mae_first_ticks_s": _mae(twin, rows.of(apart), space),
-        "bias_s": float(-errors.mean()),
-        "interval90_factor": factor,  # of the spread; measured on the test episodes themselves
-        "learning_curve": _curve("duration", learner, rows, first, kept, space, rng, seed),
+        f"mae_first_ticks_{unit}": _mae(twin, rows.of(apart), space),
+        f"bias_{unit}": float(-errors.mean()),
+        **calibrated(errors, spread, chosen),
+        "learning_curve": _curve(amount.kind, learner, rows, first, kept, space, rng, seed),
     }
-    return Trained(fit("duration", learner, rows, space, seed), n_i, test)
+    return Trained(fit(amount.kind, learner, rows, space, seed), n_i, test)
 
 
 def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
@@ -100,7 +108,7 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
     """A learner of that name, fitted to examples in a feature space."""
     learner = learners.make(kind, name, seed)
-    targets = rows.targets if kind == "duration" else rows.targets.astype(np.int64)
+    targets = rows.targets if kind != "success" else rows.targets.astype(np.int64)
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 
 
@@ -110,14 +118,14 @@ def _check_count(episodes: Sequence[Episode], what: str) -> None:
 
 
 def _best_n_i(
-    episodes: Sequence[Episode], kept: NDArray[np.int64], space: FeatureSpace, rng: np.random.Generator
+    amount: Amount, episodes: Sequence[Episode], kept: NDArray[np.int64], space: FeatureSpace, rng: np.random.Generator
 ) -> int:
     """How many first ticks predict the whole duration of unseen episodes best, by single trees."""
-    first = duration_examples(episodes, 1)
+    first = amount.examples(episodes, 1)
     parts = folds(kept, FOLDS, rng)
     error = []
     for n_i in FIRST_TICKS:
-        rows = duration_examples(episodes, n_i)
+        rows = amount.examples(episodes, n_i)
         trees = [fit("duration", "linear", rows.of(np.setdiff1d(kept, part)), space, 0) for part in parts]
         error.append(np.mean([_mae(tree, first.of(part), space) for tree, part in zip(trees, parts, strict=True)]))
     return FIRST_TICKS[int(np.argmin(error))]

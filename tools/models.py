@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from models.card import Card
+from models.card import UNITS, Card
 from models.runtime import ZOO, OnnxDuration, OnnxSuccess, load_model
 from schemas.errors import UsageError
 
@@ -23,7 +23,7 @@ examples:
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
 
-MODEL is ROBOT/ACTION/KIND; KIND (duration or success) may be left out for duration, and everything for all models."""
+MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration, and everything for all models."""
 VERBS = ("list", "show", "rules", "plot", "check")
 
 
@@ -70,7 +70,8 @@ def rules(model: OnnxDuration | OnnxSuccess) -> str:
     quantities, rng = space_of(model.card).features, np.random.default_rng(0)
     if isinstance(model, OnnxDuration):
         tree, off = distilled_duration(model, rng)
-        said, differ = duration_rules(tree, quantities), f"{off:.3f} s"
+        unit = UNITS[model.card["kind"]]
+        said, differ = duration_rules(tree, quantities, unit), f"{off:.3f} {unit}"
     else:
         splits, success, off = distilled_success(model, rng)
         said, differ = success_rules(splits, success, quantities), f"{100 * off:.1f} %"
@@ -91,9 +92,13 @@ def _all(zoo: Path) -> list[str]:
 
 def _quality(card: Card) -> str:
     test = card["test"]
-    if card["kind"] == "duration":
-        return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
-    return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
+    match card["kind"]:
+        case "duration":
+            return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
+        case "energy":
+            return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
+        case _:
+            return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
 
 
 def _list(cards: list[Card], as_json: bool) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,9 @@ examples:
   tailor train agilo --data data/agilo
   tailor train agilo --data data/agilo --learner m5 --features relative --zoo out/zoo
 
-A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, and a success model when
-some of its episodes failed. Three quarters train, one quarter tests; the model that is kept is fitted to all."""
+A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, an energy model when its
+episodes tell what the drives worked, and a success model when some of them failed. Three quarters train, one quarter
+tests; the model that is kept is fitted to all."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -55,6 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
 def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
     """Train the models of one action and write them to the zoo; returns what they reached in the test."""
     from models import publishing, runtime, training
+    from models.amounts import ENERGY
     from models.episodes import UNOBSERVED, merge, read_data_set
     from models.features import SPACES
 
@@ -68,6 +71,8 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
     if data.names != tuple(quantity.name for quantity in space.arguments):
         raise UsageError(f"{folders[0]}: arguments {data.names}, expected {space.arguments} by features '{space.name}'")
     jobs = [("duration", arguments.learner, training.train_duration)]
+    if sum(ENERGY.told(episode) and episode.finished for episode in data.episodes) >= training.LEAST:
+        jobs.append(("energy", arguments.learner, partial(training.train_amount, ENERGY)))
     if any(episode.failure not in ("", UNOBSERVED) for episode in data.episodes):
         jobs.append(("success", arguments.failure_learner, training.train_success))
     rows = []
@@ -115,14 +120,15 @@ def _gathering(robot: str, manifest: Mapping[str, Any]) -> str:
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:
-    table = Table("model", "test episodes", "mean duration", "test MAE (95 % interval)", "accuracy", "missed failures")
+    table = Table("model", "test episodes", "mean", "test MAE (95 % interval)", "accuracy", "missed failures")
     for row in rows:
         name = f"{row['robot']}/{row['action']}/{row['kind']}"
-        if row["kind"] == "duration":
-            low, high = row["mae_ci95"]
-            error = f"{row['mae_s']:.3f} s ({low:.3f} .. {high:.3f})"
-            table.add_row(name, str(row["n"]), f"{row['mean_duration_s']:.2f} s", error, "", "")
-        else:
+        if row["kind"] == "success":
             shares = f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
             table.add_row(name, str(row["n"]), "", "", *shares)
+            continue
+        unit, mean = ("s", "mean_duration_s") if row["kind"] == "duration" else ("J", "mean_energy_j")
+        low, high = row["mae_ci95"]
+        error = f"{row[f'mae_{unit.lower()}']:.3f} {unit} ({low:.3f} .. {high:.3f})"
+        table.add_row(name, str(row["n"]), f"{row[mean]:.2f} {unit}", error, "", "")
     return table

@@ -57,6 +57,7 @@ def test_work_survives_the_file_and_its_absence_is_kept(tmp_path) -> None:
     write_manifest(tmp_path, {"robot": "r", "action": "a", "arguments": [{"name": "x"}, {"name": "y"}]})
     write_part(tmp_path / "part-0.parquet", [told, untold], ["x", "y"])
     first, second = read_data_set(tmp_path).episodes
-    assert first.work_j is not None and first.work_j.tolist() == [1.0, 2.0, 0.0]
+    assert first.work_j is not None
+    assert first.work_j.tolist() == [1.0, 2.0, 0.0]
     assert second.work_j is None
     assert energy_examples([first, second], 2).targets.tolist() == [3.0, 2.0]  # what remains; the untold left out

@@ -10,8 +10,10 @@ import matplotlib as mpl
 import numpy as np
 
 from models import scores
+from models.amounts import AMOUNTS
+from models.card import UNITS, Card
 from models.episodes import UNOBSERVED, Episode, read_data_set
-from models.examples import Examples, duration_examples, success_examples
+from models.examples import Examples, success_examples
 from models.runtime import OnnxDuration, OnnxSuccess
 from tools.figures import learned_shapes
 
@@ -35,9 +37,11 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
     pictures: dict[str, Callable[[Any], None]] = {}
     if isinstance(model, OnnxDuration):
         pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model)}
-        pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card["test"])}
-        if episodes:
-            rows = duration_examples([e for e in episodes if e.finished], 1)
+        pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
+        amount = AMOUNTS[card["kind"]]
+        told = [episode for episode in episodes if episode.finished and amount.told(episode)]
+        if told:
+            rows = amount.examples(told, 1)
             pictures |= {"predicted-observed": lambda figure: _predicted_observed(figure, model, rows)}
             pictures |= {"error-by-region": lambda figure: learned_shapes.error_by_region(figure, model, rows)}
     else:
@@ -62,23 +66,28 @@ def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> Non
     limit = 1.05 * float(np.quantile(rows.targets, 0.995))
     axes.scatter(predicted, rows.targets, s=5, alpha=0.4)
     axes.plot([0, limit], [0, limit], color="black", lw=1)
-    axes.set(xlabel="predicted [s]", ylabel="observed [s]", xlim=(0, limit), ylim=(0, limit))
+    unit = UNITS[model.card["kind"]]
+    axes.set(xlabel=f"predicted [{unit}]", ylabel=f"observed [{unit}]", xlim=(0, limit), ylim=(0, limit))
     axes.set_title("first ticks of the episodes it was fitted to")
     right.scatter(spread, np.abs(predicted - rows.targets), s=5, alpha=0.4)
     top = 1.05 * float(np.quantile(spread, 0.995))
     right.plot([0, top], [0, top], color="black", lw=1)
     right.set(
-        xlabel="spread [s]", ylabel="|error| [s]", xlim=(0, top), ylim=(0, 4 * top), title="is it sure when right?"
+        xlabel=f"spread [{unit}]",
+        ylabel=f"|error| [{unit}]",
+        xlim=(0, top),
+        ylim=(0, 4 * top),
+        title="is it sure when right?",
     )
 
 
-def _learning_curve(figure: Any, test: Any) -> None:
-    axes = figure.subplots()
+def _learning_curve(figure: Any, card: Card) -> None:
+    axes, test = figure.subplots(), card["test"]
     count, error = zip(*test["learning_curve"], strict=True)
     axes.plot(count, error, marker="o")
     low, high = test["mae_ci95"]
     axes.errorbar([count[-1]], [error[-1]], [[error[-1] - low], [high - error[-1]]], capsize=4, color="tab:blue")
-    axes.set(xlabel="training episodes", ylabel="MAE on test episodes [s]", ylim=(0, None))
+    axes.set(xlabel="training episodes", ylabel=f"MAE on test episodes [{UNITS[card['kind']]}]", ylim=(0, None))
     axes.set_title("learning curve, 95 % interval at its end")
 
 

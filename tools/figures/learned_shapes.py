@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from models.asking import distilled_duration, space_of
 from models.examples import Examples
 from models.features import projective
-from models.rules import bounds, conditions, formula
+from models.card import UNITS
+from models.rules import NAMES, bounds, conditions, formula
 from models.runtime import OnnxDuration, OnnxSuccess
 
 Array = NDArray[np.float64]
@@ -22,8 +23,8 @@ HEADINGS = 24  # Figure 8 averages over where the robot looks at the start, as a
 
 
 def figure7(figure: Any, model: OnnxDuration) -> None:
-    """Predicted time over angle_at, in Cartesian and polar coordinates, with the rule of one segment."""
-    angle = np.linspace(-np.pi, np.pi, 361)
+    """Predicted time (energy) over angle_at, in Cartesian and polar coordinates, with the rule of one segment."""
+    angle, unit = np.linspace(-np.pi, np.pi, 361), UNITS[model.card["kind"]]
     zero = np.zeros_like(angle)
     arguments = np.stack([zero, zero, zero, zero, zero + DIST_M, zero, angle, zero], axis=1)
     mean, spread = model.predict(arguments)
@@ -33,7 +34,9 @@ def figure7(figure: Any, model: OnnxDuration) -> None:
     left.fill_between(np.degrees(angle), mean - spread, mean + spread, alpha=0.25, label="± spread")
     left.plot(np.degrees(angle), mean, label="model")
     left.plot(np.degrees(angle), tree.predict(space_of(model.card)(arguments)), lw=1, ls="--", label="its rules")
-    left.set(xlabel="angle_at [°]", ylabel="time [s]", title=f"dist {DIST_M} m, angle_to 0°, v = v_g = 0")
+    left.set(
+        xlabel="angle_at [°]", ylabel=f"{NAMES[unit]} [{unit}]", title=f"dist {DIST_M} m, angle_to 0°, v = v_g = 0"
+    )
     left.legend()
     polar = figure.add_subplot(1, 2, 2, projection="polar")
     polar.plot(angle, mean)
@@ -41,7 +44,9 @@ def figure7(figure: Any, model: OnnxDuration) -> None:
     quantities = space_of(model.card).features
     widest = int(np.bincount(leaf).argmax())
     box = next(box for box in bounds(tree.splits, len(quantities)) if box.leaf == widest)
-    figure.supxlabel(f"if {conditions(box, quantities)}\ntime = {formula(tree, widest, quantities)}", fontsize=7)
+    figure.supxlabel(
+        f"if {conditions(box, quantities)}\n{NAMES[unit]} = {formula(tree, widest, quantities, unit)}", fontsize=7
+    )
 
 
 def figure8(figure: Any, model: OnnxSuccess) -> None:
@@ -77,5 +82,5 @@ def error_by_region(figure: Any, model: OnnxDuration, rows: Examples) -> None:
         count, _, _ = np.histogram2d(dist, angle, edges)
         mean = np.where(count > 0, total / np.maximum(count, 1), np.nan)
         shown = axes.pcolormesh(*edges, mean.T, vmin=0, vmax=float(np.quantile(off, 0.95)))
-        axes.set(xlabel="dist [m]", ylabel=name, title="mean |error| [s]")
+        axes.set(xlabel="dist [m]", ylabel=name, title=f"mean |error| [{UNITS[model.card['kind']]}]")
     figure.colorbar(shown)
