@@ -23,7 +23,8 @@ examples:
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
 
-MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration, and everything for all models."""
+MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration, and everything for all
+models."""
 VERBS = ("list", "show", "rules", "plot", "check")
 
 

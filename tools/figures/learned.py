@@ -72,13 +72,8 @@ def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> Non
     right.scatter(spread, np.abs(predicted - rows.targets), s=5, alpha=0.4)
     top = 1.05 * float(np.quantile(spread, 0.995))
     right.plot([0, top], [0, top], color="black", lw=1)
-    right.set(
-        xlabel=f"spread [{unit}]",
-        ylabel=f"|error| [{unit}]",
-        xlim=(0, top),
-        ylim=(0, 4 * top),
-        title="is it sure when right?",
-    )
+    right.set(xlabel=f"spread [{unit}]", ylabel=f"|error| [{unit}]", xlim=(0, top), ylim=(0, 4 * top))
+    right.set_title("is it sure when right?")
 
 
 def _learning_curve(figure: Any, card: Card) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.asking import distilled_duration, space_of
+from models.card import UNITS
 from models.examples import Examples
 from models.features import projective
-from models.card import UNITS
 from models.rules import NAMES, bounds, conditions, formula
 from models.runtime import OnnxDuration, OnnxSuccess
 
