@@ -15,14 +15,18 @@ Phase = Literal["drive", "align"]
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Steers to a point behind the goal pose that wanders into it; turns on the spot where that is not enough.
+    """Steers to a point on the goal's line that wanders from behind the goal past it; turns on the spot at last.
+
+    The point stays `look_m` ahead near the goal: steered at the goal itself, a few centimetres of noise beside it would
+    swing the robot round right where it is to face ahead.
 
     The memory is the phase: with its hysteresis noise cannot toggle driving and turning.
     """
 
     v_max_mps: float
     omega_max_radps: float
-    lead: float = 0.25  # the point to steer to lies this share of the distance behind the goal
+    lead: float = 0.25  # the point to steer to lies this share of the distance behind the goal,
+    look_m: float = 0.35  # but never nearer than this
     steer_gain: float = 2.8  # rad/s per rad of heading error
     slow_in_turns: float = 1.5  # exponent of the cosine of the heading error
     braking_mps2: float = 0.55  # what the motor board does, with a reserve
@@ -47,8 +51,8 @@ class GoToPose:
             return Control(memory, (vg, 0.0), "done")
         if self._phase(memory, distance, off) == "align":
             return Control("align", (0.0, self._turn(off)))
-        ahead = self.lead * distance
-        error = difference(math.atan2(dy - ahead * math.sin(phig), dx - ahead * math.cos(phig)), pose.phi)
+        behind = min(self.lead * distance, distance - self.look_m)
+        error = difference(math.atan2(dy - behind * math.sin(phig), dx - behind * math.cos(phig)), pose.phi)
         v_end = vg * max(0.0, math.cos(off)) ** 2  # headed wrongly, it will have to stop and turn
         return Control("drive", (self._speed(distance, error, v_end), self._steer(error)))
 

@@ -14,7 +14,6 @@ from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 from executive.domains.soccer import robot
 from executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
-from executive.domains.soccer.library import AT_BALL_MPS
 from executive.library import Action, Array
 from schemas.messages import Message, SimTruth
 from tools.trials.drive_work import wheel_work_j
@@ -44,8 +43,6 @@ class SoccerTrials:
         if dribble:
             for at, limit in ((X, DRIBBLE_X_M), (Y, DRIBBLE_Y_M), (XG, DRIBBLE_X_M), (YG, DRIBBLE_Y_M)):
                 lower[at], upper[at] = -limit, limit
-        elif action.name == "approachBall":
-            upper[VG] = AT_BALL_MPS
         while True:
             places = rng.uniform(lower, upper)
             arguments: Array = action.arguments(places[None, :])[0]
@@ -55,8 +52,8 @@ class SoccerTrials:
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
         """Start state of the body.
 
-        An approach has the ball where it would be at the goal. A dribble begins as approaches end: the ball rests where
-        the arguments put it, and the robot is still short of it, not quite facing it.
+        goToPose has no ball. An approach has it where it would be at the goal. A dribble begins as approaches end: the
+        ball rests where the arguments put it, and the robot is still short of it, not quite facing it.
         """
         x, y, phi, v, xg, yg, phig, _ = arguments.tolist()
         if action.name == "dribbleBall":
@@ -64,6 +61,8 @@ class SoccerTrials:
             ball_x, ball_y = x + robot.IN_RAIL_M * c, y + robot.IN_RAIL_M * s
             behind, aside = robot.IN_RAIL_M + rng.uniform(*SHORT_M), ASIDE_SIGMA_M * rng.standard_normal()
             x, y = ball_x - behind * c + aside * s, ball_y - behind * s - aside * c
+        elif action.name == "goToPose":
+            return {"x": x, "y": y, "phi": phi, "v": v}
         else:
             ball_x = xg + robot.BEHIND_BALL_M * math.cos(phig)
             ball_y = yg + robot.BEHIND_BALL_M * math.sin(phig)
@@ -78,11 +77,14 @@ class SoccerTrials:
             start["phi"] + BELIEF_SIGMA_RAD * off[2],
             (BELIEF_SIGMA_M**2, 0.0, 0.0, BELIEF_SIGMA_M**2, 0.0, BELIEF_SIGMA_RAD**2),
         )
+        believed = replace(unknown(), pose=pose, v=start["v"], poses_seen=FIRST_POSES)
+        if "ball_x" not in start:
+            return believed
         c, s = math.cos(start["phi"]), math.sin(start["phi"])
         dx, dy = start["ball_x"] - start["x"], start["ball_y"] - start["y"]
         sigma = min(BALL_SIGMA_M, 0.05 * math.hypot(dx, dy))
         ball = BallTrack(c * dx + s * dy + sigma * off[3], c * dy - s * dx + sigma * off[4], 0.0, 0.0, sigma**2, 0)
-        return replace(unknown(), pose=pose, v=start["v"], ball=ball, poses_seen=FIRST_POSES)
+        return replace(believed, ball=ball)
 
     def arguments_now(self, action: Action, belief: SoccerBelief, arguments: Array) -> list[float]:
         """The controller arguments with the believed state in place of the start: an example to learn from.
@@ -102,7 +104,7 @@ class SoccerTrials:
 
     def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
         """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""
-        if action.name == "dribbleBall":
+        if action.name != "approachBall":
             return ""
         moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
         return "collision" if moved > COLLIDED_M else ""

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from executive.actions.approach_ball import ApproachBall
 from executive.actions.dribble_ball import DribbleBall
 from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
@@ -20,15 +21,14 @@ FIELD_X_M = 3.5
 FIELD_Y_M = 2.25
 PASSING_MPS = 0.6  # fastest arrival that is asked of goToPose
 AT_BALL_MPS = 0.3  # what `atball` allows (paper 6.1)
-BALL_MOVED_M = (
-    0.25  # an approach is thought over when its goal has moved so far: two deviations of a ball seen from 3 m
-)
+# an approach is thought over when its goal has moved so far, two deviations of a ball seen from 3 m
+BALL_MOVED_M = 0.25
 
 
-def _places(speed_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
+def _places(start_mps: float, goal_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
     """x, y, phi, v of the first label and of the second."""
     made = []
-    for suffix, argument, tolerance in (("", 0, None), ("g", 1, ball_tolerance)):
+    for suffix, argument, speed_mps, tolerance in (("", 0, start_mps, None), ("g", 1, goal_mps, ball_tolerance)):
         made += [
             Parameter(f"x{suffix}", argument, "x", "m", -FIELD_X_M, FIELD_X_M, tolerance=tolerance),
             Parameter(f"y{suffix}", argument, "y", "m", -FIELD_Y_M, FIELD_Y_M, tolerance=tolerance),
@@ -59,17 +59,19 @@ def _shifted(values: Array, offsets: tuple[int, ...], distance: float) -> Array:
 _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), robot.IN_RAIL_M)
 
-GO_TO_POSE = Action("goToPose", _places(PASSING_MPS), _go, "goToPose/duration")
+GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPose/duration")
 APPROACH_BALL = Action(
     "approachBall",
-    _places(PASSING_MPS, BALL_MOVED_M),
-    _go,
-    "goToPose/duration",
-    "goToPose/success",
+    _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
+    ApproachBall(_go, robot.BEHIND_BALL_M, BALL_MOVED_M),
+    "approachBall/duration",
+    "approachBall/success",
     detour="goToPose",
     arguments=behind_goal,
 )
-DRIBBLE_BALL = Action("dribbleBall", _places(AT_BALL_MPS), _dribble, "dribbleBall/duration", arguments=behind_both)
+DRIBBLE_BALL = Action(
+    "dribbleBall", _places(AT_BALL_MPS, AT_BALL_MPS), _dribble, "dribbleBall/duration", arguments=behind_both
+)
 
 ACTIONS = {action.name: action for action in (GO_TO_POSE, APPROACH_BALL, DRIBBLE_BALL)}
 EXECUTABLES = {"gotopose": "goToPose", "approachball": "approachBall", "dribbleball": "dribbleBall"}

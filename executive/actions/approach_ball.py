@@ -1,0 +1,48 @@
+"""approachBall: goToPose to behind a ball, with the goal kept where the ball is seen.
+
+Robot and ball are known in the map no better than the camera localises the robot; where the ball lies before the
+robot is known far better. A goal that keeps its place in the map ends a rail's clearance beside the ball.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from executive.actions.go_to_pose import GoToPose
+from executive.actions.planar import PHIG, XG, YG, PlanarBelief
+from executive.library import Array, Control
+
+
+class BallBelief(PlanarBelief, Protocol):
+    """A belief that also knows a ball."""
+
+    @property
+    def ball_xy(self) -> tuple[float, float] | None: ...  # noqa: D102
+
+
+@dataclass(frozen=True, slots=True)
+class ApproachBall:
+    """Shifts the goal as far as the ball lies off the place that the goal implies, then goes there."""
+
+    go: GoToPose
+    behind_m: float  # from the axle to the ball where an approach ends
+    follow_m: float = 0.25  # a ball farther off has been moved: another task, for which the executive thinks again
+
+    def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
+        """See executive.library.Controller; the command is (v m/s, omega rad/s)."""
+        return self.go(memory, now_ns, belief, self._followed(arguments, belief.ball_xy))
+
+    def _followed(self, arguments: Array, ball_xy: tuple[float, float] | None) -> Array:
+        if ball_xy is None:
+            return arguments
+        heading = arguments[PHIG]
+        dx = ball_xy[0] - (arguments[XG] + self.behind_m * math.cos(heading))
+        dy = ball_xy[1] - (arguments[YG] + self.behind_m * math.sin(heading))
+        if math.hypot(dx, dy) > self.follow_m:
+            return arguments
+        goal = arguments.copy()
+        goal[XG] += dx
+        goal[YG] += dy
+        return goal
