@@ -27,7 +27,7 @@ ENCODING = "application/cdr;"
 class Tape:
     """Takes messages in the order of their reception."""
 
-    def __init__(self, path: Path, facts: Mapping[str, Mapping[str, str]]) -> None:
+    def __init__(self, path: Path, facts: Mapping[str, Mapping[str, str]], chunk_bytes: int = CHUNK_BYTES) -> None:
         """Create the file; `facts` become its first metadata records, name -> entries."""
         self.path = path
         self.messages = 0
@@ -35,7 +35,7 @@ class Tape:
         self.trouble = ""  # why the last flush failed
         self._sink = Sink(path)
         target: Any = self._sink
-        self._writer: Any = Writer(target, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer: Any = Writer(target, chunk_size=chunk_bytes, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="tailor")
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, str, str], int] = {}

@@ -6,13 +6,15 @@ The same core as live, and on the robot's side the same driver and guard as on t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from executive.budget import CheckBudget
 from executive.core.context import PERIOD_NS, Context
 from executive.core.state import Inputs, Output, State, initial_state
 from executive.core.step import step
+from executive.library import Domain
+from executive.replay import RecordedTick
 from schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
 from schemas.topics import TOPICS, key_of
 from simnodes.body import Body, Reading
@@ -22,7 +24,10 @@ from simnodes.world import Event, World
 
 CHECKS_PER_TICK = 300  # what a quiet machine grants in 60 ms, roughly
 SENDER = "00" * 16
+DRIVER = "d1" * 16  # sender of what the world's side says
 EPOCH = 1
+
+Witness = Callable[[RecordedTick, tuple[Output, ...]], None]  # of what a tick was given, and what it answered
 
 
 @dataclass(slots=True)
@@ -56,6 +61,8 @@ def run_episode(
     seed: int,
     events: Sequence[Event] = (),
     limit_s: float = 90.0,
+    checks: int = CHECKS_PER_TICK,
+    witness: Witness | None = None,
 ) -> Episode:
     """Run the scenario's goal from `start` until it is achieved, has failed, or `limit_s` of simulated time is over.
 
@@ -66,13 +73,18 @@ def run_episode(
       seed: Of the body's noise.
       events: What happens on the way.
       limit_s: Simulated seconds.
+      checks: What each tick's deliberation is granted.
+      witness: Called after each tick.
     """
-    link = _Link(context.domain.robot, World(body, start, seed, events))
+    link = _Link(context.domain, World(body, start, seed, events))
     episode, state = Episode(), initial_state(context)
     goal, samples = context.problem.goal_text, link.advance(0, episode)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        state, outputs = step(context, state, now_ns, Inputs(samples, goal), CheckBudget(CHECKS_PER_TICK))
+        inputs, budget = Inputs(samples, goal), CheckBudget(checks)
+        state, outputs = step(context, state, now_ns, inputs, budget)
+        if witness is not None:
+            witness(RecordedTick(tick, now_ns, inputs, budget.granted), outputs)
         goal = ""
         _note(episode, state, outputs, now_ns / 1e9)
         if not state.task.active:
@@ -86,9 +98,9 @@ def run_episode(
 class _Link:
     """What the bus is live: carries commands to the driver and readings back, with no delay and nothing lost."""
 
-    def __init__(self, robot: str, world: World) -> None:
-        self._robot, self._world = robot, world
-        self._declared = declaration(robot)
+    def __init__(self, domain: Domain, world: World) -> None:
+        self._robot, self._sensors, self._world = domain.robot, domain.sensors, world
+        self._declared = declaration(domain.robot)
         self._driver = Driver(self._declared, EPOCH)
         self._sequence = 0
 
@@ -113,12 +125,15 @@ class _Link:
             truth = newest.pop(topic).message
             episode.truth.append(truth)
             episode.messages.append(truth)
-        samples = [Sample(key_of(r.topic, self._robot), r.message, r.time_ns, self._sequence) for r in newest.values()]
+        samples = [self._sample(r.topic, r.message, r.time_ns) for r in newest.values() if r.topic in self._sensors]
         after_ns = now_ns + PERIOD_NS
         driver = self._driver.state(after_ns, after_ns)
         if driver is not None:
-            samples.append(Sample(key_of("driver", self._robot), driver, after_ns, self._sequence))
+            samples.append(self._sample("driver", driver, after_ns))
         return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
+
+    def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
+        return Sample(key_of(topic, self._robot), message, arrival_ns, self._sequence, DRIVER)
 
 
 def _note(episode: Episode, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
