@@ -50,10 +50,10 @@ def _value(condition: GroundCondition, values: Sequence[Value]) -> Value:
     if isinstance(condition, int):
         return values[condition]
     parts = [_value(part, values) for part in condition.parts]
-    return _sum(parts) if isinstance(condition, Every) else min(parts, default=UNREACHABLE)
+    return sum_of(parts) if isinstance(condition, Every) else min(parts, default=UNREACHABLE)
 
 
-def _sum(parts: Iterable[Value]) -> Value:
+def sum_of(parts: Iterable[Value]) -> Value:
     """Costs and work add up; for the makespan the parts run side by side."""
     cost, work, makespan = NOTHING
     for part in parts:
@@ -99,13 +99,13 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
 
 def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> None:
     """Improves what the action makes true, minimum by (cost, work)."""
-    before = _sum(_value(condition, values) for condition, _ in action.needs)
+    before = sum_of(_value(condition, values) for condition, _ in action.needs)
     if before.cost == math.inf:
         return
     for effect in action.effects:
         start = before
         if effect.conditions:
-            start = _sum([before, *(_value(condition, values) for condition, _ in effect.conditions)])
+            start = sum_of([before, *(_value(condition, values) for condition, _ in effect.conditions)])
         lasts = (action.shortest if effect.moment else 0) if action.duration_s else 1
         value = Value(start.cost + cost, start.work + 1, start.makespan + lasts)
         old = changed.get(effect.literal, values[effect.literal])

@@ -14,7 +14,6 @@ from executive.planning.ground_formula import TooMuchToGround
 from executive.planning.ground_task import make_task
 from executive.planning.grounding import GroundActions, ground_actions, shuffled, world_of
 from executive.planning.language import Domain
-from executive.planning.lifted.schema import UnsupportedLifted
 from executive.planning.lifted.space import LiftedSpace
 from executive.planning.lifted.task import lifted_task
 from executive.planning.plan import Result
@@ -73,18 +72,13 @@ class Search:
             if settings.random_open_conditions:
                 grounded = shuffled(grounded, rng)
             task = make_task(self._problem, grounded, settings.action_cost)
-        except TooMuchToGround as reason:
-            yield Result("limit", None, str(reason), 0, 0)
-            return
-        try:
             if settings.ground:
                 yield from self._explore(GroundSpace(task, grounded.world, settings, rng))
             else:
-                yield from self._explore(
-                    LiftedSpace(lifted_task(task, grounded.world, settings.action_cost), settings, rng)
-                )
-        except UnsupportedLifted as feature:
-            yield Result("unsupported", None, f"lifted planning does not support {feature}; ground planning does", 0, 0)
+                lifted = lifted_task(task, grounded.world, settings.action_cost)
+                yield from self._explore(LiftedSpace(lifted, settings, rng))
+        except TooMuchToGround as reason:
+            yield Result("limit", None, str(reason), *self.counts)
 
     def _explore(self, space: PlanSpace[P]) -> Iterator[Result | None]:
         algorithm = (

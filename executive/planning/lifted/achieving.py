@@ -3,68 +3,80 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 
 from executive.planning.cells import without
+from executive.planning.ground_formula import TooMuchToGround
 from executive.planning.lifted.bindings import Bindings, Term
+from executive.planning.lifted.effects import Guard, LiftedEffect
+from executive.planning.lifted.formula import AnyOf, LiftedLiteral, tagged
 from executive.planning.lifted.lifted_plan import (
     LiftedCondition,
     LiftedLink,
     LiftedPlan,
     LiftedThreat,
     effects_of,
+    opened,
     opposing,
     unifying,
 )
-from executive.planning.lifted.schema import LiftedEffect, LiftedLiteral, Pairs, Schema
-from executive.planning.lifted.task import LiftedTask
+from executive.planning.lifted.schema import Schema
+from executive.planning.lifted.task import Achiever, LiftedTask, Placed
 from executive.planning.orderings import INITIAL, Orderings
+
+MAX_ABSENT = 10_000  # facts that a negative condition with free variables is tried on: a tenth of a second
 
 
 def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> list[LiftedPlan]:
-    """All plans that mend the flaw: new steps by name, old steps newest first, then initial facts in their order."""
+    """All plans that mend the flaw: new steps by name, old steps newest first, then initial facts in their order.
+
+    Of a disjunction each part is one way.
+    """
     rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
-    new = (
-        child
-        for schema, effect in new_achievers(task, flaw.literal)
-        for apart in effect.apart
-        if (child := _by_new_step(task, rest, flaw, schema, effect, apart))
-    )
-    old = (
-        child
-        for step, effect in old_achievers(task, plan, flaw)
-        for apart in effect.apart
-        if (child := _by_old_step(task, rest, flaw, step, effect, apart))
-    )
+    if isinstance(flaw.condition, AnyOf):
+        parts = (opened(rest, part, flaw.first, flaw.last) for part in flaw.condition.parts)
+        return [child for child in parts if child is not None]
+    literal = flaw.condition
+    new = (_by_new_step(task, rest, flaw, literal, *found) for found in new_achievers(task, plan.bindings, literal))
+    old = (_by_old_step(task, rest, flaw, literal, found) for found in old_achievers(task, plan, flaw, literal))
     start = (
-        _linked(task, rest._replace(bindings=bindings), flaw, INITIAL, plan.orderings)
-        for bindings in initial_achievers(task, plan.bindings, flaw.literal)
+        _linked(task, rest._replace(bindings=bindings), flaw, literal, INITIAL, plan.orderings)
+        for bindings in initial_achievers(task, plan.bindings, literal)
     )
-    return [*new, *old, *start]
+    return [child for child in itertools.chain(new, old, start) if child is not None]
 
 
-def new_achievers(task: LiftedTask, literal: LiftedLiteral) -> Iterator[tuple[Schema, LiftedEffect]]:
-    """Schemata with an effect of the literal's predicate and sign."""
-    for schema in task.schemata:
-        for effect in schema.effects:
-            if effect.literal.predicate == literal.predicate and effect.literal.positive == literal.positive:
-                yield schema, effect
+def new_achievers(task: LiftedTask, bindings: Bindings, literal: LiftedLiteral) -> Iterator[Achiever]:
+    """Schemata with an effect of the literal's predicate and sign, whose fixed parameters fit."""
+    for schema, effect in task.achievers.get((literal.predicate, literal.positive), ()):
+        if not schema.fixed or _fits(schema, effect, bindings, literal):
+            yield schema, effect
 
 
-def old_achievers(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> Iterator[tuple[int, LiftedEffect]]:
-    """Steps, newest first, with an effect that may become the condition and may come before it."""
+def _fits(schema: Schema, effect: LiftedEffect, bindings: Bindings, literal: LiftedLiteral) -> bool:
+    fixed = (schema.fixed.get(str(term)) for term in effect.literal.terms)
+    return all(name is None or bindings.may_equal(term, name) for name, term in zip(fixed, literal.terms, strict=True))
+
+
+def old_achievers(
+    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral
+) -> Iterator[Placed]:
+    """Effects in the plan that may become the condition's literal and may come before it, the newest step's first."""
     late = plan.orderings.late[flaw.first]
     if flaw.first != flaw.last:
         late ^= 1 << flaw.first  # the action's own start may make true what it needs over all
-    for step in range(len(plan.steps), 0, -1):
-        for effect in effects_of(plan, step):
-            node = task.node_of(step) + effect.moment
-            if not late >> node & 1 and unifying(flaw.literal, effect.literal.of_step(step), plan.bindings):
-                yield step, effect
+    for placed in effects_of(task, plan):
+        if not late >> placed.node & 1 and unifying(literal, placed.literal, plan.bindings):
+            yield placed
 
 
 def initial_achievers(task: LiftedTask, bindings: Bindings, literal: LiftedLiteral) -> Iterator[Bindings]:
-    """The bindings with which a literal holds in the initial state; for a negative one by closed world."""
+    """The bindings with which a literal holds in the initial state; for a negative one by closed world.
+
+    Raises:
+      TooMuchToGround: A negative literal has more than MAX_ABSENT instances.
+    """
     facts = task.initial.get(literal.predicate, ())
     if literal.positive:
         for fact in facts:
@@ -73,7 +85,10 @@ def initial_achievers(task: LiftedTask, bindings: Bindings, literal: LiftedLiter
                 yield bound
         return
     absent = set(facts)
-    for names in itertools.product(*(_objects(task, bindings, term) for term in literal.terms)):
+    objects = [_objects(task, bindings, term) for term in literal.terms]
+    if math.prod(len(names) for names in objects) > MAX_ABSENT:
+        raise TooMuchToGround(f"'not {literal.predicate}' has more than {MAX_ABSENT} instances")
+    for names in itertools.product(*objects):
         if (literal.predicate, *names) not in absent:
             bound = bindings.unified(zip(literal.terms, names, strict=True))
             if bound is not None:
@@ -89,97 +104,117 @@ def _objects(task: LiftedTask, bindings: Bindings, term: Term) -> tuple[str, ...
 
 # --- the ways ------------------------------------------------------------------------------------
 def _by_new_step(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, schema: Schema, effect: LiftedEffect, apart: Pairs
+    task: LiftedTask,
+    plan: LiftedPlan,
+    flaw: LiftedCondition,
+    literal: LiftedLiteral,
+    schema: Schema,
+    effect: LiftedEffect,
 ) -> LiftedPlan | None:
     step = len(plan.steps) + 1
     node = len(plan.orderings.late)
     bindings = _bound(task, plan.bindings, schema, step)
-    bindings = bindings and _achieving(bindings, effect, apart, step, flaw.literal)
+    bindings = bindings and _achieving(bindings, effect, step, literal)
     orderings = plan.orderings.with_step(schema, effect.moment, flaw.first)
     if bindings is None or orderings is None:
         return None
-    cell = plan.open
-    for literal, (first, last) in reversed(schema.conditions):
-        cell = LiftedCondition(literal.of_step(step), node + first, node + last, cell)
-    grown = plan._replace(
+    grown = _guarded(plan._replace(bindings=bindings), effect.guards, step, node)
+    if grown is None:
+        return None
+    cell = grown.open
+    for condition, (first, last) in reversed(schema.conditions):
+        part = condition.of_step(step)
+        assert isinstance(part, LiftedLiteral | AnyOf)
+        cell = LiftedCondition(part, node + first, node + last, cell)
+    grown = grown._replace(
         steps=(*plan.steps, schema),
-        bindings=bindings,
         open=cell,
-        open_count=plan.open_count + len(schema.conditions),
-        cost=plan.cost + task.costs[schema.name],
+        open_count=grown.open_count + len(schema.conditions),
+        cost=plan.cost + task.costs[schema],
     )
-    child = _linked(task, grown, flaw, node + effect.moment, orderings)
-    return _with_threats_by(task, child, step, plan.links)
+    child = _linked(task, grown, flaw, literal, node + effect.moment, orderings)
+    return _with_threats_by(task, child, task.effects_of(schema, step), plan.links)
 
 
 def _bound(task: LiftedTask, bindings: Bindings, schema: Schema, step: int) -> Bindings | None:
     """The bindings with the variables of a new step and what the schema says of them."""
-    choices = {(p.name, step): task.world.choices(p) for p in schema.parameters}
+    choices = {(p.name, step): task.world.choices(p) for p in (*schema.parameters, *schema.variables)}
+    if not all(choices.values()):
+        return None
     bound: Bindings | None = bindings.with_variables(choices)
     for left, right, same in schema.equalities:
-        a, b = _tagged(left, step), _tagged(right, step)
-        bound = bound and (bound.unified([(a, b)]) if same else bound.separated(a, b))
+        bound = bound and bound.equated(tagged(left, step), tagged(right, step), same)
+    for name, value in schema.fixed.items():
+        bound = bound and bound.equated((name, step), value, True)
     return bound
 
 
-def _tagged(name: str, step: int) -> Term:
-    return (name, step) if name[0] == "?" else name
-
-
-def _achieving(
-    bindings: Bindings, effect: LiftedEffect, apart: Pairs, step: int, literal: LiftedLiteral
-) -> Bindings | None:
-    """The bindings with which an effect becomes a literal, and neither a no-op nor undone."""
+def _achieving(bindings: Bindings, effect: LiftedEffect, step: int, literal: LiftedLiteral) -> Bindings | None:
+    """The bindings with which an effect becomes a literal, and is no no-op."""
     terms = effect.literal.of_step(step).terms
     bound = bindings.unified(zip(terms, literal.terms, strict=True))
-    for left, right in apart:
-        bound = bound and bound.separated(_tagged(left, step), _tagged(right, step))
+    for left, right in effect.apart:
+        bound = bound and bound.separated(tagged(left, step), tagged(right, step))
     return bound
+
+
+def _guarded(plan: LiftedPlan, guards: tuple[Guard, ...], step: int, node: int) -> LiftedPlan | None:
+    """The plan with an effect's guards as open conditions of its step, whose first node is given."""
+    grown: LiftedPlan | None = plan
+    for guard in reversed(guards):
+        first, last = guard.span
+        grown = grown and opened(grown, guard.holds.of_step(step), node + first, node + last)
+    return grown
 
 
 def _by_old_step(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, step: int, effect: LiftedEffect, apart: Pairs
+    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral, placed: Placed
 ) -> LiftedPlan | None:
-    node = task.node_of(step) + effect.moment
+    node, step, _, effect = placed
     orderings = plan.orderings if node == flaw.first else plan.orderings.ordered(node, flaw.first)
-    bindings = _achieving(plan.bindings, effect, apart, step, flaw.literal)
+    bindings = _achieving(plan.bindings, effect, step, literal)
     if orderings is None or bindings is None:
         return None
-    return _linked(task, plan._replace(bindings=bindings), flaw, node, orderings)
+    grown = _guarded(plan._replace(bindings=bindings), effect.guards, step, node - effect.moment)
+    return grown and _linked(task, grown, flaw, literal, node, orderings)
 
 
 # --- links and threats ---------------------------------------------------------------------------
 def _linked(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, producer: int, orderings: Orderings
+    task: LiftedTask,
+    plan: LiftedPlan,
+    flaw: LiftedCondition,
+    literal: LiftedLiteral,
+    producer: int,
+    orderings: Orderings,
 ) -> LiftedPlan:
     """The plan with one more link, and the threats to it: newest step first, so that the oldest ends at the head."""
-    link = LiftedLink(producer, flaw.literal, flaw.first, flaw.last, plan.links)
+    link = LiftedLink(producer, literal, flaw.first, flaw.last, plan.links)
     grown = plan._replace(orderings=orderings, links=link)
-    if flaw.literal.predicate in task.world.static:
+    if literal.predicate in task.world.static:
         return grown
-    for step in range(len(plan.steps), 0, -1):
-        grown = _threatened(task, grown, step, link)
-    return grown
+    return _threatened(task, grown, effects_of(task, grown), link)
 
 
-def _with_threats_by(task: LiftedTask, plan: LiftedPlan, step: int, links: LiftedLink | None) -> LiftedPlan:
+def _with_threats_by(
+    task: LiftedTask, plan: LiftedPlan, effects: tuple[Placed, ...], links: LiftedLink | None
+) -> LiftedPlan:
     while links is not None:
         if links.literal.predicate not in task.world.static:
-            plan = _threatened(task, plan, step, links)
+            plan = _threatened(task, plan, effects, links)
         links = links.rest
     return plan
 
 
-def _threatened(task: LiftedTask, plan: LiftedPlan, step: int, link: LiftedLink) -> LiftedPlan:
-    """The plan with the threats of one step to one link."""
-    for effect in effects_of(plan, step):
-        literal = effect.literal.of_step(step)
-        node = task.node_of(step) + effect.moment
-        if opposing(link.literal, literal, plan.bindings):
-            threat = LiftedThreat(link, node, literal, plan.threats)
+def _threatened(task: LiftedTask, plan: LiftedPlan, effects: Iterable[Placed], link: LiftedLink) -> LiftedPlan:
+    """The plan with the threats of some effects to one link."""
+    cell, count = plan.threats, plan.threat_count
+    for placed in effects:
+        if opposing(link.literal, placed.literal, plan.bindings):
+            threat = LiftedThreat(link, placed.node, placed.literal, placed.effect.guards, cell)
             if is_threat(task, plan, threat):
-                plan = plan._replace(threats=threat, threat_count=plan.threat_count + 1)
-    return plan
+                cell, count = threat, count + 1
+    return plan._replace(threats=cell, threat_count=count)
 
 
 def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
@@ -192,10 +227,15 @@ def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
     if not opposing(link.literal, threat.effect, plan.bindings):
         return False
     step = task.step_of(node)
-    return threat.effect.positive or not any(
-        effect.literal.positive
-        and task.node_of(step) + effect.moment == node
-        and effect.literal.predicate == link.literal.predicate
-        and not plan.bindings.differing(zip(effect.literal.of_step(step).terms, link.literal.terms, strict=True))
-        for effect in effects_of(plan, step)
+    return (
+        threat.effect.positive
+        or step == 0
+        or not any(
+            placed.node == node
+            and placed.literal.positive
+            and not placed.effect.guards
+            and placed.literal.predicate == link.literal.predicate
+            and not plan.bindings.differing(zip(placed.literal.terms, link.literal.terms, strict=True))
+            for placed in task.effects_of(plan.steps[step - 1], step)
+        )
     )

@@ -99,6 +99,10 @@ class Bindings:
         other = both._groups[b]
         return both._changed(replace(other, apart=(*other.apart, a)))
 
+    def equated(self, a: Term, b: Term, same: bool) -> Bindings | None:
+        """The bindings with two terms the same, or not; None when that cannot be."""
+        return self.unified([(a, b)]) if same else self.separated(a, b)
+
     def _joined(self, a: Term, b: Term) -> Bindings | None:
         if isinstance(a, str):
             a, b = b, a

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from executive.planning.lifted.bindings import Bindings
-from executive.planning.lifted.schema import LiftedEffect, LiftedLiteral, Schema
-from executive.planning.lifted.task import LiftedTask
+from executive.planning.lifted.effects import Guard
+from executive.planning.lifted.formula import FALSE, AnyOf, Equality, LiftedFormula, LiftedLiteral, conjuncts
+from executive.planning.lifted.schema import Schema
+from executive.planning.lifted.task import LiftedTask, Placed
 from executive.planning.orderings import GOAL, Closure, Orderings
+from executive.planning.partial_plan import GOAL_STEP
 from executive.planning.temporal_network import TemporalNetwork
 
 
@@ -22,20 +26,24 @@ class LiftedLink(NamedTuple):
 
 
 class LiftedCondition(NamedTuple):
-    """An open condition; see `partial_plan.OpenCondition`."""
+    """An open condition: a literal or a disjunction; see `partial_plan.OpenCondition`."""
 
-    literal: LiftedLiteral
+    condition: LiftedLiteral | AnyOf
     first: int
     last: int
     rest: LiftedCondition | None
 
 
 class LiftedThreat(NamedTuple):
-    """An effect at `node` that may become the opposite of a link's literal, and may fall into the link."""
+    """An effect at `node` that may become the opposite of a link's literal, and may fall into the link.
+
+    `guards` are the effect's, as its schema has them.
+    """
 
     link: LiftedLink
     node: int
     effect: LiftedLiteral
+    guards: tuple[Guard, ...]
     rest: LiftedThreat | None
 
 
@@ -55,16 +63,36 @@ class LiftedPlan(NamedTuple):
 
 def initial_plan(task: LiftedTask) -> LiftedPlan:
     """The plan without steps whose open conditions are the goal, the first at the head."""
-    orderings: Orderings = TemporalNetwork.start(()) if task.moments == 2 else Closure()
-    cell: LiftedCondition | None = None
-    for literal in reversed(task.goal):
-        cell = LiftedCondition(literal, GOAL, GOAL, cell)
-    return LiftedPlan((), orderings, Bindings(), None, cell, None, len(task.goal), 0, 0)
+    ticks = tuple(tick for _, tick in task.ground.timed)
+    orderings: Orderings = TemporalNetwork.start(ticks) if task.moments == 2 else Closure()
+    choices = {(v.name, GOAL_STEP): task.world.choices(v) for v in task.goal_variables}
+    empty = LiftedPlan((), orderings, Bindings().with_variables(choices), None, None, None, 0, 0, 0)
+    plan = opened(empty, task.goal.of_step(GOAL_STEP), GOAL, GOAL)
+    return plan or empty._replace(open=LiftedCondition(FALSE, GOAL, GOAL, None), open_count=1)
 
 
-def effects_of(plan: LiftedPlan, step: int) -> tuple[LiftedEffect, ...]:
-    """The effects of a step's schema; instantiate literals with `of_step`."""
-    return plan.steps[step - 1].effects
+def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> LiftedPlan | None:
+    """The plan with a formula's parts as its newest open conditions, the first at the head.
+
+    An equality binds at once: None when that contradicts.
+    """
+    cell, count, bindings = plan.open, plan.open_count, plan.bindings
+    for part in reversed(conjuncts(formula)):
+        if isinstance(part, Equality):
+            bound = bindings.equated(*part)
+            if bound is None:
+                return None
+            bindings = bound
+        elif isinstance(part, LiftedLiteral | AnyOf):
+            cell, count = LiftedCondition(part, first, last, cell), count + 1
+    return plan._replace(open=cell, open_count=count, bindings=bindings)
+
+
+def effects_of(task: LiftedTask, plan: LiftedPlan) -> Iterator[Placed]:
+    """All effects in a plan: those of the newest step first, those of timed literals last."""
+    for step in range(len(plan.steps), 0, -1):
+        yield from task.effects_of(plan.steps[step - 1], step)
+    yield from reversed(task.timed)
 
 
 def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
@@ -78,4 +106,8 @@ def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) 
 
 def opposing(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
     """Whether an effect may become the opposite of a literal."""
-    return unifying(literal, effect._replace(positive=not effect.positive), bindings)
+    return (
+        literal.predicate == effect.predicate
+        and literal.positive != effect.positive
+        and bindings.may_unify(zip(effect.terms, literal.terms, strict=True))
+    )

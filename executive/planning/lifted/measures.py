@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from executive.planning.additive_heuristic import Value
+from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
 from executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
+from executive.planning.lifted.bindings import Bindings
+from executive.planning.lifted.formula import AllOf, AnyOf, Equality, LiftedFormula, LiftedLiteral
 from executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
 from executive.planning.lifted.resolving import choices, separations
 from executive.planning.lifted.task import LiftedTask
@@ -36,32 +38,33 @@ class LiftedMeasures:
 
     def separable(self, plan: LiftedPlan, threat: LiftedThreat) -> bool:
         """See `FlawMeasures`."""
-        return any(True for _ in separations(plan, threat))
+        return any(True for _ in separations(self._task, plan, threat))
 
     def step(self, condition: LiftedCondition) -> int:
         """See `FlawMeasures`."""
         return self._task.step_of(condition.first)
 
     def static(self, condition: LiftedCondition) -> bool:
-        """See `FlawMeasures`."""
-        return condition.literal.predicate in self._task.world.static
+        """See `FlawMeasures`; a disjunction never is."""
+        literal = condition.condition
+        return isinstance(literal, LiftedLiteral) and literal.predicate in self._task.world.static
 
     def unsafe(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
-        """See `FlawMeasures`."""
-        late = plan.orderings.late[condition.last]
-        for step in range(1, len(plan.steps) + 1):
-            for effect in effects_of(plan, step):
-                node = self._task.node_of(step) + effect.moment
-                before = node != condition.first and not late >> node & 1
-                if before and opposing(condition.literal, effect.literal.of_step(step), plan.bindings):
-                    return True
-        return False
+        """See `FlawMeasures`; a disjunction never is."""
+        late, literal = plan.orderings.late[condition.last], condition.condition
+        return isinstance(literal, LiftedLiteral) and any(
+            node != condition.first and not late >> node & 1 and opposing(literal, effect, plan.bindings)
+            for node, _, effect, _ in effects_of(self._task, plan)
+        )
 
     def condition_choices(self, plan: LiftedPlan, condition: LiftedCondition) -> int:
         """See `FlawMeasures`."""
-        new = sum(1 for _ in new_achievers(self._task, condition.literal))
-        old = sum(1 for _ in old_achievers(self._task, plan, condition))
-        return new + old + sum(1 for _ in initial_achievers(self._task, plan.bindings, condition.literal))
+        literal = condition.condition
+        if not isinstance(literal, LiftedLiteral):
+            return len(literal.parts)
+        new = sum(1 for _ in new_achievers(self._task, plan.bindings, literal))
+        old = sum(1 for _ in old_achievers(self._task, plan, condition, literal))
+        return new + old + sum(1 for _ in initial_achievers(self._task, plan.bindings, literal))
 
     def threat_choices(self, plan: LiftedPlan, threat: LiftedThreat) -> int:
         """See `FlawMeasures`."""
@@ -69,15 +72,33 @@ class LiftedMeasures:
 
     def by_new_step(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`."""
-        return any(True for _ in new_achievers(self._task, condition.literal))
+        literal = condition.condition
+        return isinstance(literal, LiftedLiteral) and any(
+            True for _ in new_achievers(self._task, plan.bindings, literal)
+        )
 
     def value(self, plan: LiftedPlan, condition: LiftedCondition) -> Value:
         """See `FlawMeasures`."""
-        return self._task.value(condition.literal, plan.bindings)
+        return self._value(condition.condition, plan.bindings)
+
+    def _value(self, formula: LiftedFormula, bindings: Bindings) -> Value:
+        match formula:
+            case LiftedLiteral(predicate, terms, positive):
+                return self._task.value(predicate, positive, tuple(bindings.value(term) for term in terms))
+            case Equality(left, right, same):
+                possible = bindings.may_equal(left, right) if same else not bindings.same(left, right)
+                return NOTHING if possible else UNREACHABLE
+            case AllOf(parts):
+                return sum_of(self._value(part, bindings) for part in parts)
+            case AnyOf(parts):
+                return min((self._value(part, bindings) for part in parts), default=UNREACHABLE)
 
     def provided(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`."""
-        return any(True for _ in old_achievers(self._task, plan, condition))
+        literal = condition.condition
+        return isinstance(literal, LiftedLiteral) and any(
+            True for _ in old_achievers(self._task, plan, condition, literal)
+        )
 
     # --- rankings --------------------------------------------------------------------------------
     def plain(self, plan: LiftedPlan) -> Estimate:

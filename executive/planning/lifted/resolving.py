@@ -1,4 +1,4 @@
-"""Refining a lifted threat: separation by bindings, promotion, demotion."""
+"""Refining a lifted threat: separation by bindings or by a condition that fails, promotion, demotion."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from executive.planning.cells import without
 from executive.planning.lifted.achieving import is_threat
-from executive.planning.lifted.bindings import Bindings
-from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat
+from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat, opened
 from executive.planning.lifted.task import LiftedTask
 
 
@@ -16,7 +15,7 @@ def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> l
     rest = plan._replace(threats=without(plan.threats, threat), threat_count=plan.threat_count - 1)
     if not is_threat(task, plan, threat):
         return [rest]
-    children = [rest._replace(bindings=bindings) for bindings in separations(plan, threat)]
+    children = list(separations(task, rest, threat))
     for before, after in ((threat.link.last, threat.node), (threat.node, threat.link.producer)):
         orderings = plan.orderings.ordered(before, after)
         if orderings is not None:
@@ -24,12 +23,18 @@ def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> l
     return children
 
 
-def separations(plan: LiftedPlan, threat: LiftedThreat) -> Iterator[Bindings]:
-    """Bindings that keep the effect from touching the link: one pair of terms differs."""
+def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Iterator[LiftedPlan]:
+    """The plan where the effect never touches the link: a pair of terms differs, or a guard of the effect fails."""
     for a, b in plan.bindings.differing(zip(threat.effect.terms, threat.link.literal.terms, strict=True)):
         bindings = plan.bindings.separated(a, b)
         if bindings is not None:
-            yield bindings
+            yield plan._replace(bindings=bindings)
+    step = task.step_of(threat.node)
+    for guard in threat.guards:
+        first, last = (task.node_of(step) + moment for moment in guard.span)
+        child = opened(plan, guard.fails.of_step(step), first, last)
+        if child is not None:
+            yield child
 
 
 def choices(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
@@ -39,4 +44,4 @@ def choices(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
     late, link, node = plan.orderings.late, threat.link, threat.node
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1
-    return promotion + demotion + sum(1 for _ in separations(plan, threat))
+    return promotion + demotion + sum(1 for _ in separations(task, plan, threat))

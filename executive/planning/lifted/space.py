@@ -12,10 +12,10 @@ from executive.planning.flaw_selection import FlawSelection
 from executive.planning.language import Literal
 from executive.planning.lifted.achieving import refine_condition
 from executive.planning.lifted.bindings import Bindings
+from executive.planning.lifted.formula import LiftedLiteral
 from executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
 from executive.planning.lifted.measures import LiftedMeasures
 from executive.planning.lifted.resolving import refine_threat
-from executive.planning.lifted.schema import LiftedLiteral
 from executive.planning.lifted.task import LiftedTask
 from executive.planning.plan import Link, Plan
 from executive.planning.ranking import Ranking
