@@ -21,6 +21,8 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
     "benefit": ("tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
+    "figure1": ("tools.evaluations.figure1", "paths, greedy and refined, and how smooth actions pass over"),
+    "figure11": ("tools.evaluations.figure11", "durations over the angle of approach, predicted and simulated"),
     "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
 }
 ALL = "all"

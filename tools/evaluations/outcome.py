@@ -9,16 +9,15 @@ from executive.refinement.settings import RefinementSettings
 from schemas.messages import RefinementReport, SimTruth, Subgoals
 from tools.episodes import Episode
 
-PERIOD_NS = 100_000_000  # of the truth in an episode
-
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One way to run an episode. `pins` forces choices: (label, quantity, value)."""
+    """One way to run an episode. `pins` forces choices: (label, quantity, value); `noise` draws other noise."""
 
     name: str
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
     pins: tuple[tuple[str, str, float], ...] = ()
+    noise: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +55,7 @@ class Outcome:
     bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value
     greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
     refined_cost_s: float = float("nan")
+    foreseen: tuple[tuple[str, bool, float], ...] = ()  # first choice: action, whether a detour, predicted seconds
 
 
 def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
@@ -77,7 +77,13 @@ def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Out
         free,
         bound,
         *_costs_s(episode),
+        _foreseen(episode),
     )
+
+
+def _foreseen(episode: Episode) -> tuple[tuple[str, bool, float], ...]:
+    actions = episode.subgoals[0].actions if episode.subgoals else ()
+    return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
 
 
 def _costs_s(episode: Episode) -> tuple[float, float]:
@@ -109,8 +115,8 @@ def _ball_moved_m(episode: Episode) -> float:
     ended_ns = [action.stamp_ns for action in episode.finished if action.action == "approachBall"]
     if not ended_ns or not episode.truth:
         return 0.0
-    until = episode.truth[: max(1, ended_ns[0] // PERIOD_NS)]
-    return max(_apart_m(episode.truth[0], truth) for truth in until)
+    first, *later = episode.truth
+    return max((_apart_m(first, truth) for truth in later if truth.stamp_ns <= ended_ns[0]), default=0.0)
 
 
 def _apart_m(first: SimTruth, second: SimTruth) -> float:

@@ -16,6 +16,7 @@ from rich.table import Table
 from tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]
+WIDE = 9  # columns that still fit a screen
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,23 +38,24 @@ def configure_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),
                         help="keep finished episodes there, to go on after a break (default %(default)s)")  # fmt: skip
     parser.add_argument("--zoo", default="", help="folder of action models (default: those that ship)")
+    parser.add_argument("--domain", default="", help="only where the evaluation is of that domain, e.g. soccer")
 
 
 def tell(report: Report, as_json: bool, folder: Path | None) -> None:
     """Print the report, and write its page when a folder is given."""
+    said = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
+    text = json.dumps({**said, "remarks": list(report.remarks)}, indent=1)
     if as_json:
-        said = {"name": report.name, "rows": [_plain(row) for row in report.rows], "remarks": list(report.remarks)}
-        print(json.dumps(said, indent=1))
+        print(text)
     else:
         _print(report)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        columns = _columns(report.rows)
-        cells = [[shown(row.get(column, "")) for column in columns] for row in report.rows]
-        body = [table(report.title, columns, cells)]
+        body = [table(report.title, *_tabled(report.rows))]
         body += [f"<p>{remark}</p>" for remark in report.remarks]
         body += [image(path, description) for description, path in report.plots.items()]
         (folder / f"{report.name}.html").write_text(page(report.title, body))
+        (folder / f"{report.name}.json").write_text(text + "\n")  # last: where it is, the page is whole
 
 
 def shown(value: object) -> str:
@@ -70,18 +72,23 @@ def shown(value: object) -> str:
 def _print(report: Report) -> None:
     console = Console()
     made = Table(title=report.title)
-    columns = _columns(report.rows)
-    for column in columns:
-        made.add_column(column, justify="left" if column == columns[0] else "right")
-    for row in report.rows:
-        made.add_row(*(shown(row.get(column, "")) for column in columns))
+    head, cells = _tabled(report.rows)
+    for column in head:
+        made.add_column(column, justify="left" if column == head[0] else "right")
+    for row in cells:
+        made.add_row(*row)
     console.print(made)
     for remark in report.remarks:
         console.print(remark, highlight=False)
 
 
-def _columns(rows: Sequence[Row]) -> list[str]:
-    return list(dict.fromkeys(column for row in rows for column in row))
+def _tabled(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
+    """Head and cells. Rows of many figures stand side by side instead, a figure a line: no screen is so wide."""
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    lines = [columns, *([shown(row.get(column, "")) for column in columns] for row in rows)]
+    if len(columns) > WIDE and len(columns) > len(rows):
+        lines = [list(line) for line in zip(*lines, strict=True)]
+    return lines[0], lines[1:]
 
 
 def _plain(row: Row) -> dict[str, Any]:

@@ -5,6 +5,7 @@ An episode is fixed by scenario, seed and variant, so a broken-off evaluation go
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -19,13 +20,16 @@ from executive import domains
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
 from models.runtime import load_robot
-from tools.episodes import SENDER, run_episode
+from tools.episodes import SENDER, Episode, run_episode
 from tools.evaluations.bodies import body_of
 from tools.evaluations.journal import Journal
 from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tools.evaluations.pinned import PinnedDomain
 
 PIN_STREAM = 4
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = ("executive", "simnodes")
+SUFFIXES = (".py", ".pddl", ".toml", ".xml")
 
 
 def run_all(
@@ -44,7 +48,7 @@ def run_all(
       title: Shown beside the progress bar.
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
-    hashes = _model_hashes(task)
+    hashes = made_of(task)
     journals = {variant.name: Journal(store, task, variant, hashes) for variant in variants}
     wanted = []
     for seed in seeds:
@@ -67,9 +71,17 @@ def run_all(
 
 def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
     """One episode, in lock-step with the same core as live."""
-    context, start = _context(task, variant, seed)
-    episode = run_episode(context, body_of(task.domain, task.profile), start, seed)
+    episode, context = run_episode_of(task, variant, seed)
     return outcome_of(episode, context.domain, variant.name, seed)
+
+
+def run_episode_of(task: Task, variant: Variant, seed: int) -> tuple[Episode, Context]:
+    """One episode with all that was said in it, and the context that it ran in.
+
+    The variant's `noise` is added to the seed of the body's noise alone: the same start, other luck.
+    """
+    context, start = _context(task, variant, seed)
+    return run_episode(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
 
 
 def paired(first: dict[int, Outcome], second: dict[int, Outcome]) -> tuple[list[float], list[float]]:
@@ -98,6 +110,17 @@ def _models(robot: str, zoo: str) -> Models:
     return Models(*load_robot(robot, Path(zoo) if zoo else None))
 
 
-def _model_hashes(task: Task) -> list[str]:
+def made_of(task: Task) -> list[str]:
+    """What an episode depends on beside task, variant and seed: hashes of models and of mind's and body's source."""
     models = _models(domains.load(task.domain).robot, task.zoo)
-    return sorted(model.card["sha256"] for model in [*models.durations.values(), *models.successes.values()])  # type: ignore[attr-defined]
+    cards = [model.card["sha256"] for model in [*models.durations.values(), *models.successes.values()]]  # type: ignore[attr-defined]
+    return [*sorted(cards), source_sha256()]
+
+
+@lru_cache(maxsize=1)
+def source_sha256() -> str:
+    """SHA-256 over the source of mind and body: episodes of older code are not mixed with new ones."""
+    digest = hashlib.sha256()
+    for path in sorted(path for name in SOURCES for path in (ROOT / name).rglob("*") if path.suffix in SUFFIXES):
+        digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()

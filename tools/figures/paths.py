@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from tools.figures.track import Point, Track
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
+SCALE_MPS = 0.5
 BALL_RADIUS_M = 0.11
 
 
@@ -22,16 +24,30 @@ def draw_paths(tracks: list[Track], path: Path) -> None:
     """Draw the runs side by side, to the same scale, into a PNG."""
     figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained")
     axes = figure.subplots(1, len(tracks), squeeze=False)[0]
-    limits = _limits(tracks)
-    for axis, track in zip(axes, tracks, strict=True):
-        _draw(axis, track)
-        axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x (m)", ylabel="y (m)")
-        axis.grid(alpha=0.25)
+    draw_side_by_side(axes, tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=130)
 
 
-def _draw(axis: Any, track: Track) -> None:
+def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
+    """One run an axis, all to one scale, with a mark of what width is what speed on the first."""
+    limits = _limits(tracks)
+    for axis, track in zip(axes, tracks, strict=True):
+        draw_path(axis, track)
+        axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x (m)", ylabel="y (m)")
+        axis.grid(alpha=0.25)
+    _draw_scale(axes[0], limits)
+
+
+def _draw_scale(axis: Any, limits: tuple[tuple[float, float], tuple[float, float]]) -> None:
+    """How wide a line of SCALE_MPS is."""
+    x, y = limits[0][0] + 0.1, limits[1][0] + 0.1
+    axis.plot([x, x + 2 * HALF_WIDTH_PER_SPEED_S * SCALE_MPS], [y, y], color="black", linewidth=1.4)
+    axis.text(x, y + 0.04, f"{SCALE_MPS} m/s", fontsize="x-small")
+
+
+def draw_path(axis: Any, track: Track) -> None:
+    """One run: lines across the heading, ball, subgoals, and a legend with the actions' durations."""
     names = []
     for number in sorted({point.action for point in track.points}):
         points = [point for point in track.points if point.action == number]
@@ -93,7 +109,7 @@ def _executed(track: Track) -> list[InstantiatedAction]:
     return list(latest.values())
 
 
-def _limits(tracks: list[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
+def _limits(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Common limits with a margin, metres; a unit square when nothing moved."""
     points = [point for track in tracks for point in track.points]
     goals = [{p.name: p.value for p in action.parameters} for track in tracks for action in _executed(track)]

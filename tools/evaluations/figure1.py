@@ -1,0 +1,109 @@
+"""The paper's Figure 1: the same actions from the same start, greedy and refined, drawn; and how smooth they pass over.
+
+Between approach and dribble the greedy robot stops and turns around the ball; the refined one keeps rolling.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from executive.refinement.settings import RefinementSettings
+from tools.evaluations.comparison import compare
+from tools.evaluations.outcome import Task, Variant
+from tools.evaluations.report import Report, configure_report, tell
+from tools.evaluations.watched import FIRST_SEED, Watched, watch_all
+from tools.figures.paths import draw_paths
+from tools.figures.track import Track
+
+MODES = (("greedy", 1), ("refined", 2))  # the paper's h
+SLOW_MPS = 0.1  # below it the robot stands, turns on the spot, or shuffles
+Found = Mapping[tuple[str, int], Watched]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate figure1`."""
+    parser.add_argument("--episodes", type=int, default=60, help="starts that the figures are of (default %(default)s)")
+    parser.add_argument("--drawn", type=int, default=3, help="of them, the first so many are drawn")
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run, draw and tell; 0 when refined runs lose less time standing than greedy ones."""
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    task = Task("soccer", "approach-dribble", "", arguments.zoo)
+    variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]
+    found = watch_all(task, variants, seeds, arguments.jobs, "figure 1")
+    rows = [_row(name, horizon, found, seeds) for name, horizon in MODES]
+    rows += [_example(name, horizon, found[name, s]) for s in seeds[: arguments.drawn] for name, horizon in MODES]
+    plots = {} if arguments.report is None else _draw(found, seeds[: arguments.drawn], arguments.report)
+    remarks = [
+        f"Drawn: the first {arguments.drawn} starts of the evaluation, not picked. Lines stand across the robot's "
+        "heading, ten a second; their width is its speed. Disc: ball at the start; circle: at the end; + subgoal that "
+        "was free to choose; * target.",
+        f"slow_s: how long the robot was slower than {SLOW_MPS} m/s between its start and the end",
+    ]
+    tell(
+        Report("figure1", "Figure 1: greedy and refined", rows, remarks, plots),
+        arguments.json,
+        arguments.report,
+    )
+    return 0 if rows[1]["slow_s"] < rows[0]["slow_s"] else 1
+
+
+def _row(name: str, horizon: int, found: Found, seeds: Sequence[int]) -> dict[str, Any]:
+    """Means over the starts from which both reached the goal."""
+    both = [seed for seed in seeds if all(found[mode, seed].outcome.achieved for mode, _ in MODES)]
+    greedy_s, these_s = ([found[mode, seed].outcome.duration_s for seed in both] for mode in ("greedy", name))
+    return {
+        "run": name,
+        "horizon": horizon,
+        "n": len(both),
+        "duration_s": float(np.mean(these_s)),
+        "improvement_pct": compare(greedy_s, these_s).improvement_pct if len(both) > 1 else float("nan"),
+        "slow_s": float(np.mean([slow_s(found[name, seed].track) for seed in both])),
+        "speed_at_ball_mps": float(np.mean([handover_mps(found[name, seed].track) for seed in both])),
+    }
+
+
+def _example(name: str, horizon: int, watched: Watched) -> dict[str, Any]:
+    outcome = watched.outcome
+    return {
+        "run": f"{name}, seed {outcome.seed}",
+        "horizon": horizon,
+        "n": 1,
+        "duration_s": outcome.duration_s,
+        "slow_s": slow_s(watched.track),
+        "speed_at_ball_mps": handover_mps(watched.track),
+        "actions": outcome.actions,
+        "actual_s": outcome.actual_s,
+        "predicted_s": outcome.predicted_s,
+    }
+
+
+def slow_s(track: Track) -> float:
+    """Seconds, between first and last action, in which the robot hardly moved."""
+    times = np.array([point.time_s for point in track.points])
+    speeds = np.array([abs(point.v) for point in track.points])
+    return float(np.sum(np.diff(times)[speeds[1:] < SLOW_MPS])) if len(times) > 1 else 0.0
+
+
+def handover_mps(track: Track) -> float:
+    """Speed where the dribble took over from what came before; NaN without a dribble."""
+    speeds = [abs(point.v) for point in track.points if point.name == "dribbleBall"]
+    return speeds[0] if speeds else float("nan")
+
+
+def _draw(found: Found, seeds: Sequence[int], folder: Path) -> dict[str, Path]:
+    plots = {}
+    for seed in seeds:
+        path = folder / f"figure1-{seed}.png"
+        tracks = [replace(found[name, seed].track, title=f"{name} (h = {horizon})") for name, horizon in MODES]
+        draw_paths(tracks, path)
+        plots[f"paths, greedy and refined, start {seed}"] = path
+    return plots

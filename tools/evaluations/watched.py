@@ -1,0 +1,50 @@
+"""Episodes watched closely, for figures that draw what happened: the track, what was said, and the outcome."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from joblib import Parallel, delayed
+from rich.progress import track
+
+from executive.core.context import Context
+from schemas.messages import Message, Subgoals
+from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tools.evaluations.trials import run_episode_of
+from tools.figures.track import Track, track_of
+
+FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """One episode: what came of it, its path, and the choices in the order in which they were made."""
+
+    outcome: Outcome
+    track: Track
+    subgoals: tuple[Subgoals, ...]
+
+
+def watch(task: Task, variant: Variant, seed: int) -> tuple[Watched, Context]:
+    """Run an episode and keep what figures are drawn from."""
+    episode, context = run_episode_of(task, variant, seed)
+    messages: Sequence[Message] = episode.messages
+    outcome = outcome_of(episode, context.domain, variant.name, seed)
+    return Watched(outcome, track_of(variant.name, messages), tuple(episode.subgoals)), context
+
+
+def watch_all(
+    task: Task, variants: Sequence[Variant], seeds: Sequence[int], jobs: int, title: str
+) -> dict[tuple[str, int], Watched]:
+    """Every variant at every seed, by name and seed."""
+    wanted = [(variant, seed) for seed in seeds for variant in variants]
+    running = Parallel(n_jobs=jobs, return_as="generator")(
+        delayed(_watched)(task, variant, seed) for variant, seed in wanted
+    )
+    found = track(running, title, total=len(wanted), transient=True)
+    return {(variant.name, seed): watched for (variant, seed), watched in zip(wanted, found, strict=True)}
+
+
+def _watched(task: Task, variant: Variant, seed: int) -> Watched:
+    return watch(task, variant, seed)[0]
