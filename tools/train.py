@@ -15,6 +15,8 @@ from rich.table import Table
 from models.runtime import ZOO
 from schemas.errors import UsageError
 
+RARE = 0.02  # a smaller share of failures is too few to learn from
+
 EPILOG = """\
 examples:
   tailor train agilo --data data/agilo
@@ -73,7 +75,8 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
     jobs = [("duration", arguments.learner, training.train_duration)]
     if sum(ENERGY.told(episode) and episode.finished for episode in data.episodes) >= training.LEAST:
         jobs.append(("energy", arguments.learner, partial(training.train_amount, ENERGY)))
-    if any(episode.failure not in ("", UNOBSERVED) for episode in data.episodes):
+    failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
+    if failures >= RARE * len(data.episodes):
         jobs.append(("success", arguments.failure_learner, training.train_success))
     rows = []
     for kind, learner, train in jobs:

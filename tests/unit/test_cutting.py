@@ -51,10 +51,10 @@ def test_an_action_becomes_an_episode_with_the_believed_states() -> None:
     assert np.allclose(episode.ticks[:, [4, 7]], [2.0, 0.3])
 
 
-def test_an_approach_teaches_go_to_pose_with_the_goal_behind_the_ball() -> None:
+def test_an_approach_s_goal_is_behind_the_ball() -> None:
     messages = subgoals("approachBall", {"xg": 2.0}), *drive("approachBall", 0, 30)
     [(name, episode)] = cut(*messages, finished("approachBall", 0, 3.0))
-    assert name == "goToPose"
+    assert name == "approachBall"
     assert 1.5 < episode.ticks[0, 4] < 1.8
 
 

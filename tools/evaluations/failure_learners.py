@@ -19,7 +19,7 @@ from tools.evaluations.report import Report, tell
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate failure-learners`."""
     configure_learned(parser, 1000)
-    parser.add_argument("--action", default="goToPose", help="which action (default %(default)s)")
+    parser.add_argument("--action", default="approachBall", help="which action (default %(default)s)")
     parser.add_argument("--train", type=int, default=PAPER_EPISODES, help="episodes learned from (default %(default)s)")
 
 
