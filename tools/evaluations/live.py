@@ -37,8 +37,8 @@ OTHER_NOISE = 500_000  # the same starts in lock-step with this noise: how far a
 MARGIN_PCT = 5.0  # of the mean duration, fixed before the first run: half of what refinement gains
 LOCKSTEP, LUCK, LIVE = "lock-step", "lock-step, other noise", "live"
 REMARKS = (
-    "each row against lock-step from the same starts; live has noise of its own, delays of the bus, and a budget in time "
-    "instead of checks",
+    "each row against lock-step from the same starts; live has noise of its own, delays on the bus, and a budget in "
+    "time instead of checks",
     f"equivalent: both one-sided t-tests (TOST, p_equivalent) say at 5 % that the means are less than {MARGIN_PCT:g} % "
     "apart; the second row shows how far luck alone puts the same starts apart",
 )
