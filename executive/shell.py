@@ -6,20 +6,25 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from executive.core.asking import awaited
 from executive.core.context import PERIOD_NS, Context, check_goal
 from executive.core.state import Inputs, Output, State, initial_state
 from executive.core.step import control, deliberate
 from runtime import realtime
 from runtime.budget import ClockBudget
 from runtime.clock import Clock
+from runtime.external_planner import ExternalPlanner
 from runtime.loop import Loop, Turn
 from runtime.session import Session
-from schemas.messages import Provenance, Sample, TickReport
+from schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
 PROVENANCE_TICKS = 10  # once a second, so that a recorder that comes late gets it too
-TOPICS = ("arm_request", "finished", "plan", "subgoals", "refinement", "status", "tick", "provenance")
+TOPICS = (
+    "arm_request", "finished", "plan", "plan_request", "plan_answer", "subgoals", "refinement", "status", "tick",
+    "provenance",
+)  # fmt: skip
 
 
 class Shell:
@@ -35,6 +40,8 @@ class Shell:
         self._goals = session.questions("exec/goal")
         topics = (domain.command_topic, *TOPICS)
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
+        external = context.settings.external
+        self._planner = ExternalPlanner(external.command, external.limit_s)
         self._state = initial_state(context)
 
     def run(self, goal: str, until: Callable[[State], bool]) -> State:
@@ -45,17 +52,20 @@ class Shell:
           until: Looked at before every tick.
         """
         loop = Loop(PERIOD_NS, self._clock)
-        while True:
-            turn = loop.next_turn()
-            stopping = until(self._state)
-            self._tick(turn, goal, stopping)
-            goal = ""
-            if stopping:
-                return self._state
-            realtime.collect_young()
+        try:
+            while True:
+                turn = loop.next_turn()
+                stopping = until(self._state)
+                self._tick(turn, goal, stopping)
+                goal = ""
+                if stopping:
+                    return self._state
+                realtime.collect_young()
+        finally:
+            self._planner.close()
 
     def _tick(self, turn: Turn, goal: str, stopping: bool) -> None:
-        samples = self._inbox.drain(turn.now_ns)
+        samples = (*self._inbox.drain(turn.now_ns), *self._planner_answer(turn))
         inputs = Inputs(samples, self._asked_goal() or goal, turn.skipped, stopping)
         self._state, outputs = control(self._context, self._state, turn.now_ns, inputs)
         self._publish(outputs)
@@ -79,9 +89,21 @@ class Shell:
         question.accept()
         return goal
 
+    def _planner_answer(self, turn: Turn) -> tuple[Sample, ...]:
+        """The external planner's answer as an input like any other: numbered, and recorded before it is used."""
+        request, stamp_ns = awaited(self._state), self._context.stamp(turn.now_ns)
+        answer = self._planner.poll(request.id if request is not None else 0, stamp_ns)
+        if answer is None:
+            return ()
+        publisher = self._publishers["plan_answer"]
+        sequence = publisher.publish(answer)
+        return (Sample(publisher.key, answer, turn.now_ns, sequence, self._context.sender),)
+
     def _publish(self, outputs: tuple[Output, ...]) -> None:
         for output in outputs:
             self._publishers[output.topic].publish(output.message)
+            if isinstance(output.message, PlanRequest):
+                self._planner.ask(output.message)
 
     def _report(self, turn: Turn, inputs: Inputs, control_ns: int, checks: int) -> None:
         tick = self._state.tick

@@ -1,15 +1,18 @@
 """Runs an external planner (a real `vhpop`) as a child process: polled, never waited for, killed with its whole group.
 
-Owns the child, its files and its limits of time and output; reading the plan is the caller's business.
+Owns the child, its files and its limits of time, output and memory; reading the plan is the caller's business.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
+import resource
 import shlex
+import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -20,14 +23,20 @@ from typing import Literal
 from schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
+MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share the machine with it
 _CHUNK = 65536
+_REAP_S = 0.005  # a killed process is gone by then, but for a huge one; nobody waits longer
+_LEASH = str(Path(__file__).with_name("leash.py"))
+
+
+Outcome = Literal["answered", "crashed", "timeout", "flood"]
 
 
 @dataclass(frozen=True, slots=True)
 class PlannerAnswer:
-    """How the child ended. The output is whatever it printed; only `answered` promises that it ended by itself."""
+    """How the child ended: by itself, by a signal of its own (crashed), or killed by us; and what it printed."""
 
-    outcome: Literal["answered", "timeout", "flood"]
+    outcome: Outcome
     output: str
     reason: str
 
@@ -68,19 +77,22 @@ class PlannerProcess:
 
     def _start(self, command: str, paths: list[Path]) -> subprocess.Popen[bytes]:
         try:
-            words = shlex.split(command)
-            if not words:
-                raise ValueError("it is empty")
+            words = words_of(command)
             child = subprocess.Popen(
-                [*words, *map(str, paths)],
+                [sys.executable, "-I", "-S", _LEASH, str(os.getpid()), *words, *map(str, paths)],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 start_new_session=True,
             )
-        except (OSError, ValueError) as error:
+        except OSError as error:
             self._folder.cleanup()
-            raise UsageError(f"planner command '{command}': cannot be started: {error}") from None
+            raise _cannot_start(command, error) from None
+        except UsageError:
+            self._folder.cleanup()
+            raise
+        with contextlib.suppress(OSError):  # it has ended already
+            resource.prlimit(child.pid, resource.RLIMIT_AS, (MAX_MEMORY_BYTES, MAX_MEMORY_BYTES))
         assert child.stdout is not None
         os.set_blocking(child.stdout.fileno(), False)
         return child
@@ -99,7 +111,8 @@ class PlannerProcess:
         if len(self._output) > MAX_OUTPUT_BYTES:
             self._end("flood", f"the planner printed more than {MAX_OUTPUT_BYTES} bytes")
         elif ended:
-            self._end("answered", f"the planner ended with code {self._child.returncode}")
+            code = self._child.returncode
+            self._end("crashed" if code < 0 else "answered", f"the planner ended with code {code}")
         elif self._clock() >= self._deadline:
             self._end("timeout", f"the planner was killed after {self._limit_s:g} s")
         return self._answer
@@ -121,12 +134,30 @@ class PlannerProcess:
                 return
             self._output += chunk
 
-    def _end(self, outcome: Literal["answered", "timeout", "flood"], reason: str) -> None:
+    def _end(self, outcome: Outcome, reason: str) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._child.pid, signal.SIGKILL)  # a child that ended may have left children of its own
-        self._child.wait()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._child.wait(_REAP_S)
         assert self._child.stdout is not None
         self._child.stdout.close()
         self._folder.cleanup()
         text = self._output[:MAX_OUTPUT_BYTES].decode("utf-8", errors="replace")
         self._answer = PlannerAnswer(outcome, text, reason)
+
+
+def words_of(command: str) -> list[str]:
+    """A planner's command as program and arguments; raises UsageError if there is no such program."""
+    try:
+        words = shlex.split(command)
+    except ValueError as error:
+        raise _cannot_start(command, error) from None
+    if not words:
+        raise _cannot_start(command, "it is empty")
+    if shutil.which(words[0]) is None:
+        raise _cannot_start(command, f"there is no program '{words[0]}'")
+    return words
+
+
+def _cannot_start(command: str, why: object) -> UsageError:
+    return UsageError(f"planner command '{command}': cannot be started: {why}")

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from executive.composition import Order
-from executive.core.context import Settings
+from executive.core.context import PlannerCommand, Settings
 from runtime.bus_config import DEFAULT_ENDPOINT
+from runtime.planner_process import words_of
 from schemas.errors import UsageError
 from schemas.settings import from_table
 
@@ -27,6 +28,7 @@ class Deployment:
 
     bus: Bus = field(default_factory=Bus)
     executive: Settings = field(default_factory=Settings)
+    planner: PlannerCommand = field(default_factory=PlannerCommand)
     scenario: str = ""
     zoo: str = ""
 
@@ -37,6 +39,7 @@ def configure_system(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scenario", help="one of the domain's scenarios (default: its first)")
     parser.add_argument("--seed", type=int, help="of every random draw (default 0)")
     parser.add_argument("--horizon", type=int, help="actions that refinement looks ahead; 1 is greedy (default 2)")
+    parser.add_argument("--planner", metavar="COMMAND", help="a real vhpop is asked first, e.g. 'vhpop -v1 -f MW-Loc'")
     parser.add_argument("--zoo", help="folder of action models (default: those that ship)")
     configure_bus(parser)
 
@@ -63,6 +66,8 @@ def deployment(arguments: argparse.Namespace) -> Deployment:
     if given.get("horizon") is not None:
         horizon = _at_least(given["horizon"], 1, "--horizon")
         settings = replace(settings, refinement=replace(settings.refinement, horizon=horizon))
+    if given.get("planner") is not None:
+        read = replace(read, planner=replace(read.planner, command=given["planner"]))
     return replace(
         read,
         executive=settings,
@@ -72,11 +77,19 @@ def deployment(arguments: argparse.Namespace) -> Deployment:
 
 
 def order_of(domain: str, read: Deployment) -> Order:
-    """What the executive is to run; the scenario's name is checked when it is composed."""
+    """What the executive is to run; the scenario's name is checked when it is composed.
+
+    Raises:
+      UsageError: There is no such external planner.
+    """
     from executive import domains
 
     scenario = read.scenario or domains.scenarios(domain)[0]
-    return Order(domain, scenario, read.executive, read.zoo)
+    settings = read.executive
+    if read.planner.command:
+        words_of(read.planner.command)
+        settings = replace(settings, external=read.planner)
+    return Order(domain, scenario, settings, read.zoo)
 
 
 def _at_least(value: int, least: int, flag: str) -> int:

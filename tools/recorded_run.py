@@ -20,6 +20,7 @@ from schemas.typesystem import type_of
 
 TICK_KEY = TOPICS["tick"].key
 PROVENANCE_KEY = TOPICS["provenance"].key
+ANSWER_KEY = TOPICS["plan_answer"].key  # an executive's own, but an input of its core
 
 
 @dataclass(slots=True)
@@ -46,7 +47,7 @@ class RecordedRuns:
         self.runs = [RecordedRun(sender) for sender in executives]
         by_sender = {run.sender: run for run in self.runs}
         for message in everything:
-            if message.sender in by_sender:
+            if message.sender in by_sender and message.key != ANSWER_KEY:
                 _take(by_sender[message.sender], message)
             else:
                 self._heard[message.key, message.sender, message.sequence] = message

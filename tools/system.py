@@ -133,6 +133,7 @@ def _executive(plan: Plan) -> list[str]:
     order = plan.order
     flags = ["--scenario", order.scenario, "--seed", str(order.settings.seed), "--connect", plan.endpoint]
     flags += ["--horizon", str(order.settings.refinement.horizon)]
+    flags += ["--planner", order.settings.external.command]
     flags += ["--config", plan.config] if plan.config else []
     flags += ["--zoo", order.zoo] if order.zoo else []
     return tailor("executive", order.domain, *flags)

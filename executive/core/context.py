@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from executive import planning
 from executive.library import Domain, Models, Scenario
 from executive.refinement.settings import RefinementSettings
+from schemas.errors import UsageError
 
 PERIOD_NS = 100_000_000  # 10 Hz
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerCommand:
+    """A real `vhpop` that is asked before our own planner; `command` as in a shell, empty: there is none."""
+
+    command: str = ""
+    limit_s: float = 10.0  # then it is killed
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.limit_s) and self.limit_s > 0):
+            raise UsageError(f"planner.limit_s is {self.limit_s:g}, expected seconds above 0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +32,8 @@ class Settings:
     seed: int = 0
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
     planner: planning.Settings = planning.DEFAULT
+    external: PlannerCommand = field(default_factory=PlannerCommand)
+    improve_plans: int = 20_000  # that a search for a better plan may generate while an action runs; 0: none does
     coast_ticks: int = 2  # how long the last command stands between two actions before zero
     replan_failures: int = 2  # this many failures in a row with one reason are a fault
     refine_while_running_s: float = 1.0  # for so long a better subgoal may still be adopted

@@ -10,10 +10,12 @@ import numpy as np
 from executive import planning
 from executive.budget import Budget
 from executive.core.context import Context
-from executive.library import Belief, Fact
+from executive.core.plan_finding import PlanFinding, PlanFound
+from executive.library import Belief
 from executive.refinement.assertion import Assertion
 from executive.refinement.instantiation import ActionSequence, Failure, instantiate
 from executive.refinement.refinement import Choice, Refinement
+from schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
 
@@ -28,52 +30,48 @@ class Decision:
     number: int  # which deliberation it came from
 
 
-@dataclass(frozen=True, slots=True)
-class PlanFound:
-    """How the planning stage ended."""
-
-    status: str
-    way: Literal["searched", "suffix"]
-    plan: planning.Plan | None
-    generated: int
-    visited: int
-    reason: str
-
-
 class Deliberation:
     """Decides what to do from one snapshot of the belief; owned by one state, changed in place."""
 
-    def __init__(
-        self,
-        context: Context,
-        belief: Belief,
-        problem: planning.Problem,
-        number: int,
-        ground: planning.GroundCache,
-        previous: planning.Plan | None = None,
-        done: frozenset[int] = frozenset(),
-    ) -> None:
-        """Start deciding how to solve `problem` from `belief`.
+    def __init__(self, context: Context, belief: Belief, number: int, source: PlanFound | PlanFinding) -> None:
+        """Start deciding what to do from `belief`.
 
         Args:
+          context: Domain, models and settings.
+          belief: What parameters are instantiated from.
           number: Serial number of this deliberation; with the seed it fixes every random draw.
-          ground: The grounding of earlier deliberations, which serves again while the objects stand.
-          previous: The plan so far, of which the steps `done` have been executed.
+          source: A plan that is known to be sound, or the way to one.
         """
         self.number = number
         self.stage: Stage = "planning"
         self.reason = ""
-        self.found: PlanFound | None = None
+        self.told: tuple[PlanFound, ...] = ()  # all that came of planning; the last one counts
         self.sequence: ActionSequence | None = None
         self.refinement: Refinement | None = None
         self._context = context
         self._belief = belief
-        self._problem = problem
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._assertion: Assertion | None = None
-        self._ground = ground
-        self._search: planning.Search | None = None
-        self._reuse(previous, done)
+        self._finding: PlanFinding | None = None
+        if isinstance(source, PlanFinding):
+            self._finding = source
+        else:
+            self._planned(source)
+
+    @property
+    def found(self) -> PlanFound | None:
+        """The plan, or how planning has stood so far."""
+        return self.told[-1] if self.told else None
+
+    @property
+    def request(self) -> PlanRequest | None:
+        """What an external planner has been asked and has not answered yet."""
+        return self._finding.request if self._finding is not None else None
+
+    def take(self, answer: PlanAnswer) -> None:
+        """The external planner's answer."""
+        if self._finding is not None:
+            self._finding.take(answer)
 
     def advance(self, budget: Budget) -> None:
         """Go on until decided, failed, or out of budget."""
@@ -97,33 +95,18 @@ class Deliberation:
         """Whether the goal already holds: a plan was found and has no steps."""
         return self.found is not None and self.found.plan is not None and not self.found.plan.steps
 
-    def _reuse(self, previous: planning.Plan | None, done: frozenset[int]) -> None:
-        """Take the shortest suffix of the last plan that is sound from now: what the world did for us is left out."""
-        if previous is None:
-            return
-        remaining = [step.id for step in previous.steps if step.id not in done]
-        for skipped in range(len(remaining), -1, -1):
-            left_out = done | set(remaining[:skipped])
-            plan = planning.suffix(previous, left_out, self._context.pddl_domain, self._problem)
-            if plan is not None:
-                self._planned(PlanFound("solved", "suffix", plan, 0, 0, ""))
-                return
-
     def _plan(self, budget: Budget) -> None:
-        if self._search is None:
-            context = self._context
-            self._search = planning.Search(context.pddl_domain, self._problem, context.settings.planner, self._ground)
-        result = self._search.advance(budget)
-        if result is None:
+        assert self._finding is not None
+        found = self._finding.advance(budget)
+        if found is None:
             return
-        plan, reason = result.plan, result.reason
-        if plan is not None:
-            reason = planning.validate(plan, self._context.pddl_domain, self._problem)
-            plan = plan if not reason else None
-        self._planned(PlanFound(result.status, "searched", plan, result.generated, result.visited, reason))
+        if found.status == "failed":
+            self.told += (found,)
+        else:
+            self._planned(found)
 
     def _planned(self, found: PlanFound) -> None:
-        self.found = found
+        self.told += (found,)
         if found.plan is None:
             self._fail(f"no plan: {found.reason or found.status}")
             return
@@ -166,9 +149,3 @@ class Deliberation:
     def _fail(self, reason: str) -> None:
         self.stage = "failed"
         self.reason = reason
-
-
-def problem_of_now(context: Context, facts: frozenset[Fact], goal: str) -> planning.Problem:
-    """The scenario's problem with the abstract state of now and the goal that was set."""
-    known = context.problem.with_initial(sorted(facts))
-    return known.with_goal(goal) if goal else known

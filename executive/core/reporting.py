@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from executive import planning
 from executive.core.action_cycle import ending
 from executive.core.context import Context
-from executive.core.deliberation import Decision, Deliberation, PlanFound
+from executive.core.deliberation import Decision, Deliberation
 from executive.core.execution import Running
+from executive.core.plan_finding import PlanFound
 from executive.core.state import Output, State
 from executive.refinement.sequence import InstantiatedAction, Variable
 from schemas import messages as m
@@ -20,7 +21,7 @@ class Told:
     """What had been told before this tick's deliberation."""
 
     deliberation: Deliberation | None
-    found: PlanFound | None
+    plans: int  # of that deliberation
     plan: planning.Plan | None
     running: Running | None
     finished: int
@@ -33,7 +34,7 @@ def snapshot(state: State) -> Told:
     deliberation = state.deliberation
     return Told(
         deliberation,
-        deliberation.found if deliberation is not None else None,
+        len(deliberation.told) if deliberation is not None else 0,
         state.task.plan,
         state.task.running,
         state.task.finished,
@@ -50,10 +51,13 @@ def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
         outputs.append(Output("finished", ending(context, state, told.finished, told.running, how)))
     deliberation = state.deliberation
     if deliberation is not None:
-        found = deliberation.found
-        if found is not None and (deliberation is not told.deliberation or found is not told.found):
-            outputs.append(Output("plan", _plan(context, state, found)))
-        if _evaluations(deliberation) != told.evaluations or deliberation is not told.deliberation:
+        fresh = deliberation is not told.deliberation
+        outputs.extend(
+            Output("plan", _plan(context, state, found)) for found in deliberation.told[0 if fresh else told.plans :]
+        )
+        if fresh and deliberation.request is not None:
+            outputs.append(Output("plan_request", deliberation.request))
+        if _evaluations(deliberation) != told.evaluations or fresh:
             outputs.extend(_refinement(context, state, deliberation))
     if state.task.decision is not None and state.task.decision is not told.decision:
         outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from executive.core.context import Context
 from executive.core.deliberation import Decision, Deliberation
 from executive.core.execution import Running
+from executive.core.improvement import Improvement
 from executive.core.modes import Mode
 from executive.library import Belief, Fact
 from executive.planning import GroundCache, Plan
@@ -55,13 +56,15 @@ class Task:
     failures: tuple[str, ...] = ()  # what failed since the last success
     running: Running | None = None
     decision: Decision | None = None  # what the last deliberation chose
+    external_failed: bool = False  # the external planner is not asked again for this goal
 
 
 @dataclass(frozen=True, slots=True)
 class State:
     """The executive between two ticks.
 
-    `deliberation` is resumable and `ground` a cache: both change in place, so a state is used for one step only.
+    `deliberation` and `improvement` are resumable and `ground` is a cache: they change in place, so a state is used
+    for one step only.
     """
 
     belief: Belief
@@ -77,6 +80,7 @@ class State:
     task: Task = field(default_factory=Task)
     coasted: int = 0  # ticks since the last action ended
     deliberation: Deliberation | None = None
+    improvement: Improvement | None = None
     ground: GroundCache = field(default_factory=GroundCache)
     deliberations: int = 0  # started so far; seeds their random generators
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from executive.budget import Budget
 from executive.core import reporting
 from executive.core.action_cycle import act
+from executive.core.asking import hear_planner
 from executive.core.context import Context
 from executive.core.perception import disarmed, perceive
 from executive.core.state import Inputs, Output, State
@@ -22,6 +23,7 @@ ARM_AGAIN_NS = 500_000_000  # a request that got no answer is repeated
 def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tuple[State, tuple[Output, ...]]:
     """Belief, mode and command: the part of a tick that always runs, and first."""
     state = perceive(context, state, now_ns, inputs)
+    hear_planner(context, state, inputs)
     acted = act(context, state)
     state = acted.state
     outputs: list[Output] = []

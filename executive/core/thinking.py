@@ -6,10 +6,13 @@ from dataclasses import replace
 
 from executive.budget import Budget
 from executive.core.action_cycle import running_from
+from executive.core.asking import finding_for, noting_failure
 from executive.core.context import Context
-from executive.core.deliberation import Decision, Deliberation, problem_of_now
+from executive.core.deliberation import Decision, Deliberation
 from executive.core.execution import Running
 from executive.core.modes import Mode
+from executive.core.plan_finding import problem_of_now
+from executive.core.reusing import look_further, reusable
 from executive.core.state import State, Task
 from executive.refinement.instantiation import ActionSequence, Failure, instantiate
 
@@ -23,6 +26,7 @@ def think(context: Context, state: State, budget: Budget) -> State:
     if deliberation is None:
         return state
     deliberation.advance(budget)
+    state = noting_failure(state, deliberation)
     if deliberation.stage == "failed":
         return _gave_up(context, state, deliberation.reason)
     if deliberation.nothing_to_do():
@@ -30,9 +34,9 @@ def think(context: Context, state: State, budget: Budget) -> State:
         task = replace(state.task, active=False, result="achieved", running=None, decision=None, finished=ended)
         return replace(state, task=task)
     decision = deliberation.decision()
-    if decision is None:
-        return state
-    return _adopted(context, state, decision, deliberation.stage == "decided")
+    if decision is not None:
+        state = _adopted(context, state, decision, deliberation.stage == "decided")
+    return look_further(context, state, budget) if deliberation.stage == "decided" else state
 
 
 def _with_deliberation(context: Context, state: State) -> State:
@@ -44,7 +48,8 @@ def _with_deliberation(context: Context, state: State) -> State:
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     problem = problem_of_now(context, facts, task.goal)
-    deliberation = Deliberation(context, state.belief, problem, number, state.ground, task.plan, task.done)
+    source = reusable(context, problem, task, state.improvement) or finding_for(context, state, problem, number)
+    deliberation = Deliberation(context, state.belief, number, source)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 

@@ -1,8 +1,10 @@
 """An external planner behaves, hangs, crashes, prints garbage or floods: nothing blocks, no process is left behind."""
 
 import os
+import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,7 @@ from runtime.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from schemas.errors import UsageError
 from tests.planning_problems import DATA, own, printed
 
+ROOT = Path(__file__).resolve().parents[2]
 LIMIT_S = 5.0
 POLL_LIMIT_S = 0.05  # half a tick; a poll takes microseconds, the rest is for a busy machine
 
@@ -87,7 +90,7 @@ def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
 
 def test_a_planner_that_crashes_has_no_plan(tmp_path):
     _, answer, _ = run(program(tmp_path, "os.abort()"))
-    assert answer.outcome == "answered"
+    assert answer.outcome == "crashed"
     assert "code -6" in answer.reason
     with pytest.raises(PlanTextError):
         parse_plan(answer.output)
@@ -115,6 +118,30 @@ print(grandchild.pid)"""
     _, answer, _ = run(program(tmp_path, body))
     assert answer.outcome == "answered"
     assert gone(int(answer.output))
+
+
+def test_a_planner_that_eats_memory_runs_into_a_limit(tmp_path):
+    _, answer, _ = run(program(tmp_path, "time.sleep(0.2)\nheap = bytearray(4 << 30)\nprint('plenty')"))
+    assert answer.outcome in ("answered", "crashed")
+    assert "plenty" not in answer.output
+
+
+def test_a_planner_dies_with_the_process_that_asked_it(tmp_path):
+    body = f"""
+import sys
+from runtime.planner_process import PlannerProcess
+child = PlannerProcess({program(tmp_path, "time.sleep(60)")!r}, "", "", 60.0)
+print(child.pid, flush=True)
+time.sleep(60)"""
+    script = tmp_path / "asks.py"
+    script.write_text(f"import time\n{body}\n")
+    asking = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    pid = int(asking.stdout.readline())
+    time.sleep(0.5)
+    assert is_alive(pid)
+    asking.kill()
+    asking.wait()
+    assert gone(pid)
 
 
 def test_killing_early_leaves_nothing_and_may_be_repeated(tmp_path):

@@ -1,0 +1,61 @@
+"""Carries the executive's requests to an external planner: one child at a time, an answer whatever becomes of it."""
+
+from __future__ import annotations
+
+from runtime.planner_process import PlannerProcess
+from schemas.errors import UsageError
+from schemas.messages import PlanAnswer, PlanRequest
+
+MAX_ANSWER_BYTES = 131_072  # read within a tick; a plan of a hundred steps with all its links and orderings has half
+
+
+class ExternalPlanner:
+    """At most one running planner; `command` and `limit_s` as PlannerProcess takes them."""
+
+    def __init__(self, command: str, limit_s: float) -> None:
+        """Starts nothing."""
+        self._command, self._limit_s = command, limit_s
+        self._child: PlannerProcess | None = None
+        self._asked = 0
+        self._missing = ""
+
+    def ask(self, request: PlanRequest) -> None:
+        """Start a child on a request, in the place of any other; that it cannot be started is an answer, too."""
+        self.close()
+        self._asked, self._missing = request.id, ""
+        try:
+            self._child = PlannerProcess(self._command, request.domain, request.problem, self._limit_s)
+        except UsageError as error:
+            self._missing = str(error)
+
+    def poll(self, awaited: int, stamp_ns: int) -> PlanAnswer | None:
+        """The answer to the request `awaited`, once; None while there is none. Kills a child that works on another."""
+        if awaited != self._asked:
+            self.close()
+            return None
+        if self._missing:
+            answer = PlanAnswer(stamp_ns, awaited, "missing", "", self._missing)
+        else:
+            said = self._child.poll() if self._child is not None else None
+            if said is None:
+                return None
+            answer = _believable(PlanAnswer(stamp_ns, awaited, said.outcome, said.output, said.reason))
+        self.close()
+        return answer
+
+    def close(self) -> None:
+        """Leave no child behind."""
+        if self._child is not None:
+            self._child.kill()
+        self._child, self._asked, self._missing = None, 0, ""
+
+
+def _believable(answer: PlanAnswer) -> PlanAnswer:
+    """The answer as it goes on the bus: without the output of a planner that did not end well, or says too much."""
+    if answer.outcome != "answered":
+        return PlanAnswer(answer.stamp_ns, answer.id, answer.outcome, "", answer.reason)
+    size = len(answer.output.encode())
+    if size <= MAX_ANSWER_BYTES:
+        return answer
+    reason = f"the planner printed {size} bytes, more than {MAX_ANSWER_BYTES}"
+    return PlanAnswer(answer.stamp_ns, answer.id, "flood", "", reason)
