@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from executive.library import Fact
 from executive.planning.action_reader import number_of
@@ -105,7 +105,10 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
             raise form.items[1].place.error("expected a time of at least 0")
         if len(draft.timed) == MAX_TIMED:
             raise form.place.error(f"more than {MAX_TIMED} timed literals")
-        draft.timed.append(TimedLiteral(time_s, _literal(form_of(form.items[2], "a literal"), scope)))
+        literal = _literal(form_of(form.items[2], "a literal"), scope)
+        if TimedLiteral(time_s, replace(literal, positive=not literal.positive)) in draft.timed:
+            raise form.place.error(f"{literal} and its opposite at the same time")
+        draft.timed.append(TimedLiteral(time_s, literal))
     else:
         literal = _literal(form, scope)
         if literal.positive:

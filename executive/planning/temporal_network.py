@@ -39,7 +39,6 @@ class TemporalNetwork(NamedTuple):
         unbounded = (UNBOUNDED,) * start
         own = [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
         if before != GOAL:
-            # only the initial state and the step itself come before the step: no other bound can change
             via = (*self.rows[before], UNBOUNDED, UNBOUNDED)
             node = start + moment
             if via[INITIAL] + first[node] < 1:
@@ -48,8 +47,14 @@ class TemporalNetwork(NamedTuple):
             own = [_through(row, row[node] - 1, via) for row in own]
         late = list(self.late)
         late[INITIAL] |= 3 << start
-        rows = (first, *[(*row, UNBOUNDED, UNBOUNDED) for row in self.rows[1:]], *own)
-        return TemporalNetwork(rows, (*late, _late(own[0], start), _late(own[1], end)))
+        rows = [first, *[(*row, UNBOUNDED, UNBOUNDED) for row in self.rows[1:]], *own]
+        # only the initial state comes before the step: others are bound to it by way of the start of all, if at all
+        for other, row in enumerate(rows):
+            if other != INITIAL and row[INITIAL] < UNBOUNDED // 2:
+                rows[other] = _through(row, row[INITIAL], first)
+                if other < start:
+                    late[other] = _late(rows[other], other)
+        return TemporalNetwork(tuple(rows), (*late, _late(rows[start], start), _late(rows[end], end)))
 
     def ordered(self, a: int, b: int) -> TemporalNetwork | None:
         """See `Orderings`: t_a <= t_b - 1 tick."""

@@ -2,17 +2,28 @@
 
 import pytest
 
-from executive.planning import GOAL, Literal, PddlError, Unsupported, parse_domain, validate
+from executive.planning import GOAL, MATCHING, Literal, PddlError, Settings, Unsupported, parse_domain, validate
 from tests.planning_problems import read, solve
 
 
-def planned(domain_text, problem_text):
-    """The actions of the plan, in order of their start, after it has been validated."""
-    domain, problem = read(domain_text, problem_text)
-    result = solve(domain, problem)
-    assert result.status == "solved", result.reason
-    assert validate(result.plan, domain, problem) == ""
-    return [" ".join(step.action) for step in result.plan.steps], result.plan
+@pytest.fixture(params=[MATCHING, Settings(ground=False)], ids=["ground", "lifted"])
+def options(request):
+    """Every feature is planned with ground actions, and with variables."""
+    return request.param
+
+
+@pytest.fixture
+def planned(options):
+    """Plans a domain and a problem: the actions in order of their start, and the plan, which has been validated."""
+
+    def plan(domain_text, problem_text):
+        domain, problem = read(domain_text, problem_text)
+        result = solve(domain, problem, options)
+        assert result.status == "solved", result.reason
+        assert validate(result.plan, domain, problem) == ""
+        return [" ".join(step.action) for step in result.plan.steps], result.plan
+
+    return plan
 
 
 SWITCHES = """
@@ -33,30 +44,36 @@ LAMPS = """
 """
 
 
-def lamps(goal, finish="()", effect="(done)", unlock="()"):
-    domain = SWITCHES.replace("{unlock}", unlock).replace("{finish}", finish).replace("{effect}", effect)
-    return planned(domain, LAMPS.replace("{goal}", goal))
+@pytest.fixture
+def lamps(planned):
+    """Plans for a goal in the domain of switches."""
+
+    def plan(goal, finish="()", effect="(done)", unlock="()"):
+        domain = SWITCHES.replace("{unlock}", unlock).replace("{finish}", finish).replace("{effect}", effect)
+        return planned(domain, LAMPS.replace("{goal}", goal))
+
+    return plan
 
 
-def test_types_and_subtypes_bound_the_parameters():
+def test_types_and_subtypes_bound_the_parameters(lamps):
     actions, _ = lamps("(and (on a) (open cellar))")
     assert sorted(actions) == ["press a", "unlock cellar"]
 
 
-def test_either_accepts_both_types_and_refuses_others():
+def test_either_accepts_both_types_and_refuses_others(lamps):
     actions, _ = lamps("(done)", finish="(exists (?l - (either red blue)) (and (safe ?l) (on ?l)))")
     assert actions == ["press a", "finish"]
     with pytest.raises(PddlError, match="'cellar' is of type room; 'safe' expects red or blue"):
         lamps("(safe cellar)")
 
 
-def test_equality_tells_objects_apart():
+def test_equality_tells_objects_apart(lamps):
     pair = "(exists (?x ?y - red) (and (not (= ?x ?y)) (on ?x) (on ?y)))"
     actions, _ = lamps("(done)", finish=pair)
     assert sorted(actions) == ["finish", "press a", "press b"]
 
 
-def test_negative_preconditions_hold_by_closed_world_or_by_an_effect():
+def test_negative_preconditions_hold_by_closed_world_or_by_an_effect(lamps):
     actions, plan = lamps("(and (not (on c)) (not (on a)))")
     assert actions == ["release c"]
     assert {(link.producer, link.literal) for link in plan.links_to(GOAL)} == {
@@ -65,50 +82,50 @@ def test_negative_preconditions_hold_by_closed_world_or_by_an_effect():
     }
 
 
-def test_disjunctions_are_met_by_the_cheaper_part():
+def test_disjunctions_are_met_by_the_cheaper_part(lamps):
     actions, _ = lamps("(done)", finish="(or (and (on a) (on b)) (open hall))")
     assert actions == ["unlock hall", "finish"]
 
 
-def test_imply_is_a_disjunction():
+def test_imply_is_a_disjunction(lamps):
     actions, _ = lamps("(imply (on c) (on b))")
     assert len(actions) == 1
     assert actions[0] in ("release c", "press b")
 
 
-def test_forall_demands_every_object():
+def test_forall_demands_every_object(lamps):
     actions, _ = lamps("(forall (?l - lamp) (on ?l))")
     assert sorted(actions) == ["press a", "press b"]
 
 
-def test_negated_quantifiers():
+def test_negated_quantifiers(lamps):
     actions, _ = lamps("(not (exists (?l - lamp) (on ?l)))")
     assert actions == ["release c"]
 
 
-def test_exists_in_a_goal_is_met_by_one_object():
+def test_exists_in_a_goal_is_met_by_one_object(lamps):
     actions, _ = lamps("(exists (?r - room) (open ?r))")
     assert len(actions) == 1
 
 
-def test_conditional_effects_achieve_under_their_condition():
+def test_conditional_effects_achieve_under_their_condition(lamps):
     actions, plan = lamps("(open hall)", effect="(when (on a) (open hall))", unlock="(done)")
     assert actions == ["press a", "finish"]
     assert Literal(("on", "a")) in {link.literal for link in plan.links_to(plan.steps[1].id)}
 
 
-def test_conditional_effects_threaten_and_are_separated():
+def test_conditional_effects_threaten_and_are_separated(lamps):
     # finish switches a off when b is on; b may only be on afterwards
     actions, _ = lamps("(and (done) (on a) (on b))", effect="(and (done) (when (on b) (not (on a))))", unlock="(done)")
     assert actions.index("finish") < actions.index("press b") or actions.index("finish") < actions.index("press a")
 
 
-def test_forall_effects_reach_every_object():
+def test_forall_effects_reach_every_object(lamps):
     actions, _ = lamps("(and (on a) (on b))", effect="(forall (?l - red) (on ?l))")
     assert sorted(actions) in (["finish"], ["press a", "press b"])
 
 
-def test_constants_may_stand_in_actions_and_goals():
+def test_constants_may_stand_in_actions_and_goals(lamps):
     actions, _ = lamps("(done)", finish="(open hall)")
     assert actions == ["unlock hall", "finish"]
 
@@ -134,7 +151,7 @@ IRON = """
 """
 
 
-def test_durations_come_from_static_functions_and_all_three_kinds_of_conditions_hold():
+def test_durations_come_from_static_functions_and_all_three_kinds_of_conditions_hold(planned):
     actions, plan = planned(WORKSHOP, IRON.replace("{more}", ""))
     times = {step.action[0]: (step.start, step.duration) for step in plan.steps}
     assert sorted(actions) == ["burn", "forge a", "heat a"]
@@ -145,12 +162,12 @@ def test_durations_come_from_static_functions_and_all_three_kinds_of_conditions_
     assert sum(times["forge"]) < sum(burning)  # the forging falls into the light
 
 
-def test_impossible_durations_leave_no_plan():
+def test_impossible_durations_leave_no_plan(options):
     domain, problem = read(WORKSHOP.replace("(>= ?duration 2)", "(>= ?duration 9)"), IRON.replace("{more}", ""))
-    assert solve(domain, problem).status == "unsolvable"
+    assert solve(domain, problem, options).status == "unsolvable"
 
 
-def test_an_effect_at_the_end_restores_what_was_demanded_at_the_start():
+def test_an_effect_at_the_end_restores_what_was_demanded_at_the_start(planned):
     # The no-op rule must not throw this effect away (as VHPOP 3.0 does): the second talk needs the channel again.
     domain = """
     (define (domain radio) (:requirements :typing :durative-actions) (:types item)
@@ -165,7 +182,7 @@ def test_an_effect_at_the_end_restores_what_was_demanded_at_the_start():
     assert plan.steps[1].start >= plan.steps[0].start + 5
 
 
-def test_a_conditional_effect_at_the_end_may_depend_on_the_start():
+def test_a_conditional_effect_at_the_end_may_depend_on_the_start(planned):
     domain = """
     (define (domain kiln) (:requirements :adl :durative-actions) (:predicates (lit) (clay) (pot) (ash))
       (:durative-action light :parameters () :duration (= ?duration 1) :effect (at end (lit)))
@@ -182,19 +199,28 @@ TIMED = """(define (problem wait) (:domain workshop) (:objects a - part)
   (:goal (shaped a)))"""
 
 
-def test_timed_initial_literals_open_a_window():
+def test_timed_initial_literals_open_a_window(planned):
     actions, plan = planned(WORKSHOP, TIMED)
     assert actions == ["forge a"]
     assert plan.steps[0].start > 3
     assert plan.steps[0].start + plan.steps[0].duration < 12
 
 
-def test_a_window_that_is_too_short_leaves_no_plan():
+def test_a_window_that_is_too_short_leaves_no_plan(options):
     domain, problem = read(WORKSHOP, TIMED.replace("(at 12", "(at 4"))
-    assert solve(domain, problem).status == "unsolvable"
+    assert solve(domain, problem, options).status == "unsolvable"
 
 
-def test_instant_actions_may_wait_for_timed_literals_as_well():
+def test_a_step_that_lasts_longer_than_what_it_needs_leaves_no_plan(options):
+    domain = """(define (domain sun) (:predicates (dark) (dry))
+      (:durative-action dry :parameters () :duration (= ?duration 2) :condition (at end (not (dark)))
+        :effect (at end (dry))))"""
+    problem = "(define (problem p) (:domain sun) (:init (at {} (dark))) (:goal (dry)))"
+    assert solve(*read(domain, problem.replace("{}", "1")), options).status == "unsolvable"
+    assert solve(*read(domain, problem.replace("{}", "3")), options).status == "solved"
+
+
+def test_instant_actions_may_wait_for_timed_literals_as_well(planned):
     domain = """(define (domain door) (:predicates (open) (in))
       (:action enter :parameters () :precondition (open) :effect (in)))"""
     problem = "(define (problem p) (:domain door) (:init (at 5 (open))) (:goal (in)))"
@@ -202,7 +228,7 @@ def test_instant_actions_may_wait_for_timed_literals_as_well():
     assert plan.steps[0].start > 5
 
 
-def test_an_atom_of_a_predicate_called_at_is_no_timed_literal():
+def test_an_atom_of_a_predicate_called_at_is_no_timed_literal(planned):
     domain = """(define (domain move) (:predicates (at ?x ?y))
       (:action go :parameters (?x ?y ?z) :precondition (at ?x ?y) :effect (and (at ?x ?z) (not (at ?x ?y)))))"""
     problem = "(define (problem p) (:domain move) (:objects r a b) (:init (at r a)) (:goal (at r b)))"
@@ -268,6 +294,10 @@ PROBLEM = "(define (problem p) (:domain d)\n (:objects a)\n {part})"
         ("(:goal (p)) (:metric maximize (f))", "problem:3:14: the metric maximize (f) is not supported"),
         ("(:goal (p)) (:init (= (g) 1))", "problem:3:24: unknown function 'g'"),
         ("(:goal (p)) (:init (at -1 (p)))", "problem:3:25: expected a time of at least 0"),
+        (
+            "(:goal (p)) (:init (at 1 (p)) (at 1 (not (p))))",
+            "problem:3:32: (not (p)) and its opposite at the same time",
+        ),
     ],
 )
 def test_errors_in_problems_point_at_line_and_column(part, message):

@@ -78,13 +78,6 @@ def test_too_much_to_ground_is_a_limit():
     assert solve(domain, problem, Settings(ground_limit=10)).status == "limit"
 
 
-def test_lifted_search_names_what_it_does_not_speak():
-    domain, problem = door("(or (in) (shut))")
-    result = solve(domain, problem, Settings(ground=False))
-    assert result.status == "unsupported"
-    assert "the goal: a condition that is no conjunction of literals" in result.reason
-
-
 # --- resumable, repeatable -----------------------------------------------------------------------
 @pytest.mark.parametrize("checks", [1, 7, 100])
 @pytest.mark.parametrize("settings", [MATCHING, DEFAULT, Settings(search="IDA")], ids=["A", "round-robin", "IDA"])
