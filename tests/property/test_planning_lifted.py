@@ -1,6 +1,5 @@
 """Lifted against ground planning on small random problems of the whole language: one verdict, and every plan sound."""
 
-
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
