@@ -31,6 +31,7 @@ from executive.planning.language import Action, And, Atom, Condition, Equal, For
 from executive.planning.problem import Problem
 
 MAX_ACTIONS = 20_000  # of a ground task; the competition problems at hand have 756 at most
+MAX_WAYS = 64  # to escape the additions of the same action: they double with each that looks at two moments
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
 
 
@@ -217,24 +218,32 @@ def _useful(
     A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
     action's own condition promises to hold up to that very moment changes nothing.
     """
-    kept = []
+    kept: list[GroundEffect] = []
     for effect in effects:
         demanded = any(part == effect.literal and span[1] == effect.moment for part, span in conditions)
-        remaining = effect if effect.literal % 2 == 0 else _unless_added(effect, effects)
-        if not demanded and remaining is not None:
-            kept.append(remaining)
+        if not demanded:
+            kept += [effect] if effect.literal % 2 == 0 else _unless_added(effect, effects)
     return tuple(kept)
 
 
-def _unless_added(effect: GroundEffect, effects: list[GroundEffect]) -> GroundEffect | None:
-    """A delete effect under the condition that no add effect of the same moment wins; None when one always does."""
-    conditions = effect.conditions
+def _unless_added(effect: GroundEffect, effects: list[GroundEffect]) -> list[GroundEffect]:
+    """A delete effect under the conditions that no add effect of the same moment wins; none when one always does.
+
+    Where an add effect looks at several moments, it is enough that it fails at one: each is an effect of its own.
+    """
+    ways = [effect.conditions]
     for other in effects:
         if other.literal == effect.literal ^ 1 and other.moment == effect.moment:
-            spans = {span for _, span in other.conditions}
-            lost = negation(conjunction(condition for condition, _ in other.conditions))
-            if lost == FALSE:
-                return None
-            # conditions at several moments have no negation at one: their last moment decides
-            conditions = (*conditions, *((part, max(spans)) for part in conjuncts(lost)))
-    return replace(effect, conditions=conditions)
+            spans: dict[Span, list[GroundCondition]] = {}
+            for condition, span in other.conditions:
+                spans.setdefault(span, []).append(condition)
+            lost = [(negation(conjunction(own)), span) for span, own in spans.items()]
+            ways = [
+                (*way, *((part, span) for part in conjuncts(fails)))
+                for way in ways
+                for fails, span in lost
+                if fails != FALSE
+            ]
+            if len(ways) > MAX_WAYS:
+                raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
+    return [replace(effect, conditions=way) for way in ways]

@@ -194,6 +194,27 @@ def test_a_conditional_effect_at_the_end_may_depend_on_the_start(planned):
     assert planned(domain, problem.replace("{}", "(ash)"))[0] == ["light", "fire"]
 
 
+def test_a_deletion_lasts_only_where_the_addition_fails_at_one_of_its_moments(options):
+    # `wash` leaves the pot dirty when it was greased at the start and is dry at the end; only `wash` lets `wipe` begin
+    domain = """
+    (define (domain sink) (:requirements :adl :durative-actions) (:predicates (soap) (dirty) (greased) (wet) (dry))
+      (:durative-action wash :parameters () :duration (= ?duration 2) :condition (at start (soap))
+        :effect (and (at start (not (soap))) (at start (wet)) (at end (not (dirty)))
+                     (when (and (at start (greased)) (at end (dry))) (at end (dirty)))))
+      (:durative-action {} :parameters () :duration (= ?duration 1) :condition (at start (wet))
+        :effect (and (at start (not (greased))) (at end (dry))))
+      (:durative-action pour :parameters () :duration (= ?duration 1) :effect (at end (not (dry)))))"""
+    problem = (
+        "(define (problem p) (:domain sink) (:init (soap) (dirty) (greased) (dry)) (:goal (and (not (dirty)) {})))"
+    )
+    domain, problem = domain.replace("{}", "wipe"), problem.replace("{}", "(dry)")
+    result = solve(*read(domain, problem), options)
+    assert "pour" in {step.action[0] for step in result.plan.steps}
+    assert validate(result.plan, *read(domain, problem)) == ""
+    dry = domain.replace(":effect (at end (not (dry)))", ":effect (at end (wet))")
+    assert solve(*read(dry, problem), options).status == "unsolvable"
+
+
 TIMED = """(define (problem wait) (:domain workshop) (:objects a - part)
   (:init (raw a) (hot a) (at 3 (light)) (at 12 (not (light))) (= (mass a) 1) (= (speed) 1))
   (:goal (shaped a)))"""

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from executive.planning.ground_action import INSTANT, MOMENTS, Span
+from executive.planning.ground_formula import TooMuchToGround
+from executive.planning.grounding import MAX_WAYS
 from executive.planning.language import Action, When
 from executive.planning.lifted.formula import (
     FALSE,
@@ -111,6 +113,8 @@ def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list
             losing = _losing(other, effect.literal)
             if all(lost.holds != TRUE for lost in losing):
                 ways = [(*way, lost) for way in ways for lost in losing]
+                if len(ways) > MAX_WAYS:
+                    raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
     return ways
 
 
