@@ -30,6 +30,11 @@ def refused(*arguments):
         (("up", "soccer", "--scenario", "nope"), "no scenario 'nope' in soccer, expected one of: approach-dribble"),
         (("up", "soccer", "--seed", "-1"), "--seed is -1, expected at least 0"),
         (("up", "soccer", "--horizon", "0"), "--horizon is 0, expected at least 1"),
+        (("up", "soccer", "--planner", "no-such-vhpop -g"), "there is no program 'no-such-vhpop'"),
+        (
+            ("executive", "soccer", "--planner", "'vhpop"),
+            "planner command ''vhpop': cannot be started: No closing quot",
+        ),
         (("sim", "hal"), "robot 'hal' is not known, expected one of: agilo"),
         (("executive", "soccer", "--goal", "(atbal pos3)"), "atbal"),
         (("executive", "soccer", "--goal", "(atball pos3"), ":1:"),
@@ -50,6 +55,14 @@ def test_unknown_key_in_a_deployment_file(tmp_path):
     line = refused("up", "soccer", "--config", file)
     assert "unknown key 'executive.sed'" in line
     assert "'bus.endpoint' is 5" in line
+
+
+def test_planner_of_a_deployment_file_is_checked_before_anything_starts(tmp_path):
+    file = tmp_path / "d.toml"
+    file.write_text('[planner]\ncommand = "no-such-vhpop"\nlimit_s = 2\n')
+    assert "there is no program 'no-such-vhpop'" in refused("up", "soccer", "--config", file)
+    file.write_text('[planner]\ncommand = "true"\nlimit_s = 0\n')
+    assert "planner.limit_s is 0, expected seconds above 0" in refused("up", "soccer", "--config", file)
 
 
 def test_port_in_use():

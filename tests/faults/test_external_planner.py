@@ -1,0 +1,98 @@
+"""The executive's line to an external planner: an answer whatever the child does, and no child left behind."""
+
+import sys
+import time
+
+import pytest
+
+from runtime.external_planner import MAX_ANSWER_BYTES, ExternalPlanner
+from schemas import codec
+from schemas.messages import PlanAnswer, PlanRequest
+from tests.faults.test_planner_process import POLL_LIMIT_S, gone, program
+
+
+def request(number=7):
+    return PlanRequest(0, number, "(define (domain d))", "(define (problem p))")
+
+
+def asked(command, limit_s=5.0):
+    planner = ExternalPlanner(command, limit_s)
+    planner.ask(request())
+    longest, ends = 0.0, time.monotonic() + limit_s + 10
+    while time.monotonic() < ends:
+        before = time.perf_counter()
+        answer = planner.poll(7, 123)
+        longest = max(longest, time.perf_counter() - before)
+        if answer is not None:
+            assert planner.poll(7, 124) is None, "an answer is given once"
+            assert longest < POLL_LIMIT_S
+            assert codec.decode(PlanAnswer, codec.encode(answer)) == answer, "what replay reads is what the core got"
+            return answer
+        time.sleep(0.005)
+    raise AssertionError("no answer")
+
+
+def test_a_planner_that_behaves_well_is_handed_on_with_number_and_time(tmp_path):
+    answer = asked(program(tmp_path, "print(open(sys.argv[1]).read(), open(sys.argv[2]).read())"))
+    assert answer == PlanAnswer(
+        123, 7, "answered", "(define (domain d)) (define (problem p))\n", "the planner ended with code 0"
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "outcome", "reason"),
+    [
+        ("time.sleep(60)", "timeout", "killed after 0.5 s"),
+        ("os.abort()", "crashed", "code -6"),
+        ("while True: sys.stdout.write('x' * 65536)", "flood", "more than 1000000 bytes"),
+        (f"sys.stdout.write('x' * {MAX_ANSWER_BYTES + 1})", "flood", f"more than {MAX_ANSWER_BYTES}"),
+    ],
+)
+def test_a_planner_that_does_not_end_well_has_an_outcome_and_no_output(tmp_path, body, outcome, reason):
+    answer = asked(program(tmp_path, body), 0.5 if outcome == "timeout" else 5.0)
+    assert (answer.outcome, answer.output) == (outcome, "")
+    assert reason in answer.reason
+
+
+def test_garbage_is_handed_on_as_text_that_survives_the_recording(tmp_path):
+    answer = asked(program(tmp_path, "sys.stdout.buffer.write(bytes(range(256)) * 20)"))
+    assert answer.outcome == "answered"
+    assert "\0" in answer.output
+
+
+def test_a_program_that_is_gone_at_run_time_is_an_answer_too():
+    answer = asked("no-such-planner-anywhere -g")
+    assert answer.outcome == "missing"
+    assert "there is no program 'no-such-planner-anywhere'" in answer.reason
+
+
+def sleeper(tmp_path):
+    return program(tmp_path, "time.sleep(60)")
+
+
+def test_a_child_whose_answer_nobody_awaits_any_more_is_killed(tmp_path):
+    planner = ExternalPlanner(sleeper(tmp_path), 60.0)
+    planner.ask(request())
+    assert planner.poll(7, 0) is None
+    pid = planner._child.pid
+    assert planner.poll(0, 0) is None
+    assert gone(pid)
+
+
+def test_a_new_request_takes_the_place_of_the_old_one_and_closing_leaves_nothing(tmp_path):
+    planner = ExternalPlanner(sleeper(tmp_path), 60.0)
+    planner.ask(request(1))
+    first = planner._child.pid
+    planner.ask(request(2))
+    assert gone(first)
+    second = planner._child.pid
+    planner.close()
+    planner.close()
+    assert gone(second)
+    assert planner.poll(2, 0) is None
+
+
+def test_nothing_is_started_before_there_is_a_request():
+    planner = ExternalPlanner(f"{sys.executable} -c pass", 1.0)
+    assert planner.poll(0, 0) is None
+    assert planner._child is None
