@@ -11,7 +11,8 @@ from typing import Any
 from executive import domains
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
-from models.runtime import load_robot
+from executive.refinement.benefit import check_benefit
+from models.runtime import BENEFIT, load_benefit, load_robot
 from schemas.errors import UsageError
 from schemas.settings import from_table
 
@@ -34,13 +35,27 @@ def compose(order: Order, sender: str, stamp_offset_ns: int = 0) -> Context:
     """
     domain = domains.load(order.domain)
     scenario, _ = domains.seeded_scenario(order.domain, order.scenario, order.settings.seed)
-    durations, successes = load_robot(domain.robot, Path(order.zoo) if order.zoo else None)
-    return make_context(domain, scenario, Models(durations, successes), order.settings, sender, stamp_offset_ns)
+    models = load_models(domain.robot, order.zoo, order.settings.refinement.benefit_gate)
+    return make_context(domain, scenario, models, order.settings, sender, stamp_offset_ns)
+
+
+def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
+    """A robot's models, with its benefit tree if that is asked for and there is one.
+
+    Raises:
+      UsageError: A missing or altered model, or a benefit tree that was learned with others.
+    """
+    folder = Path(zoo) if zoo else None
+    durations, successes = load_robot(robot, folder)
+    benefit = load_benefit(robot, folder, {**durations, **successes}) if gated else None
+    return Models(durations, successes, None if benefit is None else check_benefit(benefit))
 
 
 def provenance(order: Order, context: Context) -> dict[str, Any]:
     """All that it takes to compose the same context again, and the cards of the models it used."""
-    models: Mapping[str, Any] = {**context.models.durations, **context.models.successes}
+    models: dict[str, Any] = {**context.models.durations, **context.models.successes}
+    if context.models.benefit is not None:
+        models[BENEFIT] = context.models.benefit
     return {
         "order": dataclasses.asdict(order),
         "sender": context.sender,
@@ -49,9 +64,17 @@ def provenance(order: Order, context: Context) -> dict[str, Any]:
     }
 
 
+def without_gate(order: Order) -> Order:
+    """The order of a run that always refines."""
+    refinement = dataclasses.replace(order.settings.refinement, benefit_gate=False)
+    return dataclasses.replace(order, settings=dataclasses.replace(order.settings, refinement=refinement))
+
+
 def recompose(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     order = from_table(Order, recorded["order"], "recording's provenance")
+    if BENEFIT not in recorded["models"]:  # the run had no benefit tree, whatever there is here
+        order = without_gate(order)
     context = compose(order, recorded["sender"], recorded["stamp_offset_ns"])
     here = provenance(order, context)["models"]
     for name, sha256 in recorded["models"].items():

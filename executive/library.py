@@ -189,9 +189,31 @@ class SuccessModel(Protocol):
         ...
 
 
+class BenefitModel(Protocol):
+    """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
+
+    @property
+    def asks(self) -> tuple[str, ...]:
+        """Names of the values that it is told, in order."""
+        ...
+
+    @property
+    def threshold(self) -> float:
+        """Above this probability the greedy choice is kept."""
+        ...
+
+    def slower(self, situations: Array) -> Array:
+        """Probability that refining costs time, shape (n,), of situations (n, k); NaN is invalid."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class Models:
-    """The loaded action models of one robot, by zoo path ("goToPose/duration")."""
+    """The loaded action models of one robot, by zoo path ("goToPose/duration").
+
+    `benefit` advises against refinement where it would cost time; None: always refine.
+    """
 
     durations: Mapping[str, DurationModel]
     successes: Mapping[str, SuccessModel]
+    benefit: BenefitModel | None = None

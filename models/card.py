@@ -14,7 +14,7 @@ from typing import Any
 from schemas.errors import UsageError
 
 FORMAT = 1
-KINDS = ("duration", "success", "energy")
+KINDS = ("duration", "success", "energy", "benefit")
 UNITS = {"duration": "s", "energy": "J"}  # of what a model predicts; a probability has none
 MAX_CARD_BYTES = 1 << 20  # ours are some 20 kB
 MAX_MODEL_BYTES = 64 << 20  # ours are well below 1 MB

@@ -53,3 +53,25 @@ def check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: 
                 f"{path}: {name} was learned in [{low:g}, {high:g}] {seen[name]['unit']}, "
                 f"expected to cover [{lower:g}, {upper:g}] as the action declares"
             )
+
+
+def check_made_with(card: Card, installed: Mapping[str, str], path: Path) -> None:
+    """A benefit tree judges the choices of the action models that it was learned with, and of no others.
+
+    Args:
+      card: Of the tree.
+      installed: SHA-256 of the robot's models by "action/kind".
+      path: Where the tree lies.
+
+    Raises:
+      UsageError: One of these models is not there, or another.
+    """
+    if not card.get("models"):
+        raise UsageError(f"{path}: card names no models that the tree was learned with, expected those of the robot")
+    for name, sha256 in card["models"].items():
+        found = installed.get(name, "missing")
+        if found != sha256:
+            raise UsageError(
+                f"{path}: was learned when {name} was {sha256[:12]}…, which is {found[:12]} here: train it again "
+                f"with `tailor train-benefit`, or set refinement.benefit_gate = false"
+            )

@@ -23,12 +23,13 @@ from models.card import (
     read_card,
     sha256_of,
 )
-from models.card_checks import check_identity, check_place, check_ranges
+from models.card_checks import check_identity, check_made_with, check_place, check_ranges
 from schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
 ZOO = Path(__file__).parent / "zoo"
+BENEFIT = "refinement/benefit"  # the one model of a robot that is not of an action but of choosing subgoals
 GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
 
 
@@ -60,13 +61,28 @@ class OnnxSuccess:
 
     def probability(self, arguments: Array) -> Array:
         """Probability of success, shape (n,), of arguments (n, k); NaN where it is invalid."""
-        rows = np.ascontiguousarray(arguments, np.float64)
-        (success,) = self.session.run(None, {"arguments": rows})
-        valid = (success >= 0) & (success <= 1) & np.isfinite(rows.sum(axis=1))  # a tree sends NaN somewhere, too
-        return np.where(valid, success, np.nan).astype(np.float64)
+        return _probability(self.session, arguments)
 
 
-OnnxModel = OnnxDuration | OnnxSuccess
+@dataclass(frozen=True, slots=True)
+class OnnxBenefit:
+    """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
+
+    session: Any
+    card: Card
+    threshold: float  # above this probability the greedy choice is kept
+
+    @property
+    def asks(self) -> tuple[str, ...]:
+        """Names of the values that it is told, in order."""
+        return tuple(argument["name"] for argument in self.card["arguments"])
+
+    def slower(self, situations: Array) -> Array:
+        """Probability that refining costs time, shape (n,), of situations (n, k); NaN where it is invalid."""
+        return _probability(self.session, situations)
+
+
+OnnxModel = OnnxDuration | OnnxSuccess | OnnxBenefit
 
 
 def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
@@ -113,15 +129,36 @@ def load_robot(
         check_ranges(model.card, (declared or {}).get(name.split("/", maxsplit=1)[0], {}), folder / name)
         if isinstance(model, OnnxDuration):
             durations[name] = model
-        else:
+        elif isinstance(model, OnnxSuccess):
             successes[name] = model
     return durations, successes
+
+
+def load_benefit(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxBenefit | None:
+    """Load a robot's benefit tree; None where none has been trained.
+
+    Args:
+      robot: Folder in the zoo.
+      zoo: Another zoo than the one that ships.
+      models: The robot's action models by "action/kind": the tree must have been learned with these.
+
+    Raises:
+      UsageError: It cannot be trusted, or was learned with other action models.
+    """
+    path = (zoo or ZOO) / robot / f"{BENEFIT}.onnx"
+    if not path.exists() and not card_path(path).exists():
+        return None
+    model = load_model(path)
+    check_place(model.card, f"{robot}/{BENEFIT}", path.parent)
+    check_made_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
+    assert isinstance(model, OnnxBenefit)
+    return model
 
 
 def _names(folder: Path) -> list[str]:
     """Every "action/kind" of which there is a model or a card: one without the other is an error later."""
     files = {f"{p.parent.name}/{p.name.split('.')[0]}" for kind in KINDS for p in folder.glob(f"*/{kind}.*")}
-    return sorted(files)
+    return sorted(files - {BENEFIT})
 
 
 def _in_zoo(name: str, zoo: Path) -> Path:
@@ -152,16 +189,31 @@ def _wrapped(session: Any, card: Card, path: Path) -> OnnxModel:
     if card["kind"] in ("duration", "energy"):
         shortest, longest = card["output_range"]
         return OnnxDuration(session, card, float(shortest), float(longest))
+    if card["kind"] == "benefit":
+        return OnnxBenefit(session, card, float(card["threshold"]))
     if card["kind"] == "success":
         return OnnxSuccess(session, card, float(card["threshold"]))
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
+
+
+def _probability(session: Any, arguments: Array) -> Array:
+    rows = np.ascontiguousarray(arguments, np.float64)
+    (said,) = session.run(None, {"arguments": rows})
+    valid = (said >= 0) & (said <= 1) & np.isfinite(rows.sum(axis=1))  # a tree sends NaN somewhere, too
+    return np.where(valid, said, np.nan).astype(np.float64)
 
 
 def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
     """The model must still compute what it computed when its card was written; warms the session, too."""
     golden = card["golden"]
     arguments = np.array(golden["arguments"], np.float64)
-    found = model.predict(arguments) if isinstance(model, OnnxDuration) else (model.probability(arguments),)
+    match model:
+        case OnnxDuration():
+            found: tuple[Array, ...] = model.predict(arguments)
+        case OnnxSuccess():
+            found = (model.probability(arguments),)
+        case OnnxBenefit():
+            found = (model.slower(arguments),)
     for name, values in zip(card["outputs"], found, strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)

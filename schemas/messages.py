@@ -259,6 +259,9 @@ class RefinementReport:
     best_s: float
     trace_evaluations: tuple[int, ...] = ()
     trace_best_s: tuple[float, ...] = ()
+    situation: tuple[float, ...] = ()  # what a benefit tree sees of both choices; its card names the values
+    slower: float = -1.0  # the tree's probability that refining costs time (paper 6.3.2); -1: it was not asked
+    kept_greedy: bool = False  # the tree advised against refining
 
 
 @dataclass(frozen=True, slots=True)

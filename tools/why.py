@@ -22,7 +22,7 @@ from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import Explanation
 from tools.viewer.recorded import timed
 from tools.viewer.rows import number
-from tools.viewer.wording import durations, effort, in_words, nearness, seen
+from tools.viewer.wording import advice, durations, effort, in_words, nearness, seen
 
 NAMED = 3  # actions of a sequence; a word that the arm writes has dozens
 
@@ -109,6 +109,8 @@ def _show(reasons: Sequence[Reason]) -> None:
         for situation in reason.explanation.situations:
             console.print(f"  {seen(situation)}", highlight=False)
         console.print(f"  {nearness(reason.explanation.chosen_cost, reason.best_cost)}", highlight=False)
+        if reason.decision.report is not None and (advised := advice(reason.decision.report)):
+            console.print(f"  {advised}", highlight=False)
         console.print(f"  {effort(reason.decision)}\n", highlight=False)
 
 
@@ -121,7 +123,13 @@ def _told(reason: Reason) -> dict[str, Any]:
         "best_cost": number(reason.best_cost),
         "search": None
         if report is None
-        else {"solver": report.solver, "evaluations": report.evaluations, "checks": report.checks},
+        else {
+            "solver": report.solver,
+            "evaluations": report.evaluations,
+            "checks": report.checks,
+            "slower": report.slower if report.slower >= 0 else None,
+            "kept_greedy": report.kept_greedy,
+        },
         "thinking_s": decision.work_s,
         "actual_s": None if decision.finished is None else decision.finished.actual_s,
     }

@@ -108,6 +108,9 @@ def _refinement(context: Context, state: State, deliberation: Deliberation) -> t
         best_s=_finite(report.best_s),
         trace_evaluations=tuple(evaluations for evaluations, _ in report.trace),
         trace_best_s=tuple(best_s for _, best_s in report.trace),
+        situation=report.verdict.situation,
+        slower=report.verdict.slower,
+        kept_greedy=report.verdict.keep_greedy,
     )
     return (Output("refinement", message),)
 

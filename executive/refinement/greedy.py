@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.budget import CheckBudget
+from executive.budget import Budget, CheckBudget
 from executive.library import Models
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.selection import solver_for
@@ -42,3 +42,53 @@ def greedy(sequence: ActionSequence, models: Models, settings: RefinementSetting
         rows += objective.rows
         arrived = frozenset(unit[-1].variables)
     return Greedy(values, rows)
+
+
+class Polish:
+    """Goes on with the greedy search for the next action, with its detours, until it is finished; resumable.
+
+    Args:
+      sequence: The whole sequence.
+      begun: The greedy answer so far.
+      models: The loaded models.
+      settings: Those of refinement.
+      rng: The only source of randomness.
+    """
+
+    def __init__(
+        self,
+        sequence: ActionSequence,
+        begun: Greedy,
+        models: Models,
+        settings: RefinementSettings,
+        rng: np.random.Generator,
+    ) -> None:
+        self._begun = begun
+        self._objective = SequenceObjective(sequence.units()[0], sequence.variables, models, settings)
+        starts = self._objective.vectors([begun.values, *sequence.starts])
+        self._solver = solver_for(self._objective, settings, rng, starts)
+
+    @property
+    def values(self) -> dict[int, float]:
+        """The greedy choice, by variable id, with the best found for the next action."""
+        found = {} if self._solver.best is None else self._objective.values(self._solver.best)
+        return self._begun.values | found
+
+    @property
+    def finished(self) -> bool:
+        """Whether more budget would change nothing."""
+        return self._solver.finished
+
+    @property
+    def rows(self) -> int:
+        """Action-model rows predicted."""
+        return self._objective.rows
+
+    @property
+    def checks(self) -> int:
+        """Batches spent."""
+        return self._solver.checks
+
+    def advance(self, budget: Budget) -> None:
+        """Search on until the budget is spent or the search is finished."""
+        self._solver.advance(budget)

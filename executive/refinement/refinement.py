@@ -6,34 +6,22 @@ Anytime and resumable: the first check yields the greedy answer, every further c
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from executive.budget import Budget
 from executive.library import Array, Models
-from executive.refinement.greedy import Greedy, greedy
+from executive.refinement.benefit import Verdict, judge
+from executive.refinement.choice import Choice, choice_of
+from executive.refinement.greedy import Greedy, Polish, greedy
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.selection import solver_for
 from executive.refinement.sequence import ActionSequence
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.solver import Solver
 
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """Values for the free parameters within the horizon, and what the models predict for them.
-
-    Tuples have one entry for each action within the horizon, detours included. `total_s` is the objective's value
-    (mean + k std, penalties); +inf when the choice is not valid.
-    """
-
-    values: dict[int, float]  # by variable id
-    predicted_s: tuple[float, ...]
-    spread_s: tuple[float, ...]
-    failure: tuple[float, ...]  # predicted probability of failure
-    total_s: float
-    valid: bool
+__all__ = ["Choice", "Refinement", "Report"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +34,7 @@ class Report:
     greedy_s: float  # the objective's value for the greedy choice
     best_s: float
     trace: tuple[tuple[int, float], ...]  # (evaluations, best value) at each improvement
+    verdict: Verdict = field(default_factory=Verdict)  # whether refining is worth it
 
 
 class Refinement:
@@ -79,16 +68,22 @@ class Refinement:
         self._greedy_s = np.inf
         self._solver: Solver | None = None
         self._choice: Choice | None = None
+        self._alone: Choice | None = None  # the greedy choice
+        self._verdict = Verdict()
+        self._polish: Polish | None = None
 
     @property
     def choice(self) -> Choice | None:
-        """The best answer so far; None before the first check."""
-        return self._choice
+        """The best answer so far, or the greedy one where refining is not worth it; None before the first check."""
+        return self._alone if self._verdict.keep_greedy else self._choice
 
     @property
     def finished(self) -> bool:
         """Whether more budget would change nothing."""
-        return self._greedy is not None and (self._solver is None or self._solver.finished)
+        if self._greedy is None:
+            return False
+        found = self._solver is None or self._solver.finished
+        return found and (not self._verdict.keep_greedy or (self._polish is not None and self._polish.finished))
 
     def advance(self, budget: Budget) -> None:
         """Search on until the budget is spent or the search is finished."""
@@ -101,6 +96,8 @@ class Refinement:
             self._solver.advance(budget)
             if self._solver.best is not None and self._solver.value < before:
                 self._adopt(self._solver.best)
+            if self._solver.finished and self._verdict.keep_greedy:
+                self._go_greedy(budget)
 
     def report(self) -> Report:
         """How the search went so far."""
@@ -112,11 +109,14 @@ class Refinement:
             trace += [(first + rows, value) for rows, value in found if value < self._greedy_s]
         return Report(
             type(solver).__name__ if solver else "",
-            first + self._objective.rows,
-            (self._greedy is not None) + (solver.checks if solver else 0),
+            first + self._objective.rows + (self._polish.rows if self._polish else 0),
+            (self._greedy is not None)
+            + (solver.checks if solver else 0)
+            + (self._polish.checks if self._polish else 0),
             self._greedy_s,
             self._choice.total_s if self._choice else np.inf,
             tuple(trace),
+            self._verdict,
         )
 
     def _begin(self) -> None:
@@ -125,6 +125,7 @@ class Refinement:
         seed = self._objective.vector(self._greedy.values)
         self._adopt(seed)
         assert self._choice is not None
+        self._alone = self._choice
         self._greedy_s = self._choice.total_s
         if self._objective.ids:
             starts = [self._greedy.values] if self._start is None else [self._greedy.values, self._start]
@@ -136,12 +137,16 @@ class Refinement:
         total = float(self._judge(candidate[None])[0])
         if self._choice is not None and total >= min(self._choice.total_s, self._greedy_s - self._settings.gain_min_s):
             return
-        predictions = self._judge.predict(candidate)
-        self._choice = Choice(
-            self._judge.values(candidate),
-            tuple(float(said.duration_s[0]) for said in predictions),
-            tuple(float(said.spread_s[0]) for said in predictions),
-            tuple(float(said.failure[0]) for said in predictions),
-            total,
-            bool(np.isfinite(total)),
-        )
+        self._choice = choice_of(self._judge, candidate)
+        if self._alone is not None:
+            self._verdict = judge(self._sequence, self._alone, self._choice, self._models.benefit)
+
+    def _go_greedy(self, budget: Budget) -> None:
+        """Refining is not worth it: search the greedy choice out, as a horizon of one does."""
+        assert self._greedy is not None
+        if self._polish is None:
+            self._polish = Polish(self._sequence, self._greedy, self._models, self._settings, self._rng)
+        self._polish.advance(budget)
+        polished = choice_of(self._judge, self._judge.vector(self._polish.values))
+        if polished.valid:
+            self._alone = polished

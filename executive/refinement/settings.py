@@ -31,7 +31,8 @@ class RefinementSettings:
     # that has arrived beside its subgoal is not sent around again
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
     risk_cost_s: float = 3.0  # seconds that a failure costs: a ball that was bumped is fetched while dribbling
-    gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for (paper 6.3.2)
+    gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for
+    benefit_gate: bool = True  # keep the greedy choice where the robot's benefit tree says so (paper 6.3.2)
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
     batch: int = 256  # rows that one check of the chain solver asks of a model, about 0.1 ms with ten bagged trees

@@ -56,6 +56,7 @@ class Outcome:
     greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
     refined_cost_s: float = float("nan")
     foreseen: tuple[tuple[str, bool, float], ...] = ()  # first choice: action, whether a detour, predicted seconds
+    situation: tuple[float, ...] = ()  # what a benefit tree sees of the first choice (executive.refinement.benefit)
 
 
 def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
@@ -78,12 +79,20 @@ def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Out
         bound,
         *_costs_s(episode),
         _foreseen(episode),
+        _compared(episode),
     )
 
 
 def _foreseen(episode: Episode) -> tuple[tuple[str, bool, float], ...]:
     actions = episode.subgoals[0].actions if episode.subgoals else ()
     return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
+
+
+def _compared(episode: Episode) -> tuple[float, ...]:
+    """The first finished refinement's comparison of its choice with the greedy one; empty where they are the same."""
+    reports = (message for message in episode.messages if isinstance(message, RefinementReport) and message.finished)
+    first = next(reports, None)
+    return tuple(round(value, 6) for value in first.situation) if first is not None else ()
 
 
 def _costs_s(episode: Episode) -> tuple[float, float]:

@@ -17,9 +17,9 @@ from joblib import Parallel, delayed
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from executive import domains
+from executive.composition import load_models
 from executive.core.context import Context, Settings, make_context
 from executive.library import Models
-from models.runtime import load_robot
 from tools.episodes import SENDER, Episode, run_episode
 from tools.evaluations.bodies import body_of
 from tools.evaluations.journal import Journal
@@ -48,8 +48,10 @@ def run_all(
       title: Shown beside the progress bar.
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
-    hashes = made_of(task)
-    journals = {variant.name: Journal(store, task, variant, hashes) for variant in variants}
+    journals = {
+        variant.name: Journal(store, task, variant, made_of(task, variant.refinement.benefit_gate))
+        for variant in variants
+    }
     wanted = []
     for seed in seeds:
         for variant in variants:
@@ -98,22 +100,24 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     pins |= {(label, quantity): float(drawing.uniform(lower, upper)) for label, quantity, lower, upper in task.drawn}
     pinned: Any = PinnedDomain(domain, pins)
     settings = Settings(seed=seed, refinement=variant.refinement)
-    context = make_context(pinned, scenario, _models(domain.robot, task.zoo), settings, SENDER)
+    models = _models(domain.robot, task.zoo, variant.refinement.benefit_gate)
+    context = make_context(pinned, scenario, models, settings, SENDER)
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
     return context, start
 
 
 @lru_cache(maxsize=4)
-def _models(robot: str, zoo: str) -> Models:
+def _models(robot: str, zoo: str, gated: bool) -> Models:
     """Loaded once a process."""
-    return Models(*load_robot(robot, Path(zoo) if zoo else None))
+    return load_models(robot, zoo, gated)
 
 
-def made_of(task: Task) -> list[str]:
+def made_of(task: Task, gated: bool = True) -> list[str]:
     """What an episode depends on beside task, variant and seed: hashes of models and of mind's and body's source."""
-    models = _models(domains.load(task.domain).robot, task.zoo)
-    cards = [model.card["sha256"] for model in [*models.durations.values(), *models.successes.values()]]  # type: ignore[attr-defined]
+    models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
+    loaded = [*models.durations.values(), *models.successes.values()]
+    cards = [model.card["sha256"] for model in [*loaded, *([models.benefit] if models.benefit else [])]]
     return [*sorted(cards), source_sha256()]
 
 

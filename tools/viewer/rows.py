@@ -83,6 +83,8 @@ def refinement(message: m.RefinementReport) -> Fields:
         "checks": message.checks,
         "greedy": _cost(message.greedy_s),
         "best": _cost(message.best_s),
+        "slower": number(message.slower) if message.slower >= 0 else None,
+        "keptGreedy": message.kept_greedy,
         "trace": [[evaluations, number(best_s)] for evaluations, best_s in trace],
     }
 

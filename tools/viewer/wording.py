@@ -6,6 +6,7 @@ import math
 
 from rich.table import Table
 
+from schemas.messages import RefinementReport
 from tools.viewer.decisions import Decision
 from tools.viewer.explanation import Explanation, FreeParameter
 from tools.viewer.situation import Situation
@@ -54,6 +55,14 @@ def seen(situation: Situation) -> str:
     columns = zip(situation.features, situation.chosen, situation.greedy, strict=True)
     said = [f"{q.name} {_value(a, q.unit)} ({_value(b, q.unit)})" for q, a, b in columns]
     return f"{situation.action} sees (greedy): {', '.join(said)}"
+
+
+def advice(report: RefinementReport) -> str:
+    """What the benefit tree advised (paper 6.3.2); empty where it was not asked."""
+    if report.slower < 0:
+        return ""
+    said = "greedy kept" if report.kept_greedy else "refined"
+    return f"{said}: the benefit tree says that refining costs time with a probability of {100 * report.slower:.0f} %"
 
 
 def effort(decision: Decision) -> str:

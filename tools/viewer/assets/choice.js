@@ -30,7 +30,9 @@ class ChoicePanel {
       report.greedy === null || report.best === null
         ? ""
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
-    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}`;
+    const slower = report.slower === null ? "" : `costs time with ${(100 * report.slower).toFixed(0)} %`;
+    const advice = slower && `, ${report.keptGreedy ? "greedy kept, refining" : "refined, which"} ${slower}`;
+    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${advice}`;
   }
 
   /** With the models at hand: chosen against greedy, and the alternatives. */
