@@ -52,10 +52,6 @@ class Improvement:
         """Whether this is the search for what comes after that step."""
         return self._plan is plan and self._step == step and self._expected == expected
 
-    def comes_after(self, plan: planning.Plan, done: frozenset[int]) -> bool:
-        """Whether the step that it was to follow is done now."""
-        return self._plan is plan and self._step in done
-
     def advance(self, budget: Budget) -> None:
         """Go on until the search has ended or the budget is spent."""
         if self._search is not None and self._result is None:

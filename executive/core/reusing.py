@@ -19,7 +19,7 @@ def reusable(
     if task.plan is None:
         return None
     left = _suffix(task.plan, task.done, context.pddl_domain, problem)
-    if improvement is not None and task.running is None and improvement.comes_after(task.plan, task.done):
+    if improvement is not None and task.running is None:
         found = improvement.plan_from(problem)
         if found is not None and found.plan is not None and (left is None or better(found.plan, left)):
             return found
