@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all lint types bench clean
+.PHONY: setup demo demo-arm test test-all goldens lint types bench clean
 
 setup: .venv/.installed
 
@@ -23,6 +23,9 @@ test: setup
 
 test-all: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+goldens: setup  # tells what has changed in the golden recordings of tests/replay, and renews them
+	$(BIN)/python -m tools.goldens
 
 lint: setup
 	$(BIN)/ruff check .

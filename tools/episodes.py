@@ -28,6 +28,7 @@ DRIVER = "d1" * 16  # sender of what the world's side says
 EPOCH = 1
 
 Witness = Callable[[RecordedTick, tuple[Output, ...]], None]  # of what a tick was given, and what it answered
+Wire = Callable[[Message], Message]  # what becomes of a reading on its way to the core
 
 
 @dataclass(slots=True)
@@ -63,6 +64,7 @@ def run_episode(
     limit_s: float = 90.0,
     checks: int = CHECKS_PER_TICK,
     witness: Witness | None = None,
+    wire: Wire | None = None,
 ) -> Episode:
     """Run the scenario's goal from `start` until it is achieved, has failed, or `limit_s` of simulated time is over.
 
@@ -75,8 +77,9 @@ def run_episode(
       limit_s: Simulated seconds.
       checks: What each tick's deliberation is granted.
       witness: Called after each tick.
+      wire: Changes every reading as the bus does; None: the core hears the very values.
     """
-    link = _Link(context.domain, World(body, start, seed, events))
+    link = _Link(context.domain, World(body, start, seed, events), wire)
     episode, state = Episode(), initial_state(context)
     goal, samples = context.problem.goal_text, link.advance(0, episode)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
@@ -98,8 +101,8 @@ def run_episode(
 class _Link:
     """What the bus is live: carries commands to the driver and readings back, with no delay and nothing lost."""
 
-    def __init__(self, domain: Domain, world: World) -> None:
-        self._robot, self._sensors, self._world = domain.robot, domain.sensors, world
+    def __init__(self, domain: Domain, world: World, wire: Wire | None) -> None:
+        self._robot, self._sensors, self._world, self._wire = domain.robot, domain.sensors, world, wire
         self._declared = declaration(domain.robot)
         self._driver = Driver(self._declared, EPOCH)
         self._sequence = 0
@@ -133,7 +136,8 @@ class _Link:
         return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
 
     def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
-        return Sample(key_of(topic, self._robot), message, arrival_ns, self._sequence, DRIVER)
+        heard = message if self._wire is None else self._wire(message)
+        return Sample(key_of(topic, self._robot), heard, arrival_ns, self._sequence, DRIVER)
 
 
 def _note(episode: Episode, state: State, outputs: tuple[Output, ...], now_s: float) -> None:

@@ -11,6 +11,7 @@ from executive.core.context import Context, check_goal
 from executive.shell import Shell
 from runtime import realtime
 from runtime.clock import MonotonicClock, wall_ns
+from runtime.machine import machine
 from runtime.session import open_client
 from runtime.stopping import stop_on_signals
 from schemas import codec
@@ -40,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()
-        obtained = realtime.prepare()
-        made_of = {**provenance(order, context), "realtime": obtained}
+        made_of = {**provenance(order, context), "machine": machine()}
+        made_of["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), made_of)
         state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
     return 1 if arguments.once and state.task.result != "achieved" else 0

@@ -72,6 +72,10 @@ class RecordedRuns:
             inputs = Inputs(samples, report.goal, report.skipped, report.stopping)
             yield RecordedTick(report.tick, report.now_ns, inputs, report.checks_granted)
 
+    def inputs(self, tick: RecordedTick) -> list[bytes]:
+        """The bytes of a tick's samples as they were recorded."""
+        return [self._heard[s.key, s.sender, s.sequence].data for s in tick.inputs.samples]
+
     def _sample(self, tick: int, key: str, sender: str, sequence: int, arrival_ns: int) -> Sample:
         recorded = self._heard.get((key, sender, sequence))
         if recorded is None:

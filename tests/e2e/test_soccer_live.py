@@ -52,6 +52,24 @@ def test_recorded_live_run_is_repeated_by_the_core_bit_for_bit(recording):
 
 
 @pytest.mark.xdist_group("live")
+def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte(recording, tmp_path):
+    """Record A == record B == replay(A): the equation that defines determinism, in processes of their own."""
+    from tools.recorded_run import RecordedRuns
+
+    runs = [tmp_path / "first.mcap", tmp_path / "second.mcap"]
+    for seed, path in enumerate(runs, start=1):
+        other_hashes = {**os.environ, "PYTHONHASHSEED": str(seed)}
+        verifying = tailor("verify", str(recording), "--output", str(path))
+        subprocess.run(verifying, env=other_hashes, check=True, cwd=ROOT, capture_output=True)
+    assert runs[0].read_bytes() == runs[1].read_bytes()
+    live, again = (RecordedRuns(path).runs[0] for path in (recording, runs[0]))
+    assert live.said.keys() == again.said.keys() >= {"agilo/cmd_vel", "exec/plan", "exec/subgoals", "exec/status"}
+    for key, messages in live.said.items():
+        assert [message.data for message in messages] == [message.data for message in again.said[key]], key
+    assert command("verify", runs[0]).returncode == 0
+
+
+@pytest.mark.xdist_group("live")
 def test_verify_names_the_first_tick_that_differs(recording):
     from executive.composition import recompose
     from tools.recorded_run import RecordedRuns

@@ -1,0 +1,152 @@
+"""Golden recordings: today's core says what it said then, and where it does not, that is told."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from executive.composition import recompose
+from runtime.attachment import Origin, pack
+from runtime.inbox import Raw
+from runtime.machine import machine
+from runtime.recording import open_recording
+from runtime.tape import ENCODING, Tape
+from schemas.codec import encode
+from schemas.errors import UsageError
+from schemas.messages import Provenance, VelocityCommand
+from tests.e2e.bus_system import ROOT
+from tools import goldens
+from tools.main import main
+from tools.recorded_run import RecordedRuns, decoded
+from tools.verify import told, verify
+
+GOLDENS = {golden.name: goldens.FOLDER / f"{golden.name}.mcap" for golden in goldens.goldens()}
+SOME = GOLDENS["soccer-waypoints"]
+RENEW = "`make goldens` tells what has changed and renews them"
+
+
+def verdict_of(path):
+    runs = RecordedRuns(path)
+    return verify(runs, runs.runs[0], recompose(runs.runs[0].provenance))
+
+
+def rewritten(source, target, change):
+    """A copy in which change(value) stands for each message of a type that it knows; None: as it is."""
+    tape = Tape(target, {}, compact=True)
+    for recorded in open_recording(source).messages():
+        changed = change(decoded(recorded))
+        data = recorded.data if changed is None else encode(changed)
+        attachment = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender))
+        tape.write(Raw(recorded.key, data, attachment, ENCODING + recorded.ros_type, True, None), recorded.log_ns)
+    tape.close()
+    return target
+
+
+def with_provenance(change):
+    def changed(message):
+        if not isinstance(message, Provenance):
+            return None
+        made_of = json.loads(message.json)
+        change(made_of)
+        return replace(message, json=json.dumps(made_of, sort_keys=True))
+
+    return changed
+
+
+def other_horizon(made_of):
+    made_of["order"]["settings"]["refinement"]["horizon"] = 1
+
+
+def other_machine(made_of):
+    made_of["machine"]["arithmetic"] = "another"
+
+
+def nudged(by, change=lambda made_of: None):
+    """Changes the 100th command by some amount, and the provenance."""
+    provenance, seen = with_provenance(change), iter(range(10_000))
+
+    def changed(message):
+        if isinstance(message, VelocityCommand) and next(seen) == 100:
+            return replace(message, v=by(message.v))
+        return provenance(message)
+
+    return changed
+
+
+@pytest.mark.parametrize("name", GOLDENS)
+def test_core_says_what_it_said_when_the_golden_was_recorded(name):
+    try:
+        verdict = verdict_of(GOLDENS[name])
+    except UsageError as error:
+        pytest.fail(f"{name}: {error}; {RENEW}")
+    assert verdict.difference is None, f"{name}: {told(verdict)}; {RENEW}"
+    assert verdict.ticks > 50
+
+
+def test_there_are_no_other_goldens_and_all_together_they_are_small():
+    files = set(goldens.FOLDER.iterdir())
+    assert files == set(GOLDENS.values())
+    assert sum(path.stat().st_size for path in files) < 600_000
+
+
+def test_a_changed_setting_fails_with_tick_field_and_both_values(tmp_path, capsys):
+    path = rewritten(SOME, tmp_path / "changed.mcap", with_provenance(other_horizon))
+    assert main(["verify", str(path)]) == 1
+    said = capsys.readouterr().out
+    assert re.match(r"different: tick \d+, exec/refinement, horizon: recorded 2, today 1\n", said), said
+
+
+def test_a_last_bit_is_a_difference_on_the_same_kind_of_machine(tmp_path):
+    path = rewritten(SOME, tmp_path / "bit.mcap", nudged(lambda v: math.nextafter(v, 9.0)))
+    difference = verdict_of(path).difference
+    assert (difference.tick, difference.key, difference.field) == (102, "agilo/cmd_vel", "v")
+    assert float(difference.recorded) == math.nextafter(float(difference.today), 9.0)
+
+
+def test_a_last_bit_is_forgiven_and_told_on_another_kind_of_machine(tmp_path, capsys):
+    path = rewritten(SOME, tmp_path / "bit.mcap", nudged(lambda v: math.nextafter(v, 9.0), other_machine))
+    assert main(["verify", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("equal within 1e-09: ")
+    assert "; 1 of them not to the last bit\n  recorded on arithmetic another against arithmetic" in said
+
+
+def test_more_than_rounding_is_a_difference_on_any_machine(tmp_path):
+    path = rewritten(SOME, tmp_path / "more.mcap", nudged(lambda v: v + 1e-8, other_machine))
+    assert verdict_of(path).difference is not None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs glibc's switch for CPU features")
+def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
+    switched = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
+    asked = [sys.executable, "-c", "from runtime.machine import arithmetic; print(arithmetic())"]
+    there = subprocess.run(asked, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
+    if there == machine()["arithmetic"]:
+        pytest.skip("this libm computes alike with and without")
+    command = [sys.executable, "-m", "tools.main", "verify", str(SOME)]
+    done = subprocess.run(command, env=switched, capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_goldens_are_renewed_only_after_telling_what_has_changed(tmp_path, capsys, monkeypatch):
+    kept = tmp_path / SOME.name
+    rewritten(SOME, kept, nudged(lambda v: v + 0.5, other_horizon))
+    before = kept.read_bytes()
+    monkeypatch.setattr(goldens, "FOLDER", tmp_path)
+    assert goldens.main([SOME.stem, "--check"]) == 1
+    said = capsys.readouterr().out
+    assert f"{SOME.stem}: changed\n" in said
+    assert "settings.refinement.horizon was 1, now 2" in said
+    assert re.search(r"first at  tick 102, agilo/cmd_vel, v: was [\d.]+, now [\d.]+", said)
+    assert kept.read_bytes() == before
+    assert goldens.main([SOME.stem]) == 0
+    assert verdict_of(kept).difference is None
+    assert goldens.main([SOME.stem, "--check"]) == 0
+    assert capsys.readouterr().out.endswith(f"{SOME.stem}: as before\n")
