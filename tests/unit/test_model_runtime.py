@@ -31,9 +31,9 @@ def changed_card(path: Path, **changes: object) -> None:
 
 def test_all_shipped_models_load_and_name_their_makers() -> None:
     durations, successes = runtime.load_robot("agilo")
-    assert set(durations) >= {"goToPose/duration", "dribbleBall/duration"}
+    assert set(durations) >= {"goToPose/duration", "approachBall/duration", "dribbleBall/duration"}
     assert {name.split("/")[1] for name in durations} <= {"duration", "energy"}
-    assert set(successes) == {"goToPose/success"}
+    assert set(successes) == {"approachBall/success"}
     for model in (*durations.values(), *successes.values()):
         assert model.card["episodes"]["count"] >= 1000
         assert model.card["command"].startswith("tailor gather agilo")
@@ -55,7 +55,7 @@ def test_an_answer_out_of_range_is_invalid() -> None:
 
 
 def test_probability_of_what_is_not_a_number_is_invalid() -> None:
-    model = runtime.load_model("agilo/goToPose/success")
+    model = runtime.load_model("agilo/approachBall/success")
     assert np.isnan(model.probability(np.array([[0, 0, np.nan, 0, 2.0, 0, 0, 0]]))).all()
 
 
