@@ -23,6 +23,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "benefit": ("tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
     "figure1": ("tools.evaluations.figure1", "paths, greedy and refined, and how smooth actions pass over"),
     "figure11": ("tools.evaluations.figure11", "durations over the angle of approach, predicted and simulated"),
+    "figure15": ("tools.evaluations.figure15", "where an asserted subgoal may lie, and the runs without and with it"),
     "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
     "live": ("tools.evaluations.live", "a sample live over the bus against the same starts in lock-step"),
 }

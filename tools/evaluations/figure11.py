@@ -71,7 +71,8 @@ def _swept(task: Task, seed: int, arguments: argparse.Namespace) -> Sweep | None
         return None
     angles = np.linspace(-math.pi, math.pi, arguments.points, endpoint=False)
     variants = [_pinned(phi, chosen["v"], k) for phi in angles.tolist() for k in range(arguments.repeats)]
-    found = run_all(task, variants, [seed], arguments.jobs, arguments.store, f"figure 11, start {seed}")
+    store = arguments.store / "figure11"  # apart, because every angle has a file of its own
+    found = run_all(task, variants, [seed], arguments.jobs, store, f"figure 11, start {seed}")
     runs = [found[variant.name][seed] for variant in variants]
     by_angle = [runs[i : i + arguments.repeats] for i in range(0, len(runs), arguments.repeats)]
     return sweep_of(seed, angles, chosen["v"], by_angle, _angle(greedy), chosen["phi"])

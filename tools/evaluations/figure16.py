@@ -40,13 +40,22 @@ def run(arguments: argparse.Namespace) -> int:
 
 def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
     """The row of figures: every approach once as it is and once with assertion."""
-    base = settings or RefinementSettings()
-    blind = replace(base, p_fail_max=1.0, p_fail_assert=1.0, risk_cost_s=0.0)  # nothing is predicted to fail
-    task = Task("soccer", "approach-dribble", "", arguments.zoo, GOAL, DRAWN)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
-    variants = [Variant("blind", blind), Variant("asserted", base)]
-    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "figure 16")
+    task = assertion_task(arguments.zoo)
+    found = run_all(task, variants(settings), seeds, arguments.jobs, arguments.store, "figure 16")
     return summary(found["blind"], found["asserted"])
+
+
+def assertion_task(zoo: str) -> Task:
+    """Approaches of the ball alone, to a goal state of each start's own."""
+    return Task("soccer", "approach-dribble", "", zoo, GOAL, DRAWN)
+
+
+def variants(settings: RefinementSettings | None = None) -> tuple[Variant, Variant]:
+    """Without assertion ("blind": nothing is predicted to fail) and with it ("asserted")."""
+    base = settings or RefinementSettings()
+    blind = replace(base, p_fail_max=1.0, p_fail_assert=1.0, risk_cost_s=0.0)
+    return Variant("blind", blind), Variant("asserted", base)
 
 
 def succeeded(outcome: Outcome) -> bool:

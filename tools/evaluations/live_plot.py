@@ -1,43 +1,48 @@
-"""The plot of live against lock-step: each start a dot, and how far apart two runs of a start are."""
+"""The plot of live against lock-step: every start's run among its lock-step runs, and the ratios with their mean."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.evaluations.equivalence import equivalence
+from tools.evaluations.agreement import Starts, agreement
 from tools.evaluations.plots import ACCENT, INK, PALE
 
 COLOURS = (ACCENT, INK)
 
 
-def draw_agreement(pairs: Mapping[str, tuple[Sequence[float], Sequence[float]]], margin_s: float, path: Path) -> Path:
-    """Draw durations into a PNG.
+def draw_agreement(pairs: Mapping[str, Starts], margin_pct: float, path: Path) -> Path:
+    """Draw into a PNG.
 
     Args:
-      pairs: By name of the run: lock-step's durations and its own, in seconds.
-      margin_s: Differences of means within it do not matter.
+      pairs: By name of the kind of run; the first is drawn start by start.
+      margin_pct: Mean ratios within it do not matter.
     """
-    figure = Figure(figsize=(10, 4.4), layout="constrained")
+    figure = Figure(figsize=(12, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
-    top = 1.05 * max(max(*first, *second) for first, second in pairs.values())
-    left.plot([0, top], [0, top], color=PALE, zorder=0)
-    right.axvspan(-margin_s, margin_s, color=PALE, alpha=0.4, label=f"margin ± {margin_s:.2f} s")
-    right.axvline(0, color=PALE)
-    for number, ((name, (first, second)), colour) in enumerate(zip(pairs.items(), COLOURS, strict=True)):
-        left.scatter(first, second, s=22, color=colour, alpha=0.7, label=name)
-        said = equivalence(first, second, margin_s)
-        apart = np.subtract(second, first)
-        right.scatter(apart, np.full(len(apart), number) + 0.12, s=18, color=colour, alpha=0.6)
-        error = [[said.difference - said.ci95[0]], [said.ci95[1] - said.difference]]
-        right.errorbar([said.difference], [number - 0.12], xerr=error, fmt="o", color=colour, capsize=5)
-    left.set(xlabel="lock-step (s)", ylabel="the other run (s)", xlim=(0, top), ylim=(0, top), title="duration")
+    name, starts = next(iter(pairs.items()))
+    order = np.argsort([r.mean() for r in starts.lockstep_s])
+    for place, index in enumerate(order):
+        repeats = starts.lockstep_s[index]
+        left.plot([place] * len(repeats), repeats, "o", color=PALE, markersize=4)
+        left.plot([place], [starts.run_s[index]], "D", color=ACCENT, markersize=6)
+    left.plot([], [], "D", color=ACCENT, label=name)
+    left.plot([], [], "o", color=PALE, label="lock-step, each with noise of its own")
+    left.set(xlabel="start, by its mean duration", ylabel="duration (s)", ylim=(0, None), title="each start")
     left.legend(frameon=False)
-    right.set_yticks(range(len(pairs)), list(pairs))
-    right.set(ylim=(-0.6, len(pairs) - 0.4), xlabel="seconds longer than lock-step from the same start")
+    right.axvspan(-margin_pct, margin_pct, color=PALE, alpha=0.4, label=f"margin ± {margin_pct:g} %")
+    right.axvline(0, color=PALE)
+    for number, (starts, colour) in enumerate(zip(pairs.values(), COLOURS, strict=True)):
+        apart = 100 * np.expm1(starts.log_ratio)
+        right.scatter(apart, np.full(len(apart), number + 0.12), s=18, color=colour, alpha=0.6)
+        said = agreement(starts, margin_pct)
+        mean, (low, high) = said["difference_pct"], said["ci95_pct"]
+        right.errorbar([mean], [number - 0.12], xerr=[[mean - low], [high - mean]], fmt="o", color=colour, capsize=5)
+    right.set_yticks(range(len(pairs)), [name.replace(", ", ",\n") for name in pairs])
+    right.set(ylim=(-0.6, len(pairs) - 0.4), xlabel="longer than the start's mean in lock-step (%)")
     right.set_title("each start, and the mean with its 95 % interval")
     right.legend(frameon=False, loc="upper right")
     path.parent.mkdir(parents=True, exist_ok=True)
