@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
+from schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, Subgoals, TickReport
 
 
 class Screen(Protocol):
@@ -59,8 +59,8 @@ class _Panel:
             self._status = message
         elif isinstance(message, TickReport):
             self._tick = message
-        elif isinstance(message, ActionFinished):
-            self.tell(_news(message))
+        elif isinstance(message, ActionFinished | PlanReport) and (line := _news(message)):
+            self.tell(line)
         self._live.update(self._table())
 
     def _table(self) -> Table:
@@ -98,6 +98,8 @@ def _news(message: Message) -> str:
         took = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
         reason = f" ({message.reason})" if message.reason else ""
         return f"  {message.action} {message.outcome}{reason}: {took}"
+    if isinstance(message, PlanReport) and message.status == "failed":
+        return f"  planner failed: {message.reason}"
     if isinstance(message, ExecStatus):
         if message.result or message.action:
             return f"  {message.result or message.action}"

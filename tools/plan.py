@@ -17,17 +17,16 @@ from typing import Any
 from executive.planning import (
     Domain,
     FlawOrder,
-    Plan,
     Problem,
     Result,
     Search,
     Settings,
+    completed,
     format_links,
     format_plan,
     parse_domain,
     parse_plan,
     parse_problem,
-    relink,
     validate,
 )
 from executive.planning.flaw_orders import NAMED
@@ -179,7 +178,7 @@ def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Resul
 
 
 def _ask(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
-    """Lets the external planner answer; its plan is parsed and, where it has no causal links, linked."""
+    """Lets the external planner answer; its plan is parsed, and the causal links that it lacks are added."""
     limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
     child = PlannerProcess(args.planner, _read(args.domain), _read(args.problem), limit_s)
     try:
@@ -188,13 +187,12 @@ def _ask(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
     finally:
         child.kill()
     try:
-        plan: Plan | None = parse_plan(answer.output)
+        plan = completed(parse_plan(answer.output), domain, problem)
     except UsageError as error:
         return Result("limit", None, f"{answer.reason}; {error}", 0, 0)
-    assert plan is not None
-    if not plan.links:
-        plan = relink(plan, domain, problem)
-    return Result("solved" if plan else "limit", plan, "" if plan else "the planner's plan is unsound", 0, 0)
+    if isinstance(plan, str):
+        return Result("limit", None, f"the planner's plan is unsound: {plan}", 0, 0)
+    return Result("solved", plan, "", 0, 0)
 
 
 # --- printing ------------------------------------------------------------------------------------

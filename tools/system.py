@@ -65,7 +65,7 @@ def free_endpoint() -> str:
 
 
 def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
-    inbox = session.inbox(("driver", "status", "tick", "finished", "subgoals"), robot)
+    inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot)
     if plan.record is not None:
         listened = session.publisher("plan", robot)
         supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())

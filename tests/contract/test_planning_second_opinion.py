@@ -6,7 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.planning import DEFAULT, MATCHING, Settings, format_plan, validate
+from executive import domains
+from executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
 from tests.planning_problems import DATA, OWN, SHARED, read, solve
 from tests.unit.test_planning_language import IRON, TIMED, WORKSHOP
 
@@ -50,6 +51,20 @@ def test_both_refuse_the_same_plans(name):
                 steps = sorted([*plan.steps[:number], moved, *plan.steps[number + 1 :]], key=lambda s: s.start)
                 other = dataclasses.replace(plan, steps=tuple(steps))
                 assert (validate(other, domain, problem) == "") == accepted(TEXTS[name], other), format_plan(other)
+
+
+# --- what an external planner is asked -----------------------------------------------------------
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_problem_as_an_external_planner_gets_it_is_the_same_in_anothers_eyes(name):
+    domain, problem = read(*TEXTS[name])
+    assert accepted([TEXTS[name][0], format_problem(problem)], solve(domain, problem, DEFAULT).plan)
+
+
+@pytest.mark.parametrize(("name", "scenario"), [(d, s) for d in domains.DOMAINS for s in domains.scenarios(d)[:8]])
+def test_the_domains_that_ship_are_pddl_that_another_reads(name, scenario):
+    texts = [domains.load(name).pddl, domains.seeded_scenario(name, scenario, 0)[0].problem]
+    domain, problem = read(*texts)
+    assert accepted([texts[0], format_problem(problem)], solve(domain, problem).plan)
 
 
 # --- random actions with durations ---------------------------------------------------------------

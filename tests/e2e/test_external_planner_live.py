@@ -31,7 +31,7 @@ def run_with(tmp_path, planner, limit_s=10.0):
     )
     (verdict,) = json.loads(verify.stdout)
     assert verdict["difference"] is None
-    found = {}
+    found = {"screen": up.stdout}
     for _, message in open_recording(path).decoded():
         found.setdefault(type(message), []).append(message)
     return found
@@ -64,6 +64,7 @@ def test_a_planner_that_hangs_costs_its_limit_but_no_tick_and_leaves_no_process(
         ("failed", "external"),
         ("solved", "searched"),
     ]
+    assert "planner failed: timeout: the planner was killed after 1.5 s; our own planner takes over" in found["screen"]
     waiting = [tick for tick in found[TickReport] if tick.stamp_ns <= answer.stamp_ns]
     assert sum(tick.skipped for tick in waiting) == 0
     assert len(waiting) >= 15

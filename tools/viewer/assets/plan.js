@@ -52,7 +52,10 @@ class PlanGraph {
     );
     if (!base.steps?.length) {
       this.panel.body.replaceChildren(
-        html("p", { class: "empty", text: base.text || "No steps: the goal already holds." }),
+        html("p", {
+          class: "empty",
+          text: base.text || (base.status === "solved" ? "No steps: the goal already holds." : "No plan."),
+        }),
       );
       return;
     }
