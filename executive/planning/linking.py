@@ -2,73 +2,42 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from executive.planning.language import Action, Domain, Literal, When
+from executive.planning.language import Domain, Literal
 from executive.planning.plan import GOAL, Link, Plan, Step
 from executive.planning.problem import Problem
-from executive.planning.state import Binding, Objects, State, fact_of, holds, support
-
-
-@dataclass(frozen=True, slots=True)
-class _Moment:
-    """A step's start or end, or both at once when actions take no time."""
-
-    time: float
-    rank: int  # at one time ends come first
-    step: Step
-    moments: tuple[When, ...]
-
-
-def _moments(plan: Plan) -> list[_Moment]:
-    if not plan.durative:
-        return [_Moment(float(n), 0, step, ("start", "over", "end")) for n, step in enumerate(plan.steps)]
-    starts = [_Moment(step.start, 1, step, ("start", "over")) for step in plan.steps]
-    ends = [_Moment(step.start + step.duration, 0, step, ("end",)) for step in plan.steps]
-    return sorted(starts + ends, key=lambda moment: (round(moment.time, 6), moment.rank))
+from executive.planning.rehearsal import Need, rehearse
+from executive.planning.state import Objects, fact_of
 
 
 def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:
-    """Each condition's literals linked to whoever made them true last; of a consumer the last condition first."""
-    objects, state = Objects(problem), frozenset(problem.initial)
-    producers: dict[Literal, int] = {}  # the initial state for what is not in it
-    for moment in _moments(plan):
-        step = moment.step
-        action = next(action for action in domain.actions if action.name == step.action[0])
-        binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
-        needed = _support(action, binding, tuple(w for w in moment.moments if w != "over"), state, objects)
-        made = _effects(action, binding, moment, state, objects)
-        later = frozenset(state - {x.fact for x in made if not x.positive}) | {x.fact for x in made if x.positive}
-        if "over" in moment.moments:
-            needed += _support(action, binding, ("over",), later if plan.durative else state, objects)
-        yield from (Link(producers.get(x, 0), x, step.id) for x in reversed(needed) if producers.get(x) != step.id)
-        producers.update(dict.fromkeys(made, step.id))
-        state = later
-    goal = dict.fromkeys(support(problem.goal, {}, state, objects))
-    yield from (Link(producers.get(literal, 0), literal, GOAL) for literal in reversed(goal))
+    """Each condition's literals linked to whoever made them true last; of a consumer the last condition first.
 
-
-def _support(
-    action: Action, binding: Binding, moments: tuple[When, ...], state: State, objects: Objects
-) -> list[Literal]:
-    formulas = [condition.formula for condition in action.conditions if condition.when in moments]
-    return list(dict.fromkeys(literal for f in formulas for literal in support(f, binding, state, objects)))
-
-
-def _effects(action: Action, binding: Binding, moment: _Moment, state: State, objects: Objects) -> list[Literal]:
-    """The literals that a moment makes true; add effects win over delete effects."""
-    instant = action.duration is None and moment.rank == 0
-    active = [e for e in action.effects if e.when in moment.moments or instant]
-    literals = {
-        Literal(fact_of(effect.atom, inner), effect.positive)
-        for effect in active
-        for inner in objects.bindings(effect.variables, binding)
-        if all(holds(condition.formula, inner, state, objects) for condition in effect.condition)
-    }
-    return sorted(
-        (x for x in literals if x.positive or Literal(x.fact) not in literals), key=lambda x: (x.fact, x.positive)
-    )
+    Behind these, what conditional effects need: the conditions of those that a link comes from, and the opposite of
+    the conditions of those that would break a link.
+    """
+    events = rehearse(plan, domain, problem)
+    pending: deque[tuple[Need, int]] = deque()
+    for position, event in enumerate(events):
+        pending.extend((need, position) for need in reversed(event.needs))
+    seen: set[tuple[Link, int]] = set()
+    made: set[Link] = set()
+    while pending:
+        need, position = pending.popleft()
+        source, consumer = need.source, events[position].step
+        link = Link(source.step, need.literal, consumer)
+        if (link, position) in seen:
+            continue
+        seen.add((link, position))
+        if link not in made and source.step != consumer:
+            made.add(link)
+            yield link
+        pending.extend((condition, source.position) for condition in source.why)
+        opposite = Literal(need.literal.fact, not need.literal.positive)
+        for between in range(source.position + 1, position):
+            pending.extend((kept, between) for kept in events[between].spared.get(opposite, ()))
 
 
 # --- orderings -----------------------------------------------------------------------------------
