@@ -31,7 +31,7 @@ def run_with(tmp_path, planner, limit_s=10.0):
     )
     (verdict,) = json.loads(verify.stdout)
     assert verdict["difference"] is None
-    found = {"screen": up.stdout}
+    found = {"screen": " ".join(up.stdout.split())}
     for _, message in open_recording(path).decoded():
         found.setdefault(type(message), []).append(message)
     return found
