@@ -198,6 +198,11 @@ class BenefitModel(Protocol):
         ...
 
     @property
+    def sequences(self) -> frozenset[tuple[str, ...]]:
+        """Kinds of sequences that it was learned for: names of actions, detours left out."""
+        ...
+
+    @property
     def threshold(self) -> float:
         """Above this probability the greedy choice is kept."""
         ...

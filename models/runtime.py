@@ -77,6 +77,11 @@ class OnnxBenefit:
         """Names of the values that it is told, in order."""
         return tuple(argument["name"] for argument in self.card["arguments"])
 
+    @property
+    def sequences(self) -> frozenset[tuple[str, ...]]:
+        """Kinds of sequences that it was learned for: names of actions, detours left out."""
+        return frozenset(tuple(names) for names in self.card["sequences"])
+
     def slower(self, situations: Array) -> Array:
         """Probability that refining costs time, shape (n,), of situations (n, k); NaN where it is invalid."""
         return _probability(self.session, situations)

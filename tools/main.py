@@ -33,6 +33,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("tools.plan", "plan with PDDL files, in VHPOP's manner"),
     "gather": ("tools.gather", "run actions in simulation and keep the episodes"),
     "train": ("tools.train", "make action models from episodes"),
+    "train-benefit": ("tools.train_benefit", "learn when not to refine, with the action models that there are"),
     "models": ("tools.models", "list, show, plot and check action models"),
     "evaluate": ("tools.evaluate", "reproduce the paper's tables and figures"),
     "bench": ("tools.bench", "measure speed and memory"),

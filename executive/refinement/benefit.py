@@ -55,7 +55,7 @@ def check_benefit(model: BenefitModel) -> BenefitModel:
 
 
 def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: BenefitModel | None) -> Verdict:
-    """Compare two choices of one stretch and ask the tree, if there is one.
+    """Compare two choices of one stretch and ask the tree, if there is one for such a sequence.
 
     Where the greedy choice is not valid, or looks ahead as far as the refined one, there is nothing to decide.
     """
@@ -63,7 +63,8 @@ def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: Bene
     if not (greedy.valid and refined.valid) or len(greedy.predicted_s) == first or greedy.values == refined.values:
         return Verdict()
     seen = situation(sequence, greedy, refined)
-    if model is None:
+    stretch = sequence.actions[: len(greedy.predicted_s)]
+    if model is None or tuple(a.action.name for a in stretch if not a.asserted) not in model.sequences:
         return Verdict(seen)
     slower = float(model.slower(np.array([seen]))[0])
     return Verdict(seen, slower, slower > model.threshold) if math.isfinite(slower) else Verdict(seen)

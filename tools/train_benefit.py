@@ -1,0 +1,165 @@
+"""Learn when not to refine (paper 6.3.2): a tree that predicts where refinement slows, from starts run both ways."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+
+from executive.refinement.settings import RefinementSettings
+from models.runtime import ZOO
+from schemas.errors import UsageError
+
+if TYPE_CHECKING:
+    from models.benefit import Pairs
+    from tools.evaluations.outcome import Outcome, Task
+
+FIRST_SEED = 700_000
+EVALUATION_SEED = 1_000_000  # from here on seeds are kept for evaluations
+EPILOG = """\
+examples:
+  tailor train-benefit agilo
+  tailor train-benefit agilo --episodes 300 --zoo out/zoo
+
+The tree judges the choices of the action models that are in the zoo now, so train it after them; `tailor train`
+removes one that was learned with other models. Broken off, the same command goes on. `tailor evaluate benefit` says
+what the tree is worth on fresh episodes; [refinement] benefit_gate = false switches it off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """Pairs to learn from, and what a card says of them."""
+
+    pairs: Pairs
+    sequences: tuple[tuple[str, ...], ...]
+    started: int  # pairs of episodes that were run
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    parser.add_argument("robot", help="whose models")
+    parser.add_argument("--scenario", default="approach-dribble", help="to run (default: %(default)s)")
+    parser.add_argument("--episodes", type=int, default=1200, help="pairs to run (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=FIRST_SEED, help="of the first start (default: %(default)s)")
+    parser.add_argument("--learner", default="forest", help="forest, distilled, tree (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
+    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
+    parser.add_argument(
+        "--store", type=Path, default=Path("out/evaluate"), help="finished episodes (default: %(default)s)"
+    )
+    parser.add_argument("--json", action="store_true", help="print what the test said as JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Gather, learn, publish, check; exit code 0."""
+    from models.runtime import load_model
+
+    path, test = train(arguments)
+    load_model(path)  # a model that does not pass its own check must not ship
+    if arguments.json:
+        print(json.dumps(test))
+        return 0
+    plain = test["ungated"]
+    console = Console(highlight=False)
+    console.print(f"{path}: learned from {test['n']} pairs; on pairs that its twins had not seen:")
+    console.print(f"  right {test['right_pct']:.1f} % (always refining: {plain['right_pct']:.1f} %)")
+    console.print(
+        f"  improvement {plain['improvement_pct']:.2f} % without, {test['improvement_pct']:.2f} % with the tree"
+    )
+    console.print(f"  slower episodes {plain['slower_pct']:.1f} % without, {test['slower_pct']:.1f} % with the tree")
+    return 0
+
+
+def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
+    """Make the tree and write it to the zoo; returns where it lies, and its test."""
+    from executive.composition import load_models
+    from executive.refinement.benefit import SITUATION
+    from models.benefit import train_benefit
+    from models.benefit_publishing import AboutBenefit, publish_benefit
+    from tools import gathering
+    from tools.evaluations.outcome import Task
+
+    domain = gathering.domain_of(arguments.robot)
+    settings = RefinementSettings(benefit_gate=False)
+    zoo = "" if arguments.zoo == ZOO else str(arguments.zoo)
+    found = gathered(Task(domain, arguments.scenario, zoo=zoo), settings, arguments)
+    trained = train_benefit(found.pairs, SITUATION, arguments.learner, arguments.seed)
+    loaded: Any = load_models(arguments.robot, zoo)
+    models = {**loaded.durations, **loaded.successes}
+    about = AboutBenefit(
+        arguments.robot,
+        SITUATION,
+        found.sequences,
+        {name: model.card["sha256"] for name, model in sorted(models.items())},
+        dataclasses.asdict(settings),
+        {
+            "scenario": arguments.scenario,
+            "started": found.started,
+            "seed": arguments.seed,
+            "source_sha256": gathering.source_hash(arguments.robot, domain),
+        },
+        arguments.learner,
+        arguments.seed,
+        _command(arguments),
+    )
+    return publish_benefit(arguments.zoo, found.pairs, trained, about), dict(trained.test)
+
+
+def gathered(task: Task, settings: RefinementSettings, arguments: argparse.Namespace) -> Gathered:
+    """Run every start greedy and refined.
+
+    Raises:
+      UsageError: Seeds that are kept for evaluations.
+    """
+    from tools.evaluations.outcome import Variant
+    from tools.evaluations.trials import run_all
+
+    end = arguments.seed + arguments.episodes
+    if not 0 <= arguments.seed < end <= EVALUATION_SEED:
+        raise UsageError(
+            f"seeds {arguments.seed} .. {end}, expected some from 0 to {EVALUATION_SEED}: fresh ones judge"
+        )
+    variants = [Variant(f"h{h}", replace(settings, horizon=h)) for h in (1, 2)]
+    seeds = range(arguments.seed, end)
+    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "greedy and refined")
+    both = [(found["h1"][seed], found["h2"][seed]) for seed in seeds]
+    return Gathered(pairs_of(both), _sequences(refined for _, refined in both), len(both))
+
+
+def pairs_of(outcomes: Sequence[tuple[Outcome, Outcome]]) -> Pairs:
+    """The pairs (greedy, refined) that reached their goal both ways and in which there was something to choose."""
+    import numpy as np
+
+    from models.benefit import Pairs
+
+    usable = [(g, r) for g, r in outcomes if g.achieved and r.achieved and r.situation]
+    return Pairs(
+        np.array([refined.situation for _, refined in usable]),
+        np.array([greedy.duration_s for greedy, _ in usable]),
+        np.array([refined.duration_s for _, refined in usable]),
+    )
+
+
+def _sequences(outcomes: Any) -> tuple[tuple[str, ...], ...]:
+    """The kinds of sequences that were compared: names of actions within the horizon, detours left out."""
+    kinds = {
+        tuple(name for name, asserted, _ in outcome.foreseen if not asserted)[:2]
+        for outcome in outcomes
+        if outcome.situation
+    }
+    return tuple(sorted(kinds))
+
+
+def _command(arguments: argparse.Namespace) -> str:
+    return (
+        f"tailor train-benefit {arguments.robot} --scenario {arguments.scenario} --episodes {arguments.episodes} "
+        f"--seed {arguments.seed} --learner {arguments.learner}"
+    )
