@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from executive.library import Fact
-from executive.planning.ground_formula import World
+from executive.planning.ground_formula import Binding, World, bindings
 from executive.planning.ground_task import GroundTask
-from executive.planning.language import And, Atom, Formula, Literal, Not
+from executive.planning.language import Action, And, Atom, Formula, Literal, Not
 from executive.planning.orderings import Orderings
 from executive.planning.partial_plan import PartialPlan, step_of
 from executive.planning.plan import GOAL, Link, Plan, Step
@@ -90,14 +90,30 @@ def _links(plan: PartialPlan, task: GroundTask, world: World, steps: tuple[Step,
     for step in steps:
         schema = schemata[step.action[0]]
         binding = {p.name: name for p, name in zip(schema.parameters, step.action[1:], strict=True)}
-        formula = And(tuple(condition.formula for condition in schema.conditions))
-        yield from (Link(0, literal, step.id) for literal in static_literals(formula, binding, world))
+        formulas = [condition.formula for condition in schema.conditions]
+        made = (link.literal for links in found.values() for link in links if link.producer == step.id)
+        static = dict.fromkeys(static_literals(And(tuple(formulas)), binding, world))
+        static.update(dict.fromkeys(x for literal in made for x in _static_guard(schema, binding, literal, world)))
+        yield from (Link(0, literal, step.id) for literal in static)
         yield from found.get(step.id, ())
     yield from (Link(0, literal, GOAL) for literal in static_literals(task.problem.goal, {}, world))
     yield from found.get(GOAL, ())
 
 
-def static_literals(formula: Formula, binding: dict[str, str], world: World) -> tuple[Literal, ...]:
+def _static_guard(schema: Action, binding: Binding, made: Literal, world: World) -> tuple[Literal, ...]:
+    """The static literals under which a conditional effect of the action makes a literal true."""
+    for effect in schema.effects:
+        if (effect.atom.predicate, effect.positive) == (made.fact[0], made.positive):
+            formula = And(tuple(condition.formula for condition in effect.condition))
+            for inner in bindings(effect.variables, binding, world):
+                fact: Fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
+                static = static_literals(formula, inner, world)
+                if fact == made.fact and all((x.fact in world.facts) == x.positive for x in static):
+                    return static
+    return ()
+
+
+def static_literals(formula: Formula, binding: Binding, world: World) -> tuple[Literal, ...]:
     """The static literals that a formula demands outright, without disjunctions; the last one first."""
     found: list[Literal] = []
     pending = [formula]

@@ -114,6 +114,13 @@ def test_conditional_effects_achieve_under_their_condition(lamps):
     assert Literal(("on", "a")) in {link.literal for link in plan.links_to(plan.steps[1].id)}
 
 
+def test_static_conditions_of_conditional_effects_are_linked_to_the_initial_state(lamps):
+    effect = "(forall (?l - lamp ?r - room) (when (and (in ?l ?r) (on ?l)) (open ?r)))"
+    actions, plan = lamps("(open cellar)", effect=effect, unlock="(done)")
+    assert actions == ["finish"]
+    assert {str(link.literal) for link in plan.links_to(1)} == {"(in c cellar)", "(on c)"}
+
+
 def test_conditional_effects_threaten_and_are_separated(lamps):
     # finish switches a off when b is on; b may only be on afterwards
     actions, _ = lamps("(and (done) (on a) (on b))", effect="(and (done) (when (on b) (not (on a))))", unlock="(done)")
