@@ -38,7 +38,12 @@ def printed(name):
 
 
 def reference(folder, config, status="solved"):
-    """The original's solved problems (status "": all that it tried): (domain, problem) -> row of the table."""
+    """The original's solved problems (status "": all that it tried): (domain, problem) -> row of the table.
+
+    Empty when the folder is absent.
+    """
+    if not folder.exists():
+        return {}
     with (folder / "reference.csv").open() as lines:
         rows = [row for row in csv.DictReader(lines) if row["config"] == config and status in ("", row["status"])]
     return {(row["domain"], row["problem"]): row for row in rows}

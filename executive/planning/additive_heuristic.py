@@ -31,11 +31,12 @@ NOTHING = Value(0, 0, 0)
 
 @dataclass(frozen=True, slots=True)
 class Estimates:
-    """The values of all literals, by number."""
+    """The values of all literals, by number; and the numbers of the reachable actions, level by level of the graph."""
 
     values: tuple[Value, ...]
     cost: tuple[float, ...]
     work: tuple[float, ...]
+    reached: tuple[int, ...]
 
     def of(self, condition: GroundCondition) -> Value:
         """The value of a condition: sums over conjunctions, the cheapest part of a disjunction."""
@@ -86,22 +87,24 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
         values[literal] = INITIAL
     users = _users(actions, count)
     pending: Iterable[GroundAction] = actions
+    reached: dict[int, None] = {}
     while pending:
         changed: dict[int, Value] = {}
         for action in pending:
-            _relax(action, costs[action.number], values, changed)
+            if _relax(action, costs[action.number], values, changed):
+                reached.setdefault(action.number)
         for literal, value in changed.items():
             values[literal] = value
         numbers = sorted({number for literal in changed for number in users[literal]})
         pending = [actions[number] for number in numbers]
-    return Estimates(tuple(values), tuple(v.cost for v in values), tuple(v.work for v in values))
+    return Estimates(tuple(values), tuple(v.cost for v in values), tuple(v.work for v in values), tuple(reached))
 
 
-def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> None:
-    """Improves what the action makes true, minimum by (cost, work)."""
+def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> bool:
+    """Improves what the action makes true, minimum by (cost, work); False when the action is not reached yet."""
     before = sum_of(_value(condition, values) for condition, _ in action.needs)
     if before.cost == math.inf:
-        return
+        return False
     for effect in action.effects:
         start = before
         if effect.conditions:
@@ -112,6 +115,7 @@ def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: 
         if value < old and value.cost < math.inf:
             # each quantity is minimal for itself where that matters: makespan never rises
             changed[effect.literal] = value._replace(makespan=min(value.makespan, old.makespan))
+    return True
 
 
 def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:

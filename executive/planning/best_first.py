@@ -15,7 +15,7 @@ from executive.planning.plan_space import P, PlanSpace
 from executive.planning.ranking import Rank
 from executive.planning.settings import FlawOrder, Settings
 
-FIRST_TURN = 1000  # plans that a flaw order generates before the next one's turn; doubles with every round
+FIRST_TURN = 1000  # plans that a flaw order has generated when the next one's turn comes; doubles with every round
 
 
 @dataclass(slots=True)
@@ -25,7 +25,7 @@ class _Queue(Generic[P]):
     order: int
     limit: int | None
     plans: list[tuple[Rank, P]] = field(default_factory=list)
-    generated: int = 1  # the initial plan
+    generated: int = 0
 
     def exhausted(self) -> bool:
         """Whether the order has generated all that it may."""
@@ -41,7 +41,7 @@ class BestFirst(Generic[P]):
         self._steps = settings.step_limit
         self._too_long = False  # whether a plan was left out for its length: then running dry proves nothing
         self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
-        self.generated = 1
+        self.generated = 0
         self.visited = 0
 
     def run(self) -> Iterator[Result | None]:
@@ -62,10 +62,12 @@ class BestFirst(Generic[P]):
         yield self._limited("every flaw order has reached its limit of generated plans")
 
     def _work(self, queue: _Queue[P], turn: int | None) -> Iterator[Result | None]:
-        """Works with one flaw order until its turn is over."""
+        """Works with one flaw order until it has generated as many plans as its turn allows."""
         space, plans = self._space, queue.plans
-        end = None if turn is None else queue.generated + turn
-        while not queue.exhausted() and (end is None or queue.generated < end):
+        if queue.generated == 0:  # its first turn: the initial plan counts for every order that sets to work
+            queue.generated = 1
+            self.generated += 1
+        while not queue.exhausted() and (turn is None or queue.generated < turn):
             if not plans:
                 yield dead_end(self._too_long, self._steps, self.generated, self.visited)
                 return

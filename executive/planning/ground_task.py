@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
+from executive.planning.achievers import Achiever, achievers_of
 from executive.planning.additive_heuristic import Estimates, action_costs, estimate
-from executive.planning.ground_action import GroundAction, GroundEffect
 from executive.planning.ground_formula import Facts, GroundCondition, conjuncts, ground
 from executive.planning.grounding import GroundActions
 from executive.planning.language import Literal
@@ -14,14 +14,13 @@ from executive.planning.orderings import FIRST
 from executive.planning.problem import Problem
 
 CostOf = OneOf["unit", "duration", "relative"]
-Achiever = tuple[GroundAction, GroundEffect]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundTask:
     """A ground planning problem; literals as in `ground_formula`.
 
-    `achievers` has, by literal, the reachable ground actions with the effect that makes it true, in grounding order.
+    `achievers` has, by literal, the reachable ground actions with the effect that makes it true: see `achievers_of`.
     """
 
     problem: Problem
@@ -59,20 +58,10 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         initial,
         timed,
         goal,
-        _achievers(grounded.actions, estimates, 2 * len(facts)),
+        achievers_of(grounded.actions, estimates, 2 * len(facts)),
         costs,
         estimates,
         all(action.simple for action in grounded.actions),
         FIRST + len(timed),
         2 if temporal else 1,
     )
-
-
-def _achievers(actions: tuple[GroundAction, ...], estimates: Estimates, count: int) -> tuple[tuple[Achiever, ...], ...]:
-    achievers: list[list[Achiever]] = [[] for _ in range(count)]
-    for action in actions:
-        if estimates.reaches(action.needs):
-            for effect in action.effects:
-                if estimates.reaches(effect.conditions):
-                    achievers[effect.literal].append((action, effect))
-    return tuple(tuple(some) for some in achievers)

@@ -24,7 +24,7 @@ Spanned = tuple[tuple[GroundCondition, Span], ...]
 
 
 def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:
-    """All plans that mend the flaw: by new steps in grounding order, then old ones, newest first, then the start."""
+    """All plans that mend the flaw: by a new step of each achiever, by old ones, newest first, by the initial state."""
     condition = flaw.condition
     rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
     if isinstance(condition, Some):

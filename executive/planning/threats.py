@@ -17,10 +17,10 @@ def is_threat(plan: PartialPlan, threat: Threat) -> bool:
 
 
 def choices(plan: PartialPlan, threat: Threat) -> int:
-    """The number of refinements of a threat."""
+    """The number of refinements of a threat; 0 when it is none any more, so that it is forgotten first."""
     late, (link, node, conditions, _) = plan.orderings.late, threat
     if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
-        return 1
+        return 0
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1
     return promotion + demotion + (len(_by_span(threat)) if conditions else 0)
