@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from models.card import UNITS, Card
-from models.runtime import ZOO, OnnxDuration, OnnxSuccess, load_model
+from models.runtime import ZOO, OnnxBenefit, OnnxDuration, OnnxModel, load_model
 from schemas.errors import UsageError
 
 EPILOG = """\
@@ -58,13 +59,17 @@ def run(arguments: argparse.Namespace) -> int:
         from tools.figures import learned
 
         for model in loaded:
+            if isinstance(model, OnnxBenefit):  # it has no surface that a plane could show; `rules` tells it
+                continue
             for path in learned.draw(model, arguments.data, arguments.out):
                 print(path)
     return 0
 
 
-def rules(model: OnnxDuration | OnnxSuccess) -> str:
+def rules(model: OnnxModel) -> str:
     """A model as rules: those of a tree that says what the model says."""
+    if isinstance(model, OnnxBenefit):
+        return _benefit_rules(model.card)
     from models.asking import distilled_duration, distilled_success, space_of
     from models.rules import duration_rules, success_rules
 
@@ -80,7 +85,15 @@ def rules(model: OnnxDuration | OnnxSuccess) -> str:
     return "\n\n".join([f"{name}: {len(said)} rules, which differ from the model by {differ} on average", *said])
 
 
+def _benefit_rules(card: Card) -> str:
+    head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that say nearly the same"
+    kept = f"above {100 * card['threshold']:.0f} % the greedy choice is kept"
+    return "\n\n".join([f"{head}; {kept}", *card["rules"]])
+
+
 def _full(name: str) -> str:
+    if name.endswith("/refinement"):
+        return f"{name}/benefit"
     return name if name.count("/") != 1 else f"{name}/duration"
 
 
@@ -98,6 +111,9 @@ def _quality(card: Card) -> str:
             return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
         case "energy":
             return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
+        case "benefit":
+            plain = test["ungated"]
+            return f"{test['right_pct']:.1f} % right; slower {plain['slower_pct']:.1f} -> {test['slower_pct']:.1f} %"
         case _:
             return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
 
@@ -135,8 +151,10 @@ def _show(card: Card, as_json: bool) -> None:
         elif key == "arguments":
             said = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
             console.print(f"[bold]arguments[/bold]: {said}")
+        elif key == "rules":
+            console.print(f"[bold]rules[/bold]: {len(value)}, which `tailor models rules` prints")
         else:
-            console.print(f"[bold]{key}[/bold]: {_brief(value)}")
+            console.print(f"[bold]{key}[/bold]: {escape(_brief(value))}")
 
 
 def _brief(value: Any) -> str:

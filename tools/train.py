@@ -49,11 +49,23 @@ def run(arguments: argparse.Namespace) -> int:
     for action, folders in _data_sets(arguments).items():
         with console.status(f"learning {action}"):
             rows.extend(train_one(folders, arguments))
+    _withdraw(arguments, console)
     if arguments.json:
         print(json.dumps(rows))
     else:
         Console().print(_table(rows))
     return 0
+
+
+def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
+    """A benefit tree judges the choices of the models that it was learned with: these are gone now."""
+    from models.benefit_publishing import withdraw_benefit
+
+    if withdraw_benefit(arguments.zoo, arguments.robot):
+        again = f"tailor train-benefit {arguments.robot}"
+        console.print(
+            f"removed {arguments.robot}/refinement/benefit, learned with the models before; `{again}` makes it"
+        )
 
 
 def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:

@@ -98,7 +98,7 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
         arguments.robot,
         SITUATION,
         found.sequences,
-        {name: model.card["sha256"] for name, model in sorted(models.items())},
+        {name: model.card["sha256"] for name, model in sorted(models.items()) if not name.endswith("/energy")},
         dataclasses.asdict(settings),
         {
             "scenario": arguments.scenario,
