@@ -125,12 +125,12 @@ class BaggedModelTrees(_TreeRegressor):
 
     def __init__(
         self,
-        trees: int = 12,
+        trees: int = 10,
         max_leaves: int = 64,
         min_rows: float = 40.0,
         smoothing: float = 0.0,
         ridge: float = 1e-4,
-        bins: int = 128,
+        bins: int = 64,
         clip: bool = True,
         random_state: int | Generator | None = 0,
     ) -> None:

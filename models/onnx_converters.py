@@ -19,7 +19,7 @@ from models.onnx_features import append_one
 from models.onnx_graph import ML, ML_OPSET, OPSET
 from models.onnx_trees import add_bag, add_probability, add_tree
 
-TYPES = {"f": TensorProto.FLOAT, "i": TensorProto.INT64}
+TYPES = {"f4": TensorProto.FLOAT, "i4": TensorProto.INT32, "i8": TensorProto.INT64}
 
 
 class _ContainerSink:
@@ -39,7 +39,7 @@ class _ContainerSink:
     def constant(self, value: NDArray[Any]) -> str:
         """Name of a constant tensor."""
         name = str(self._scope.get_unique_variable_name("constant"))
-        kind = TYPES[value.dtype.kind]
+        kind = TYPES[value.dtype.str[1:]]
         self._container.add_initializer(name, kind, list(value.shape), value.ravel().tolist())
         return name
 

@@ -70,7 +70,9 @@ class Tracing:
 def add_features(sink: Sink, space: FeatureSpace, arguments: str) -> str:
     """Write a feature space into a graph: double arguments (n, k) to float features with a one, (n, f + 1)."""
     values = sink.add("Cast", arguments, to=TensorProto.FLOAT)
-    rows = sink.add("Transpose", values, perm=[1, 0])  # (1, n) each: the runtime is slow on (n, 1)
+    every = sink.constant(np.eye(len(space.arguments), dtype=np.float32))
+    # to (1, n) each: the runtime is slow on (n, 1), and would push a Transpose through every node
+    rows = sink.add("Gemm", every, values, transB=1)
     names = sink.add("Split", rows, outputs=len(space.arguments), axis=0, num_outputs=len(space.arguments))
     columns = space.columns(tuple(Symbol(sink, name) for name in names), Tracing())
     stacked = sink.add("Concat", *(column.name for column in columns), axis=0)
