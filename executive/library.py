@@ -47,6 +47,8 @@ class Parameter:
     tolerance: float | None = None  # None: it may move as it likes
 
 
+Columns = tuple[Array, ...]  # one array a parameter or argument; they broadcast to one shape
+Spans = Callable[[Columns, Columns], tuple[Columns, Columns]]  # lower and upper ends to lower and upper ends
 Outcome = Literal["running", "done", "failed"]
 
 
@@ -68,7 +70,8 @@ class Controller(Protocol):
         ...
 
 
-def _same(values: Array) -> Array:
+def unchanged(values: Array) -> Array:
+    """The values themselves: what an action asks of its models is its parameters."""
     return values
 
 
@@ -86,7 +89,8 @@ class Action:
     duration_model: str  # "goToPose/duration": path in the robot's model zoo
     success_model: str = ""  # empty: never predicted to fail
     detour: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
-    arguments: Callable[[Array], Array] = _same
+    arguments: Callable[[Array], Array] = unchanged
+    spans: Spans | None = None  # `arguments` on intervals, for certificates; None: unknown, unless nothing is changed
     time_limit_factor: float = 3.0  # times the predicted duration
     time_limit_floor_s: float = 10.0
 
@@ -209,6 +213,21 @@ class BenefitModel(Protocol):
 
     def slower(self, situations: Array) -> Array:
         """Probability that refining costs time, shape (n,), of situations (n, k); NaN is invalid."""
+        ...
+
+
+class ModelBounds(Protocol):
+    """What a model says at least or at most while each of its arguments lies between two values.
+
+    Models that know theirs have them as `bounds`; without, nothing can be proven about a choice.
+    """
+
+    def least(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
+        """The least mean plus `k_std` standard deviations."""
+        ...
+
+    def most(self, lower: Columns, upper: Columns) -> Array:
+        """The largest mean."""
         ...
 
 

@@ -24,6 +24,7 @@ from models.card import (
     sha256_of,
 )
 from models.card_checks import check_identity, check_made_with, check_place, check_ranges
+from models.model_bounds import ModelBounds, model_bounds
 from schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -41,6 +42,7 @@ class OnnxDuration:
     card: Card
     shortest_s: float
     longest_s: float
+    bounds: ModelBounds | None = None  # for proofs, where its trees can be read
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
         """Mean and standard deviation in seconds (or joules), (n,), of arguments (n, k); NaN where they are invalid."""
@@ -58,6 +60,7 @@ class OnnxSuccess:
     session: Any
     card: Card
     threshold: float  # the learner calls it a success above this probability of success
+    bounds: ModelBounds | None = None  # for proofs, where its trees can be read
 
     def probability(self, arguments: Array) -> Array:
         """Probability of success, shape (n,), of arguments (n, k); NaN where it is invalid."""
@@ -103,7 +106,8 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
         raise UsageError(f"{path}: sha256 is {sha256_of(content)[:12]}…, expected {card['sha256'][:12]}… by its card")
     session = _session(content, path)
     check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
-    loaded = _wrapped(session, card, path)
+    bounds = model_bounds(content, str(card["features"]), len(card.get("feature_units", ())))
+    loaded = _wrapped(session, card, path, bounds)
     _check_golden(loaded, card, path)
     return loaded
 
@@ -190,14 +194,14 @@ def _session(content: bytes, path: Path) -> Any:
         raise UsageError(f"{path}: not a model that runs here ({str(error).splitlines()[0]})") from None
 
 
-def _wrapped(session: Any, card: Card, path: Path) -> OnnxModel:
+def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -> OnnxModel:
     if card["kind"] in ("duration", "energy"):
         shortest, longest = card["output_range"]
-        return OnnxDuration(session, card, float(shortest), float(longest))
+        return OnnxDuration(session, card, float(shortest), float(longest), bounds)
     if card["kind"] == "benefit":
         return OnnxBenefit(session, card, float(card["threshold"]))
     if card["kind"] == "success":
-        return OnnxSuccess(session, card, float(card["threshold"]))
+        return OnnxSuccess(session, card, float(card["threshold"]), bounds)
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
 
 

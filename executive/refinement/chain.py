@@ -104,12 +104,12 @@ class ChainSolver(Solver):
             pairwise_costs(link, before, own)
             for link, before, own in zip(self._links, [np.empty((1, 0)), *drawn], drawn, strict=False)
         ]
-        forward = _forward(costs)
+        forward = forward_costs(costs)
         candidate = np.empty(self._objective.ranges.count)
         for block, candidates, chosen in zip(self._blocks, drawn, traced(costs, forward), strict=True):
             candidate[block] = candidates[chosen]
         self._consider(candidate, float(forward[-1].min()))
-        for index, through in enumerate(_through(costs, forward)):
+        for index, through in enumerate(through_costs(costs, forward)):
             self._keep(index, drawn[index], through)
 
     def _keep(self, index: int, drawn: Array, through: Array) -> None:
@@ -168,7 +168,7 @@ def pairwise_costs(link: Link, before: Array, own: Array) -> Array:
     return np.broadcast_to(cost, (len(before), len(own)))
 
 
-def _forward(costs: list[Array]) -> list[Array]:
+def forward_costs(costs: list[Array]) -> list[Array]:
     """The least cost from the start to each candidate of each subgoal."""
     least = [costs[0].min(axis=0)]
     for cost in costs[1:]:
@@ -176,7 +176,7 @@ def _forward(costs: list[Array]) -> list[Array]:
     return least
 
 
-def _through(costs: list[Array], forward: list[Array]) -> list[Array]:
+def through_costs(costs: list[Array], forward: list[Array]) -> list[Array]:
     """The least cost of a whole chain through each candidate of each subgoal."""
     rest = np.zeros(costs[-1].shape[1])
     through = [forward[-1] + rest]

@@ -9,6 +9,10 @@ from typing import Literal
 from schemas.errors import UsageError
 
 COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "weighing_checks")
+NOT_NEGATIVE = (
+    "k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
+    "certify_gap_pct",
+)  # fmt: skip
 # Of 150 arrivals of AGILO's goToPose: 5 cm and 3 degrees; quantities of other robots are not among these
 ARRIVAL_SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.05), ("v", 0.05))
 SolverName = Literal["auto", "chain", "genetic", "differential"]
@@ -44,12 +48,14 @@ class RefinementSettings:
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
     weigh_detours: bool = True  # a detour must pay: compare expected costs, failure priced at risk_cost_s
     weighing_checks: int = 40  # batches spent on each side of that comparison
+    certify_checks: int = 300  # of about 1 ms, spent on proving how good a choice is when it is found; 0: none
+    certify_gap_pct: float = 1.0  # above the optimum: near enough to stop
 
     def __post_init__(self) -> None:
         for name in COUNTS:
             if getattr(self, name) < 1:
                 raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
-        for name in ("k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth"):
+        for name in NOT_NEGATIVE:
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise UsageError(f"refinement.{name} is {value}, expected a finite number >= 0")

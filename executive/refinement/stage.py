@@ -62,29 +62,34 @@ class Stage:
         ids = instance.variables
         self.columns: NDArray[np.intp] = np.unique([places[i] for i in ids if i in places]).astype(np.intp)
         self.rows = 0  # rows predicted so far
-        self._action = instance.action
-        self._models = models_of(instance.action, models, settings)
+        self.action = instance.action
+        self.models = models_of(instance.action, models, settings)
         self._settings = settings
-        self._p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
+        self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
         self._template = np.array([variables[i].value or 0.0 for i in ids])
-        self._slots = np.array([j for j, i in enumerate(ids) if i in places], dtype=np.intp)
-        self._sources = np.searchsorted(self.columns, [places[i] for i in ids if i in places])
+        self.slots = np.array([j for j, i in enumerate(ids) if i in places], dtype=np.intp)
+        self.sources = np.searchsorted(self.columns, [places[i] for i in ids if i in places])
         self._displaced = np.array([j for j, i in enumerate(ids) if i in arrived], dtype=np.intp)
         quantities = [instance.action.parameters[j].quantity for j in self._displaced]
         self._displacements = displacements(quantities, dict(settings.arrival_spread))
 
+    @property
+    def ways(self) -> int:
+        """How many displaced arrivals, the exact one included, the cost is averaged over."""
+        return len(self._displacements)
+
     def predict(self, rows: Array) -> Prediction:
         """What the models say for rows of shape (n, len(columns))."""
         count, ways = len(rows), len(self._displacements)
-        arguments = self._action.arguments(self._parameters(rows))
+        arguments = self.action.arguments(self.parameters(rows))
         self.rows += count * ways
-        mean, std = self._models.duration.predict(arguments)
+        mean, std = self.models.duration.predict(arguments)
         failure = np.zeros((ways, count))
-        if self._models.success is not None:
-            failure = 1 - self._models.success.probability(arguments).reshape(ways, count)
+        if self.models.success is not None:
+            failure = 1 - self.models.success.probability(arguments).reshape(ways, count)
         energy = np.zeros(count)
-        if self._models.energy is not None:
-            energy = self._models.energy.predict(arguments)[0].reshape(ways, count).mean(axis=0)
+        if self.models.energy is not None:
+            energy = self.models.energy.predict(arguments)[0].reshape(ways, count).mean(axis=0)
         return Prediction(
             mean.reshape(ways, count).mean(axis=0),
             std.reshape(ways, count).mean(axis=0),
@@ -98,15 +103,15 @@ class Stage:
         said, settings = self.predict(rows), self._settings
         cost = said.duration_s + settings.k_std * said.spread_s + settings.risk_cost_s * said.failure
         cost += settings.energy_weight * said.energy_j
-        valid = np.isfinite(cost) & (said.worst_failure <= self._p_fail_max)
+        valid = np.isfinite(cost) & (said.worst_failure <= self.p_fail_max)
         return np.where(valid, cost, np.inf)
 
-    def _parameters(self, rows: Array) -> Array:
+    def parameters(self, rows: Array) -> Array:
         """Action parameters, shape (ways * n, p), all candidates for the first displacement first."""
         count, ways = len(rows), len(self._displacements)
         parameters = np.empty((ways, count, len(self._template)))
         parameters[:] = self._template
-        parameters[:, :, self._slots] = rows[:, self._sources]
+        parameters[:, :, self.slots] = rows[:, self.sources]
         if ways > 1:
             exact = parameters[:, :, self._displaced]
             parameters[:, :, self._displaced] = self._bounded(exact + self._displacements[:, None, :], exact)
@@ -116,7 +121,7 @@ class Stage:
         """Displaced values kept to the parameters' ranges, where models know something; angles go free."""
         bounded = displaced
         for k, j in enumerate(self._displaced):
-            parameter = self._action.parameters[j]
+            parameter = self.action.parameters[j]
             if not parameter.periodic:
                 lower = np.minimum(exact[:, :, k], parameter.lower)
                 upper = np.maximum(exact[:, :, k], parameter.upper)

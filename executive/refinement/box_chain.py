@@ -1,0 +1,99 @@
+"""A chain of subgoals whose parameters are cut into boxes: what each pair of neighbouring boxes costs at least.
+
+Dynamic programming over the boxes gives the least of all chains, which no choice of the parameters goes below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.library import Array
+from executive.refinement.boxes import NOWHERE, Boxes, joined
+from executive.refinement.chain import forward_costs, through_costs, traced
+
+Places = NDArray[np.intp]
+PairBound = Callable[[Boxes, Boxes], Array]  # boxes before and own to seconds, shape (len(before), len(own))
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """The least costs of chains: from the start up to each box, and of whole chains through it, by subgoal."""
+
+    forward: list[Array]
+    through: list[Array]
+
+    def rest(self, index: int) -> Array:
+        """From each box of a subgoal to the end; inf where no chain leads."""
+        through, forward = self.through[index], self.forward[index]
+        return np.where(np.isfinite(through), through - np.where(np.isfinite(forward), forward, 0.0), np.inf)
+
+
+class BoxChain:
+    """Boxes and pair costs of s subgoals; the boxes of one subgoal are replaced at a time.
+
+    Args:
+      bounds: What a pair of boxes costs at least, action by action.
+      boxes: The first boxes of each subgoal.
+      pairs: Of boxes that are bounded in one step.
+    """
+
+    def __init__(self, bounds: Sequence[PairBound], boxes: Sequence[Boxes], pairs: int) -> None:
+        self.boxes = list(boxes)
+        self._bounds = bounds
+        self._pairs = pairs
+        self._tables = [np.full((len(a), len(b)), -np.inf) for a, b in zip([NOWHERE, *boxes], boxes, strict=False)]
+
+    def begin(self) -> Iterator[None]:
+        """Bound all pairs, in steps."""
+        for index, table in enumerate(self._tables):
+            every = np.arange(table.shape[0]), np.arange(table.shape[1])
+            yield from self._bound(index, table, *every)
+
+    def costs(self) -> Costs:
+        """What chains cost at least, by the bounds so far."""
+        forward = forward_costs(self._tables)
+        return Costs(forward, through_costs(self._tables, forward))
+
+    def cheapest(self, costs: Costs) -> list[int]:
+        """The box that the cheapest chain takes at each subgoal."""
+        return traced(self._tables, costs.forward)
+
+    def cut(
+        self, index: int, kept: Places, chosen: Places, weight: Array, costs: Costs, limit: float
+    ) -> Iterator[None]:
+        """Halve the chosen boxes of a subgoal and forget all but them and the kept ones, in steps.
+
+        Halves inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
+        """
+        children = self.boxes[index].part(chosen).halves(weight)
+        parents = np.concatenate([kept, chosen, chosen])
+        new = np.arange(len(kept), len(parents))
+        before = costs.forward[index - 1] if index else np.zeros(1)
+        last = index + 1 == len(self.boxes)
+        after = np.zeros(1) if last else costs.rest(index + 1)
+        left = self._tables[index]
+        near = (before[:, None] + left[:, chosen] + costs.rest(index)[chosen] < limit).any(axis=1)
+        self.boxes[index] = joined(self.boxes[index].part(kept), children)
+        self._tables[index] = left[:, parents]
+        if not last:
+            right = self._tables[index + 1]
+            far = (costs.forward[index][chosen, None] + right[chosen] + after < limit).any(axis=0)
+            self._tables[index + 1] = right[parents]
+        yield from self._bound(index, self._tables[index], np.flatnonzero(near), new)
+        if not last:
+            yield from self._bound(index + 1, self._tables[index + 1], new, np.flatnonzero(far))
+
+    def _bound(self, index: int, table: Array, before: Places, own: Places) -> Iterator[None]:
+        """Raise some of a table's entries to what is proven for their boxes, a few at a time."""
+        first = self.boxes[index - 1] if index else NOWHERE
+        width = max(1, self._pairs // max(1, len(before)))
+        for start in range(0, len(own) if len(before) else 0, width):
+            some = own[start : start + width]
+            said = self._bounds[index](first.part(before), self.boxes[index].part(some))
+            at = np.ix_(before, some)
+            table[at] = np.maximum(table[at], said)
+            yield

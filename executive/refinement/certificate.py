@@ -1,0 +1,157 @@
+"""How near a choice is to the optimum of the models: a lower bound by branch and bound, and the gap to it.
+
+Boxes on the cheapest chains are halved until no chain is cheaper than the choice less the gap that is good enough. What
+a box costs at least comes from the leaves that it meets, so that thresholds and kinks count, not slopes alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from executive.budget import Budget
+from executive.library import Array
+from executive.refinement.box_chain import BoxChain, Costs
+from executive.refinement.boxes import box_of
+from executive.refinement.chain import Columns, blocks_of, links_of
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.settings import RefinementSettings
+from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
+
+ROWS_AT_ONCE = 1024  # pairs of boxes times displaced arrivals that one check bounds: about 1 ms
+CUT_AT_ONCE = 16  # boxes of a subgoal
+BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
+NARROWEST = 1e-5  # of a range: below, single precision says what is gained
+FIRST_CUTS = 3  # before anything is bounded
+PROBES = 32  # choices at which it is tried how much each parameter matters
+PROBE_STEP = 0.05  # of a range
+LEAST_CHANGE_S = 1e-3  # where none is seen
+
+
+class Certificate:
+    """Proves that no choice costs less than `bound`; anytime and resumable, without a random draw.
+
+    On the way it may come across a choice that is better than the one it was given.
+
+    Args:
+      objective: What was minimised.
+      blocks: The columns of each subgoal.
+      bounds: Of the objective's stages.
+      best: The choice, shape (d,).
+      settings: The gap that is good enough, and how much may be spent.
+    """
+
+    def __init__(
+        self,
+        objective: SequenceObjective,
+        blocks: tuple[Columns, ...],
+        bounds: Sequence[StageBound],
+        best: Array,
+        settings: RefinementSettings,
+    ) -> None:
+        self.bound = -np.inf  # seconds
+        self.best = best
+        self.value = float(objective(best[None])[0])
+        self.checks = 0
+        self.finished = False
+        self._objective = objective
+        self._blocks = blocks
+        self._settings = settings
+        self._bounds = bounds
+        self._work = self._prove()
+
+    @property
+    def gap_pct(self) -> float | None:
+        """The best choice costs at most so much more than the optimum; None while that cannot be said."""
+        return 100 * (self.value / self.bound - 1) if 0 < self.bound <= self.value < np.inf else None
+
+    def advance(self, budget: Budget) -> None:
+        """Prove on until the budget is spent or no more can be proven."""
+        while not self.finished and not budget.spent():
+            self.checks += 1
+            done = next(self._work, True)
+            self.finished = done is not None or self.checks >= self._settings.certify_checks
+
+    @property
+    def _limit(self) -> float:
+        """A bound that is good enough."""
+        return self.value / (1 + self._settings.certify_gap_pct / 100)
+
+    def _prove(self) -> Iterator[None]:
+        """The proof, in steps of one check each."""
+        weight = _sensitivity(self._objective)
+        chain = self._first_boxes(weight)
+        yield
+        yield from chain.begin()
+        idle = index = 0
+        while idle < len(self._blocks):
+            costs = chain.costs()
+            self._note(chain, costs)
+            if self.bound >= self._limit:
+                return
+            kept, chosen = self._chosen(chain, costs, index)
+            idle = 0 if len(chosen) else idle + 1
+            if len(chosen):
+                yield from chain.cut(index, kept, chosen, weight[self._blocks[index]], costs, self._limit)
+            index = (index + 1) % len(self._blocks)
+
+    def _first_boxes(self, weight: Array) -> BoxChain:
+        boxes = [box_of(self._objective.ranges.part(block)) for block in self._blocks]
+        for i, block in enumerate(self._blocks):
+            for _ in range(FIRST_CUTS if len(block) else 0):
+                boxes[i] = boxes[i].halves(weight[block])
+        ways = max(stage.ways for stage in self._objective.stages)
+        return BoxChain([bound.least for bound in self._bounds], boxes, ROWS_AT_ONCE // ways)
+
+    def _note(self, chain: BoxChain, costs: Costs) -> None:
+        """Take up what is proven; and the middle of the cheapest chain of boxes, where it is a better choice."""
+        # what was forgotten costs at least the limit of its time, which only falls
+        self.bound = max(self.bound, min(float(costs.through[-1].min(initial=np.inf)), self._limit))
+        if not np.isfinite(costs.through[-1]).any():
+            return
+        candidate = self.best.copy()
+        for block, boxes, chosen in zip(self._blocks, chain.boxes, chain.cheapest(costs), strict=True):
+            candidate[block] = boxes.middle[chosen]
+        value = float(self._objective(candidate[None])[0])
+        if value < self.value:
+            self.best, self.value = candidate, value
+
+    def _chosen(self, chain: BoxChain, costs: Costs, index: int) -> tuple[Columns, Columns]:
+        """Of a subgoal's boxes those that are kept as they are, and those to cut: the cheapest that can be."""
+        boxes, through = chain.boxes[index], costs.through[index]
+        alive = np.flatnonzero(through < self._limit)
+        widest = (boxes.width[alive] / self._objective.ranges.width[self._blocks[index]]).max(axis=1, initial=0.0)
+        able = alive[widest > NARROWEST]
+        able = able[np.argsort(through[able], kind="stable")] if len(boxes) < BOXES_MAX else able[:0]
+        chosen = able[:CUT_AT_ONCE]
+        return np.setdiff1d(alive, chosen), chosen
+
+
+def certificate(objective: SequenceObjective, best: Array, settings: RefinementSettings) -> Certificate | NoBound:
+    """A proof of how good a choice is, shape (d,), or why there can be none."""
+    blocks = blocks_of(objective.stages)
+    if blocks is None:
+        return NoBound("a parameter occurs in actions that are not neighbours")
+    bounds = []
+    for stage, link in zip(objective.stages, links_of(objective.stages, blocks), strict=True):
+        bound = stage_bound(stage, link, settings)
+        if isinstance(bound, NoBound):
+            return bound
+        bounds.append(bound)
+    return Certificate(objective, blocks, bounds, best, settings)
+
+
+def _sensitivity(objective: SequenceObjective) -> Array:
+    """Seconds a unit by which each free parameter matters, shape (d,): a side that matters more is cut first."""
+    ranges = objective.ranges
+    probes = ranges.draw(PROBES, np.random.default_rng(0))
+    moved = np.tile(probes, (ranges.count + 1, 1, 1))
+    columns = np.arange(ranges.count)
+    moved[columns, :, columns] += PROBE_STEP * ranges.width[:, None]
+    costs = objective(ranges.confine(moved.reshape(-1, ranges.count))).reshape(ranges.count + 1, PROBES)
+    known = np.isfinite(costs[:-1]) & np.isfinite(costs[-1])
+    change = np.abs(np.subtract(costs[:-1], costs[-1], out=np.zeros_like(costs[:-1]), where=known))
+    mean = change.sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+    weight: Array = np.maximum(mean, LEAST_CHANGE_S) / ranges.width
+    return weight

@@ -1,0 +1,133 @@
+"""The trees inside an ONNX action model as boxes of features: what can be proven about a model needs them.
+
+Read from the very bytes that the runtime computes, so that the two cannot differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.cell_boxes import boxes_of_cells
+from models.onnx_wire import Contents, Node, read_graph
+
+Floats = NDArray[np.float32]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class TreeBoxes:
+    """k trees with l leaves in all, over f features; what the model says is the mean over its trees.
+
+    Leaf i holds the rows with `lower[i] < x <= upper[i]` and says `x @ slopes[i] + intercept[i]`, clipped to
+    `low[i]` and `high[i]`.
+    """
+
+    first: Ints  # (k,) the first leaf of each tree; a tree's leaves lie together
+    lower: Floats  # (l, f), -inf where there is no bound
+    upper: Floats  # (l, f)
+    slopes: Floats  # (l, f), all zero where a leaf says one number
+    intercept: Floats  # (l,)
+    low: Floats  # (l,)
+    high: Floats  # (l,)
+    spread: Floats | None = None  # (l,) standard deviation by leaf; None: that of the trees among each other
+
+    def negated(self) -> TreeBoxes:
+        """Trees that say minus what these say."""
+        ends = -self.slopes, -self.intercept, -self.high, -self.low
+        return TreeBoxes(self.first, self.lower, self.upper, *ends, self.spread)
+
+
+def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
+    """The trees of an ONNX model over so many features; None where it is not made of trees as we write them."""
+    try:
+        graph = read_graph(model)
+        ensembles = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
+        formula = _constant(graph, "Mul", 2)
+        read = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)
+        if read is None:
+            return None
+        first, lower, upper, said = read
+        if formula is None:
+            return _plain(first, lower, upper, said, len(graph.nodes), graph)
+        return _linear(graph, first, lower, upper, said, formula)
+    except (ValueError, KeyError, IndexError):
+        return None
+
+
+def _plain(first: Ints, lower: Floats, upper: Floats, said: Floats, nodes: int, graph: Contents) -> TreeBoxes | None:
+    """Leaves that say one number; the graph adds the trees up."""
+    last = [node.op for node in graph.nodes[-2:]]
+    if last != ["TreeEnsembleRegressor", "Reshape"]:
+        return None  # something is done to the sum that we do not know
+    value = said * np.float32(len(first))
+    return TreeBoxes(first, lower, upper, np.zeros_like(lower), value, value, value)
+
+
+def _linear(
+    graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats, formula: Floats
+) -> TreeBoxes | None:
+    """Leaves that say which row of the constants holds their formula."""
+    rows = said.astype(np.int64)
+    low, high = _constant(graph, "Max", 1), _constant(graph, "Min", 1)
+    if low is None or high is None or not np.array_equal(rows, said):
+        return None
+    spread = _constant(graph, "Reshape", 1)
+    if spread is None and "Sqrt" not in {node.op for node in graph.nodes[-3:]}:
+        return None
+    slopes = formula[rows]
+    ends = (low[rows], high[rows], None if spread is None else spread[rows])
+    return TreeBoxes(first, lower, upper, slopes[:, :-1], slopes[:, -1], *ends)
+
+
+def _constant(graph: Contents, op: str, axes: int) -> Floats | None:
+    """The constant of so many axes that is gathered by leaf and goes into an operator of this kind."""
+    gathered = {node.outputs[0]: node.inputs[0] for node in graph.nodes if node.op == "Gather"}
+    for node in graph.nodes:
+        for name in node.inputs:
+            constant = graph.constants.get(gathered.get(name, ""))
+            if node.op == op and constant is not None and constant.ndim == axes:
+                return constant
+    return None
+
+
+def _boxes(ensembles: list[Node], features: int) -> tuple[Ints, Floats, Floats, Floats]:
+    """First leaf of each tree, box of each leaf, and the number that each leaf says."""
+    first: list[int] = []
+    parts: list[tuple[Floats, Floats, Floats]] = []
+    count = 0
+    for node in ensembles:
+        trees = node.attributes["nodes_treeids"]
+        for tree in np.unique(trees):
+            part = _tree(node.attributes, trees == tree, node.attributes["target_treeids"] == tree, features)
+            first.append(count)
+            count += len(part[2])
+            parts.append(part)
+    lower, upper, said = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return np.array(first), lower, upper, said
+
+
+def _tree(
+    attributes: dict[str, NDArray[Any]], nodes: NDArray[np.bool_], leaves: NDArray[np.bool_], features: int
+) -> tuple[Floats, Floats, Floats]:
+    """Boxes and numbers of one tree's leaves, by following each node's box to its two children."""
+    names = ("featureids", "values", "truenodeids", "falsenodeids")
+    feature, value, true, false = (attributes[f"nodes_{name}"][nodes] for name in names)
+    leaf = attributes["target_nodeids"][leaves]
+    lower = np.full((len(value), features), -np.inf, np.float32)
+    upper = np.full((len(value), features), np.inf, np.float32)
+    ends = set(leaf.tolist())
+    for node in range(len(value)):  # parents come before their children
+        if node in ends:
+            continue
+        left, right, column = true[node], false[node], feature[node]
+        if min(left, right) <= node:
+            raise ValueError("a node comes before its parent")
+        for child in (left, right):
+            lower[child], upper[child] = lower[node], upper[node]
+        upper[left, column] = min(upper[left, column], value[node])
+        lower[right, column] = max(lower[right, column], value[node])
+    return lower[leaf], upper[leaf], attributes["target_weights"][leaves]

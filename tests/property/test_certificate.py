@@ -1,0 +1,160 @@
+"""A certificate is sound: no choice costs less than its bound; more budget never weakens it, slices equal one run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from executive.budget import CheckBudget
+from executive.library import Models
+from executive.refinement.certificate import Certificate, certificate
+from executive.refinement.objective import SequenceObjective
+from executive.refinement.selection import solver_for
+from executive.refinement.sequence import ActionSequence
+from executive.refinement.settings import RefinementSettings
+from executive.refinement.stage_bounds import NoBound
+from tests.random_trees import Trees
+from tests.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
+
+seeds = st.integers(0, 2**32 - 1)
+kinds = st.sampled_from(["waypoints", "approach", "detour", "two places"])
+SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.1), ("v", 0.05))
+
+
+def task(kind: str, seed: int) -> ActionSequence:
+    rng = np.random.default_rng([2, seed])
+    if kind == "waypoints":
+        return waypoints(3, rng)
+    if kind == "approach":
+        return approach_dribble(tuple(rng.uniform((-3, -2, -3), (3, 2, 3))))
+    start = {"x": rng.uniform(-3, 3), "y": rng.uniform(-2, 2), "phi": 0.0, "v": 0.0}
+    ball = {"x": 1.0, "y": 0.0, "v": (0.0, 0.3)}
+    target = {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
+    if kind == "detour":
+        return sequence([GO, APPROACH, DRIBBLE], [start, {}, ball, target])
+    return sequence([GO, GO, GO], [start, {}, {"v": 0.0}, target])
+
+
+def objective(kind: str, seed: int, k_std: float, spread: bool) -> tuple[SequenceObjective, RefinementSettings]:
+    chosen = RefinementSettings(
+        horizon=9, k_std=k_std, arrival_spread=SPREAD if spread else (), p_fail_max=0.8, certify_checks=10_000
+    )
+    models = Models(
+        {"goToPose/duration": Trees.random(seed, trees=3), "dribbleBall/duration": Trees.random(seed + 1, trees=1)},
+        {"goToPose/success": Trees.random(seed + 2, trees=4, success=True)},
+    )
+    given_sequence = task(kind, seed)
+    return SequenceObjective(given_sequence.actions, given_sequence.variables, models, chosen), chosen
+
+
+def proof(kind: str, seed: int, k_std: float = 1.0, spread: bool = True, best: np.ndarray | None = None) -> Certificate:
+    cost, chosen = objective(kind, seed, k_std, spread)
+    if best is None:
+        solver = solver_for(cost, chosen, np.random.default_rng(seed), np.empty((0, cost.ranges.count)))
+        solver.advance(CheckBudget(15))
+        best = solver.best if solver.best is not None else cost.vector({})
+    made = certificate(cost, best, chosen)
+    assert isinstance(made, Certificate)
+    return made
+
+
+@settings(max_examples=40, deadline=None)
+@given(kinds, seeds, st.sampled_from([0.0, 1.0, 2.0]), st.booleans())
+def test_no_choice_costs_less_than_the_bound(kind, seed, k_std, spread):
+    made = proof(kind, seed, k_std, spread)
+    made.advance(CheckBudget(25))
+    cost, _ = objective(kind, seed, k_std, spread)
+    drawn = cost.ranges.draw(4000, np.random.default_rng(seed))
+    near = made.best + 0.02 * cost.ranges.width * np.random.default_rng(seed).standard_normal((1000, len(made.best)))
+    assert made.bound <= cost(np.vstack([drawn, cost.ranges.confine(near)])).min()
+    assert made.bound <= made.value
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_one_subgoal_is_bounded_by_no_more_than_a_fine_grid_finds(seed):
+    made = proof("approach", seed)
+    made.advance(CheckBudget(150))
+    cost, _ = objective("approach", seed, 1.0, True)
+    axes = [np.linspace(lo, hi, 201) for lo, hi in zip(cost.ranges.lower, cost.ranges.upper, strict=True)]
+    grid = cost(np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)).min()
+    assert made.bound <= min(grid, made.value)
+    if np.isfinite(grid):
+        assert made.bound > 0.9 * min(grid, made.value)  # and by hardly less
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds)
+def test_bound_never_falls_and_choice_never_gets_worse(kind, seed):
+    made = proof(kind, seed)
+    bounds, values = [made.bound], [made.value]
+    for _ in range(30):
+        made.advance(CheckBudget(1))
+        bounds.append(made.bound)
+        values.append(made.value)
+    assert all(earlier <= later for earlier, later in pairwise(bounds))
+    assert all(later <= earlier for earlier, later in pairwise(values))
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds, st.lists(st.integers(1, 8), min_size=1, max_size=6))
+def test_slices_equal_one_run_with_the_same_checks(kind, seed, slices):
+    whole, sliced = proof(kind, seed), proof(kind, seed)
+    whole.advance(CheckBudget(sum(slices)))
+    for checks in slices:
+        sliced.advance(CheckBudget(checks))
+    assert (whole.bound, whole.value, whole.checks) == (sliced.bound, sliced.value, sliced.checks)
+    assert np.array_equal(whole.best, sliced.best)
+
+
+def test_gap_that_is_good_enough_is_proven_for_one_subgoal_and_for_three():
+    for kind in ("approach", "waypoints"):
+        made = proof(kind, 5, k_std=0.0, spread=False)
+        made.advance(CheckBudget(10_000))
+        assert made.finished
+        assert made.gap_pct <= 1.0 + 1e-9
+
+
+def test_better_choice_than_the_given_one_is_found_on_the_way():
+    cost, _ = objective("waypoints", 3, 1.0, True)
+    worst = max(cost.ranges.draw(200, np.random.default_rng(0)), key=lambda one: cost(one[None])[0])
+    made = proof("waypoints", 3, best=worst)
+    made.advance(CheckBudget(60))
+    assert made.value < cost(worst[None])[0]
+    assert made.value == cost(made.best[None])[0]
+    assert cost.ranges.contain(made.best)
+
+
+def test_proof_ends_when_its_checks_are_used_up():
+    cost, chosen = objective("two places", 0, 1.0, True)
+    made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=7))
+    budget = CheckBudget(100)
+    made.advance(budget)
+    assert made.finished
+    assert budget.granted == made.checks == 7
+
+
+def test_spent_budget_proves_nothing():
+    made = proof("approach", 0)
+    made.advance(CheckBudget(0))
+    assert made.gap_pct is None
+    assert not made.finished
+
+
+def test_what_cannot_be_bounded_is_told_plainly():
+    given_sequence = approach_dribble()
+    chosen = RefinementSettings()
+    unknown = SequenceObjective(given_sequence.actions, given_sequence.variables, MODELS, chosen)
+    said = certificate(unknown, unknown.vector({}), chosen)
+    assert isinstance(said, NoBound)
+    assert "inside its models" in said.reason
+    shifted = tuple(
+        replace(action, action=replace(action.action, arguments=lambda values: values + 1.0))
+        for action in given_sequence.actions
+    )
+    moved = SequenceObjective(shifted, given_sequence.variables, MODELS, chosen)
+    assert "as intervals" in certificate(moved, moved.vector({}), chosen).reason

@@ -1,0 +1,130 @@
+"""Bounds of models hold: features, trees and whole models say nothing outside of what was proven for a box."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.card import card_path
+from models.feature_spans import FEATURE_SPANS
+from models.features import SPACES
+from models.leaf_bounds import LeafBounds
+from models.runtime import ZOO
+from models.spans import Span
+from models.tree_boxes import tree_boxes
+from tests.random_trees import Trees
+
+WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
+SHAPE = (1, 1, 1)
+LEARNED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
+spaces = st.sampled_from(["direct", "relative", "projective", "projective-turn", "joints"])
+seeds = st.integers(0, 2**32 - 1)
+
+
+def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """A box of arguments: each wide, narrow or a point; often with the same place at both ends, or at rest."""
+    scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in SPACES[space].arguments])
+    lower = rng.uniform(-0.5, 0.5, 8) * scale
+    if space != "joints":
+        lower[[3, 7]] = rng.uniform(0, 0.5, 2)
+    if rng.random() < 0.2:
+        lower[4:] = lower[:4]
+    if rng.random() < 0.2:
+        lower[[1, 3]] = 0.0
+    return lower, lower + scale * rng.choice([0.0, 1e-4, 0.03, 0.5], 8)
+
+
+def drawn(lower: np.ndarray, upper: np.ndarray, rng: np.random.Generator, count: int) -> np.ndarray:
+    """Points of a box, corners and edges among them."""
+    share = rng.choice([0.0, 0.5, 1.0, np.nan], (count, 8))
+    share = np.where(np.isnan(share), rng.random((count, 8)), share)
+    return lower + share * (upper - lower)
+
+
+@settings(max_examples=300, deadline=None)
+@given(spaces, seeds)
+def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed):
+    rng = np.random.default_rng(seed)
+    lower, upper = box(space, rng)
+    spans = tuple(Span(np.full(SHAPE, a), np.full(SHAPE, b)) for a, b in zip(lower, upper, strict=True))
+    seen = SPACES[space](drawn(lower, upper, rng, 200))
+    met = np.zeros(len(seen), bool)
+    for case in FEATURE_SPANS[space](spans):
+        if case.possible is None or case.possible.all():
+            ends = [(np.float32(s.lower.item()), np.float32(s.upper.item())) for s in case.features]
+            met |= np.all([(x >= a) & (x <= b) for x, (a, b) in zip(seen.T, ends, strict=True)], axis=0)
+    assert met.all()
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.sampled_from(["relative", "projective", "projective-turn", "joints"]), seeds, st.integers(1, 4))
+def test_model_says_nothing_outside_its_bounds(space, seed, trees):
+    rng = np.random.default_rng(seed)
+    model = Trees.random(seed, space, trees)
+    lower, upper = box(space, rng)
+    mean, std = model.predict(drawn(lower, upper, rng, 200))
+    ends = tuple(tuple(np.full(SHAPE, value) for value in side) for side in (lower, upper))
+    k_std = float(rng.choice([0.0, 0.5, 1.0, 3.0]))
+    assert model.bounds.least(*ends, k_std).item() <= (mean + k_std * std).min()
+    assert model.bounds.most(*ends).item() >= mean.max()
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds)
+def test_bounds_of_a_point_are_nearly_what_the_model_says(seed):
+    rng = np.random.default_rng(seed)
+    model = Trees.random(seed, trees=4)
+    at, _ = box("projective", rng)
+    at[4:6] = at[:2] + np.array([1.0, 0.3])
+    columns = tuple(np.full(SHAPE, value) for value in at)
+    mean, _ = model.predict(at[None])
+    near = drawn(at - 1e-5, at + 1e-5, rng, 400)
+    alike = np.ptp(model.predict(near)[0]) < 1e-3  # no threshold so near that rounding could tell
+    assert not alike or model.bounds.least(columns, columns).item() == pytest.approx(mean[0], abs=1e-3)
+
+
+def test_several_boxes_are_bounded_as_each_alone():
+    rng = np.random.default_rng(3)
+    model = Trees.random(3, trees=3)
+    before, own = rng.uniform(-1, 1, (2, 4, 4)), rng.uniform(-1, 1, (2, 5, 4))
+    before[1], own[1] = before[0] + 0.2, own[0] + 0.2
+    ends = [
+        (*(before[k][None, :, None, j] for j in range(4)), *(own[k][None, None, :, j] for j in range(4)))
+        for k in range(2)
+    ]
+    together = model.bounds.least(ends[0], ends[1], 1.0)
+    assert together.shape == (1, 4, 5)
+    for i in range(4):
+        for j in range(5):
+            one = [
+                (*(before[k][i, c].reshape(SHAPE) for c in range(4)), *(own[k][j, c].reshape(SHAPE) for c in range(4)))
+                for k in range(2)
+            ]
+            assert model.bounds.least(one[0], one[1], 1.0).item() == pytest.approx(together[0, i, j], abs=1e-5)
+
+
+@pytest.mark.parametrize("path", LEARNED, ids=lambda path: "/".join(path.parts[-3:]))
+def test_trees_read_from_a_learned_model_say_what_it_says(path):
+    card = json.loads(card_path(path).read_text())
+    space, golden = SPACES[card["features"]], card["golden"]
+    boxes = tree_boxes(path.read_bytes(), len(space.features))
+    assert boxes is not None
+    said, spread = Trees(space.name, boxes).predict(np.array(golden["arguments"]))
+    np.testing.assert_allclose(said, golden[card["outputs"][0]], atol=1e-4)
+    if len(card["outputs"]) > 1:
+        np.testing.assert_allclose(spread, golden[card["outputs"][1]], atol=1e-4)
+
+
+@pytest.mark.parametrize("content", [b"", b"\x08\x07", b"no model at all", bytes(range(256))])
+def test_what_is_no_model_of_trees_is_not_read(content):
+    assert tree_boxes(content, 5) is None
+
+
+def test_leaves_of_all_trees_meet_every_box():
+    bounds = LeafBounds(Trees.random(5, trees=4).boxes)
+    everywhere = tuple(Span(np.full(SHAPE, -10.0), np.full(SHAPE, 10.0)) for _ in range(5))
+    assert bounds.least(everywhere).shape == (4, *SHAPE)
