@@ -13,6 +13,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from itertools import tee
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from executive.composition import recompose
 from executive.core.context import Context
@@ -26,7 +27,9 @@ from schemas.messages import Message
 from schemas.topics import key_of
 from tools.differences import ROUNDING, Difference, first_field, rounding_apart
 from tools.recorded_run import RecordedRun, RecordedRuns, decoded
-from tools.run_tape import RunTape
+
+if TYPE_CHECKING:
+    from tools.run_tape import RunTape
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +110,8 @@ def verify(runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape
 
 
 def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
+    from tools.run_tape import RunTape  # it brings the live shell, and with it the bus
+
     if path.exists():
         raise UsageError(f"--output {path}: there is such a file already, expected a new one")
     run = runs.runs[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -13,8 +13,9 @@ from executive.core.context import Context
 from executive.core.plan_finding import PlanFinding, PlanFound
 from executive.library import Belief
 from executive.refinement.assertion import Assertion
-from executive.refinement.instantiation import ActionSequence, Failure, instantiate
+from executive.refinement.instantiation import ActionSequence, Failure, Pattern
 from executive.refinement.refinement import Choice, Refinement
+from executive.refinement.watching import Watch
 from schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
@@ -28,6 +29,7 @@ class Decision:
     sequence: ActionSequence
     choice: Choice
     number: int  # which deliberation it came from
+    watch: Watch = field(compare=False, repr=False)  # tells when the sequence no longer fits the belief
 
 
 class Deliberation:
@@ -51,6 +53,8 @@ class Deliberation:
         self._context = context
         self._belief = belief
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
+        self._pattern: Pattern | None = None
+        self._watch: Watch | None = None
         self._assertion: Assertion | None = None
         self._finding: PlanFinding | None = None
         if isinstance(source, PlanFinding):
@@ -89,7 +93,8 @@ class Deliberation:
         choice = self.refinement.choice
         if choice is None or not choice.valid:
             return None
-        return Decision(self.found.plan, self.sequence, choice, self.number)
+        assert self._watch is not None
+        return Decision(self.found.plan, self.sequence, choice, self.number, self._watch)
 
     def nothing_to_do(self) -> bool:
         """Whether the goal already holds: a plan was found and has no steps."""
@@ -113,7 +118,8 @@ class Deliberation:
         if not found.plan.steps:
             self.stage = "decided"
             return
-        sequence = instantiate(found.plan, self._context.domain, self._belief, self._context.scenario)
+        self._pattern = Pattern(found.plan, self._context.domain, self._context.scenario)
+        sequence = self._pattern.sequence(self._belief)
         if isinstance(sequence, Failure):
             self._fail(f"cannot instantiate: {sequence.reason}")
             return
@@ -123,6 +129,7 @@ class Deliberation:
 
     def _assert(self, budget: Budget) -> None:
         assert self._assertion is not None
+        assert self._pattern is not None
         sequence = self._assertion.advance(budget)
         if sequence is None:
             return
@@ -130,6 +137,7 @@ class Deliberation:
             self._fail(f"no subgoal helps: {sequence.reason}")
             return
         self.sequence = sequence
+        self._watch = Watch(self._pattern, sequence)
         self.refinement = Refinement(
             sequence, self._context.models, self._context.settings.refinement, self._rng, start=None
         )

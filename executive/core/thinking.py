@@ -14,7 +14,6 @@ from executive.core.modes import Mode
 from executive.core.plan_finding import problem_of_now
 from executive.core.reusing import look_further, reusable
 from executive.core.state import State, Task
-from executive.refinement.instantiation import ActionSequence, Failure, instantiate
 
 
 def think(context: Context, state: State, budget: Budget) -> State:
@@ -43,7 +42,7 @@ def _with_deliberation(context: Context, state: State) -> State:
     task = state.task
     ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
     idle = task.running is None and task.decision is None
-    if ongoing or not (idle or _places_moved(context, state)):
+    if ongoing or not (idle or _places_moved(state)):
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
@@ -97,25 +96,9 @@ def _redirected(task: Task, running: Running, now_ns: int) -> Task:
     return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
 
 
-def _places_moved(context: Context, state: State) -> bool:
+def _places_moved(state: State) -> bool:
     """Whether a believed value that the running sequence is bound to has moved beyond its tolerance."""
     decision = state.task.decision
     if decision is None or state.task.running is None:
         return False
-    now = instantiate(decision.plan, context.domain, state.belief, context.scenario)
-    return not isinstance(now, Failure) and _differs(decision.sequence, now)
-
-
-def _differs(then: ActionSequence, now: ActionSequence) -> bool:
-    current = {(a.step, a.action.name): a for a in now.actions}
-    for action in then.actions:
-        other = current.get((action.step, action.action.name))
-        if other is None:
-            continue
-        for parameter, old_id, new_id in zip(action.action.parameters, action.variables, other.variables, strict=True):
-            old, new = then.variables[old_id].value, now.variables[new_id].value
-            if parameter.tolerance is None or old is None or new is None:
-                continue
-            if abs(old - new) > parameter.tolerance:
-                return True
-    return False
+    return decision.watch.moved(state.belief)

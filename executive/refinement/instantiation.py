@@ -11,7 +11,7 @@ from executive.library import Belief, Conflict, Domain, Fact, Interval, Paramete
 from executive.planning import Plan
 from executive.refinement.sequence import ActionSequence, Failure, InstantiatedAction, Variable
 
-__all__ = ["ActionSequence", "Failure", "InstantiatedAction", "Variable", "instantiate"]
+__all__ = ["ActionSequence", "Failure", "InstantiatedAction", "Pattern", "Variable", "instantiate"]
 
 INITIAL = 0  # producer id of what holds in the initial state
 
@@ -28,17 +28,92 @@ def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) 
     Returns:
       The actions in plan order, or why the predicates over a label exclude each other.
     """
-    table = _Table(_facts_by_label(plan), domain, belief, scenario)
-    actions = []
-    try:
-        for step in plan.steps:
-            name, *labels = step.action
-            action = domain.actions[domain.executables[name]]
-            variables = tuple(table.variable(parameter, labels[parameter.argument]) for parameter in action.parameters)
-            actions.append(InstantiatedAction(action, step.id, variables))
-    except Conflict as conflict:
-        return Failure(f"{' '.join(step.action)}: {conflict}")
-    return ActionSequence(tuple(actions), tuple(table.variables), domain.actions)
+    return Pattern(plan, domain, scenario).sequence(belief)
+
+
+class Pattern:
+    """Instantiation of one plan as far as it does not depend on the belief: which variable each parameter stands for.
+
+    Args:
+      plan: Steps by start time, with causal links, those from the initial state included.
+      domain: Action library and meaning of the predicates.
+      scenario: What the labels mean.
+    """
+
+    def __init__(self, plan: Plan, domain: Domain, scenario: Scenario) -> None:
+        self._domain, self._scenario = domain, scenario
+        self._linked = _facts_by_label(plan)
+        self._slots: list[_Slot] = []  # one for each label and quantity (lines 8 to 11), by id
+        self._uses: list[tuple[tuple[str, ...], int, Parameter]] = []  # action of the plan, slot, parameter; in order
+        ids: dict[tuple[str, str], int] = {}
+        self.actions = tuple(self._action(step.action, step.id, ids) for step in plan.steps)
+
+    def sequence(self, belief: Belief) -> ActionSequence | Failure:
+        """The plan's actions with what the belief says of their variables, or why that excludes itself."""
+        variables: list[Variable] = []
+        for action, identifier, parameter in self._uses:
+            try:
+                if identifier == len(variables):
+                    variables.append(self._made(identifier, belief))
+                variables[identifier] = _narrowed(variables[identifier], parameter)
+            except Conflict as conflict:
+                return Failure(f"{' '.join(action)}: {conflict}")
+        return ActionSequence(self.actions, tuple(variables), self._domain.actions)
+
+    def value(self, identifier: int, belief: Belief) -> float | None:
+        """What `sequence` gives one variable; None if it is free. Raises Conflict if there is no sequence."""
+        said = self._said(self._slots[identifier], belief)
+        if said is not None and said.lower == said.upper:
+            return said.lower
+        variable = self._made(identifier, belief)
+        for _, used, parameter in self._uses:
+            if used == identifier:
+                variable = _narrowed(variable, parameter)
+        return variable.value
+
+    def _action(self, symbolic: tuple[str, ...], step: int, ids: dict[tuple[str, str], int]) -> InstantiatedAction:
+        name, *labels = symbolic
+        action = self._domain.actions[self._domain.executables[name]]
+        variables = []
+        for parameter in action.parameters:
+            key = (labels[parameter.argument], parameter.quantity)
+            if key not in ids:
+                ids[key] = len(ids)
+                self._slots.append(_Slot(key[0], parameter, *self._predicates(key[0])))
+            variables.append(ids[key])
+            self._uses.append((symbolic, ids[key], parameter))
+        return InstantiatedAction(action, step, tuple(variables))
+
+    def _predicates(self, label: str) -> tuple[tuple[Fact, ...], tuple[Fact, ...]]:
+        linked = self._linked.get(label, _Linked())
+        return tuple(linked.holds), tuple(linked.achieved)
+
+    def _said(self, slot: _Slot, belief: Belief) -> Interval | None:
+        quantity = slot.parameter.quantity
+        return self._domain.value(quantity, slot.label, slot.holds, slot.achieved, belief, self._scenario)
+
+    def _made(self, identifier: int, belief: Belief) -> Variable:
+        slot = self._slots[identifier]
+        parameter = slot.parameter
+        default = Interval(parameter.lower, parameter.upper)
+        interval = self._said(slot, belief) or default
+        value = interval.lower if interval.lower == interval.upper else None
+        wraps = parameter.periodic and interval.upper - interval.lower >= default.upper - default.lower
+        if wraps:
+            interval = default
+        return Variable(
+            identifier, slot.label, parameter.quantity, parameter.unit, interval.lower, interval.upper, wraps, value
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Slot:
+    """A variable before its value is known: the parameter that it was made for, and the predicates over its label."""
+
+    label: str
+    parameter: Parameter
+    holds: tuple[Fact, ...]
+    achieved: tuple[Fact, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,43 +137,6 @@ def _facts_by_label(plan: Plan) -> dict[str, _Linked]:
             if fact not in facts:
                 facts.append(fact)
     return linked
-
-
-class _Table:
-    """The variables made so far, one for each label and quantity."""
-
-    def __init__(self, linked: dict[str, _Linked], domain: Domain, belief: Belief, scenario: Scenario) -> None:
-        self.variables: list[Variable] = []
-        self._ids: dict[tuple[str, str], int] = {}
-        self._linked = linked
-        self._domain = domain
-        self._belief = belief
-        self._scenario = scenario
-
-    def variable(self, parameter: Parameter, label: str) -> int:
-        """The id of the variable that `parameter` of `label` stands for (lines 8 to 11)."""
-        key = (label, parameter.quantity)
-        if key not in self._ids:
-            self._ids[key] = len(self.variables)
-            self.variables.append(self._made(len(self.variables), parameter, label))
-        identifier = self._ids[key]
-        self.variables[identifier] = _narrowed(self.variables[identifier], parameter)
-        return identifier
-
-    def _made(self, identifier: int, parameter: Parameter, label: str) -> Variable:
-        linked = self._linked.get(label, _Linked())
-        said = self._domain.value(
-            parameter.quantity, label, tuple(linked.holds), tuple(linked.achieved), self._belief, self._scenario
-        )
-        default = Interval(parameter.lower, parameter.upper)
-        interval = said or default
-        value = interval.lower if interval.lower == interval.upper else None
-        wraps = parameter.periodic and interval.upper - interval.lower >= default.upper - default.lower
-        if wraps:
-            interval = default
-        return Variable(
-            identifier, label, parameter.quantity, parameter.unit, interval.lower, interval.upper, wraps, value
-        )
 
 
 def _narrowed(variable: Variable, parameter: Parameter) -> Variable:
