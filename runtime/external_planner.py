@@ -24,7 +24,9 @@ class ExternalPlanner:
         self.close()
         self._asked, self._missing = request.id, ""
         try:
-            self._child = PlannerProcess(self._command, request.domain, request.problem, self._limit_s)
+            self._child = PlannerProcess(
+                self._command, request.domain, request.problem, self._limit_s, MAX_ANSWER_BYTES
+            )
         except UsageError as error:
             self._missing = str(error)
 
@@ -57,5 +59,5 @@ def _believable(answer: PlanAnswer) -> PlanAnswer:
     size = len(answer.output.encode())
     if size <= MAX_ANSWER_BYTES:
         return answer
-    reason = f"the planner printed {size} bytes, more than {MAX_ANSWER_BYTES}"
+    reason = f"the planner's output has {size} bytes as text, more than {MAX_ANSWER_BYTES}"
     return PlanAnswer(answer.stamp_ns, answer.id, "flood", "", reason)

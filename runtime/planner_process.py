@@ -50,6 +50,7 @@ class PlannerProcess:
         domain: str,
         problem: str,
         limit_s: float,
+        max_bytes: int = MAX_OUTPUT_BYTES,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Starts the child as `command DOMAIN PROBLEM` in a process group of its own.
@@ -59,6 +60,7 @@ class PlannerProcess:
           domain: PDDL text, handed over in a file.
           problem: PDDL text, handed over in a file.
           limit_s: Wall time after which the group is killed; vhpop's own -T only knows whole minutes.
+          max_bytes: Output after which the group is killed; a poll reads about 64 kB, a pipe holds no more.
           clock: Seconds that only grow.
 
         Raises:
@@ -66,6 +68,7 @@ class PlannerProcess:
         """
         self._clock = clock
         self._limit_s = limit_s
+        self._max_bytes = max_bytes
         self._output = bytearray()
         self._answer: PlannerAnswer | None = None
         self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-")
@@ -108,8 +111,8 @@ class PlannerProcess:
             return self._answer
         ended = self._child.poll() is not None
         self._read()
-        if len(self._output) > MAX_OUTPUT_BYTES:
-            self._end("flood", f"the planner printed more than {MAX_OUTPUT_BYTES} bytes")
+        if len(self._output) > self._max_bytes:
+            self._end("flood", f"the planner printed more than {self._max_bytes} bytes")
         elif ended:
             code = self._child.returncode
             self._end("crashed" if code < 0 else "answered", f"the planner ended with code {code}")
@@ -125,7 +128,7 @@ class PlannerProcess:
     def _read(self) -> None:
         assert self._child.stdout is not None
         descriptor = self._child.stdout.fileno()
-        while len(self._output) <= MAX_OUTPUT_BYTES:
+        while len(self._output) <= self._max_bytes:
             try:
                 chunk = os.read(descriptor, _CHUNK)
             except BlockingIOError:
@@ -142,7 +145,7 @@ class PlannerProcess:
         assert self._child.stdout is not None
         self._child.stdout.close()
         self._folder.cleanup()
-        text = self._output[:MAX_OUTPUT_BYTES].decode("utf-8", errors="replace")
+        text = self._output[: self._max_bytes].decode("utf-8", errors="replace")
         self._answer = PlannerAnswer(outcome, text, reason)
 
 

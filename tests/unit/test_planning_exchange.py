@@ -19,7 +19,8 @@ from executive.planning import (
     parse_problem,
     validate,
 )
-from tests.planning_problems import OWN, own, printed, read, solve
+from executive.planning.linking import links_of
+from tests.planning_problems import DATA, OWN, own, printed, read, solve
 
 RICH_DOMAIN = """(define (domain rich) (:requirements :typing :fluents :timed-initial-literals :durative-actions)
   (:types cup plate - thing robot) (:constants dock - object)
@@ -83,10 +84,15 @@ def test_links_from_static_facts_are_added_and_the_planners_own_stand():
     assert linked.initial == problem.initial
 
 
-def test_a_plan_of_the_original_keeps_its_links():
-    domain, problem = own("kitchen-s1")
-    text = printed("kitchen-s1.ground.links")
-    assert set(parse_plan(text).links) <= set(completed(parse_plan(text), domain, problem).links)
+@pytest.mark.parametrize("path", sorted((DATA / "vhpop-output").glob("*.txt")), ids=lambda path: path.stem)
+def test_every_plan_that_the_original_printed_is_believed_keeps_its_links_and_gets_those_that_it_lacks(path):
+    domain, problem = own(path.name.split(".")[0])
+    plan = parse_plan(path.read_text())
+    linked = completed(plan, domain, problem)
+    assert validate(linked, domain, problem) == ""
+    assert set(plan.links) <= set(linked.links)
+    needed = links_of(replace(linked, links=()), domain, problem)
+    assert {(x.literal, x.consumer) for x in needed} <= {(x.literal, x.consumer) for x in linked.links}
 
 
 def test_a_link_that_is_neither_there_nor_static_makes_all_of_them_anew():
