@@ -262,6 +262,7 @@ class RefinementReport:
     situation: tuple[float, ...] = ()  # what a benefit tree sees of both choices; its card names the values
     slower: float = -1.0  # the tree's probability that refining costs time (paper 6.3.2); -1: it was not asked
     kept_greedy: bool = False  # the tree advised against refining
+    gap_pct: float = -1.0  # proven: best_s is at most so much above the models' optimum; -1: not certified
 
 
 @dataclass(frozen=True, slots=True)

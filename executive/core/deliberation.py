@@ -86,6 +86,11 @@ class Deliberation:
             if self.stage == stage:
                 return
 
+    def certify(self, budget: Budget) -> None:
+        """Once decided, prove how near the choice is to the optimum of the models."""
+        if self.stage == "decided" and self.refinement is not None:
+            self.refinement.certify(budget)
+
     def decision(self) -> Decision | None:
         """The best decision so far; None while there is no plan that can be executed."""
         if self.refinement is None or self.sequence is None or self.found is None or self.found.plan is None:

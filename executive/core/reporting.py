@@ -26,7 +26,7 @@ class Told:
     running: Running | None
     finished: int
     decision: Decision | None
-    evaluations: int
+    searched: tuple[int, float]
 
 
 def snapshot(state: State) -> Told:
@@ -39,7 +39,7 @@ def snapshot(state: State) -> Told:
         state.task.running,
         state.task.finished,
         state.task.decision,
-        _evaluations(deliberation),
+        _searched(deliberation),
     )
 
 
@@ -57,7 +57,7 @@ def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
         )
         if fresh and deliberation.request is not None:
             outputs.append(Output("plan_request", deliberation.request))
-        if _evaluations(deliberation) != told.evaluations or fresh:
+        if _searched(deliberation) != told.searched or fresh:
             outputs.extend(_refinement(context, state, deliberation))
     if state.task.decision is not None and state.task.decision is not told.decision:
         outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))
@@ -74,10 +74,12 @@ def _overtaken(context: Context, state: State, plan: planning.Plan | None, runni
     return "aborted", "another action comes first now"
 
 
-def _evaluations(deliberation: Deliberation | None) -> int:
+def _searched(deliberation: Deliberation | None) -> tuple[int, float]:
+    """How far the search for subgoals has come: evaluations, and the gap to the optimum, -1 where it is not known."""
     if deliberation is None or deliberation.refinement is None:
-        return 0
-    return deliberation.refinement.report().evaluations
+        return 0, -1.0
+    report = deliberation.refinement.report()
+    return report.evaluations, -1.0 if report.gap_pct is None else report.gap_pct
 
 
 def _plan(context: Context, state: State, found: PlanFound) -> m.PlanReport:
@@ -111,6 +113,7 @@ def _refinement(context: Context, state: State, deliberation: Deliberation) -> t
         situation=report.verdict.situation,
         slower=report.verdict.slower,
         kept_greedy=report.verdict.keep_greedy,
+        gap_pct=-1.0 if report.gap_pct is None else report.gap_pct,
     )
     return (Output("refinement", message),)
 

@@ -35,7 +35,10 @@ def think(context: Context, state: State, budget: Budget) -> State:
     decision = deliberation.decision()
     if decision is not None:
         state = _adopted(context, state, decision, deliberation.stage == "decided")
-    return look_further(context, state, budget) if deliberation.stage == "decided" else state
+    if deliberation.stage == "decided":
+        state = look_further(context, state, budget)
+        deliberation.certify(budget)  # what is left of the budget
+    return state
 
 
 def _with_deliberation(context: Context, state: State) -> State:

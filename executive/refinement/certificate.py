@@ -32,7 +32,7 @@ LEAST_CHANGE_S = 1e-3  # where none is seen
 class Certificate:
     """Proves that no choice costs less than `bound`; anytime and resumable, without a random draw.
 
-    On the way it may come across a choice that is better than the one it was given.
+    On the way it may come across a choice that is better than the one it was given: `best`, which costs `value`.
 
     Args:
       objective: What was minimised.
@@ -53,6 +53,7 @@ class Certificate:
         self.bound = -np.inf  # seconds
         self.best = best
         self.value = float(objective(best[None])[0])
+        self._given = self.value
         self.checks = 0
         self.finished = False
         self._objective = objective
@@ -63,8 +64,8 @@ class Certificate:
 
     @property
     def gap_pct(self) -> float | None:
-        """The best choice costs at most so much more than the optimum; None while that cannot be said."""
-        return 100 * (self.value / self.bound - 1) if 0 < self.bound <= self.value < np.inf else None
+        """The given choice costs at most so much more than the optimum; None while that cannot be said."""
+        return 100 * (self._given / self.bound - 1) if 0 < self.bound <= self.value < np.inf else None
 
     def advance(self, budget: Budget) -> None:
         """Prove on until the budget is spent or no more can be proven."""

@@ -13,6 +13,7 @@ import numpy as np
 from executive.budget import Budget
 from executive.library import Array, Models
 from executive.refinement.benefit import Verdict, judge
+from executive.refinement.certificate import Certificate, certificate
 from executive.refinement.choice import Choice, choice_of
 from executive.refinement.greedy import Greedy, Polish, greedy
 from executive.refinement.objective import SequenceObjective
@@ -20,6 +21,7 @@ from executive.refinement.selection import solver_for
 from executive.refinement.sequence import ActionSequence
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.solver import Solver
+from executive.refinement.stage_bounds import NoBound
 
 __all__ = ["Choice", "Refinement", "Report"]
 
@@ -35,6 +37,7 @@ class Report:
     best_s: float
     trace: tuple[tuple[int, float], ...]  # (evaluations, best value) at each improvement
     verdict: Verdict = field(default_factory=Verdict)  # whether refining is worth it
+    gap_pct: float | None = None  # proven: `best_s` is at most so much above the models' optimum
 
 
 class Refinement:
@@ -71,6 +74,7 @@ class Refinement:
         self._alone: Choice | None = None  # the greedy choice
         self._verdict = Verdict()
         self._polish: Polish | None = None
+        self._certificate: Certificate | NoBound | None = None
 
     @property
     def choice(self) -> Choice | None:
@@ -99,6 +103,16 @@ class Refinement:
             if self._solver.finished and self._verdict.keep_greedy:
                 self._go_greedy(budget)
 
+    def certify(self, budget: Budget) -> None:
+        """Once the search is finished, prove how near its best answer is to the optimum; it changes no answer."""
+        choice, wanted = self._choice, self._settings.certify_checks > 0 and self._objective.ids
+        if not (wanted and self.finished and choice is not None and choice.valid):
+            return
+        if self._certificate is None:
+            self._certificate = certificate(self._judge, self._judge.vector(choice.values), self._settings)
+        if isinstance(self._certificate, Certificate):
+            self._certificate.advance(budget)
+
     def report(self) -> Report:
         """How the search went so far."""
         solver = self._solver
@@ -117,6 +131,7 @@ class Refinement:
             self._choice.total_s if self._choice else np.inf,
             tuple(trace),
             self._verdict,
+            self._certificate.gap_pct if isinstance(self._certificate, Certificate) else None,
         )
 
     def _begin(self) -> None:
