@@ -54,12 +54,12 @@ def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str
     width = trees[0].slopes.shape[1]
     cells = cells_of([tree.splits for tree in trees], width)
     leaves = _leaves(sink, features, trees) if cells is None else _leaves_by_cell(sink, features, cells, width)
-    each = _formula(sink, features, leaves, trees)  # (k, n)
+    each = _formula(sink, features, leaves, trees)  # (k, n, 1)
     over = sink.constant(np.array([0]))
     mean = sink.add("ReduceMean", each, over, keepdims=1)
     off = sink.add("Sub", each, mean)
-    variance = sink.add("ReduceMean", sink.add("Mul", off, off), over, keepdims=0)
-    return _flat(sink, mean), str(sink.add("Sqrt", variance))
+    variance = sink.add("ReduceMean", sink.add("Mul", off, off), over, keepdims=1)
+    return _flat(sink, mean), _flat(sink, str(sink.add("Sqrt", variance)))
 
 
 def _leaves(sink: Sink, features: str, trees: Sequence[LinearTree]) -> str:
@@ -97,13 +97,16 @@ def _leaves_by_cell(sink: Sink, features: str, cells: Cells, width: int) -> str:
 
 
 def _formula(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree]) -> str:
-    """clip(features · slopes + intercept, low, high) of leaves (k, n): seconds (k, n)."""
-    slopes = np.concatenate([np.column_stack([tree.slopes, tree.intercept]) for tree in trees])
-    low, high = (np.concatenate([getattr(tree, name) for tree in trees]) for name in ("low", "high"))
-    product = sink.add("Mul", sink.add("Gather", sink.constant(slopes), leaf), features)  # (k, n, f + 1)
-    total = sink.add("ReduceSum", product, sink.constant(np.array([-1])), keepdims=0)
-    above = sink.add("Max", total, sink.add("Gather", sink.constant(low), leaf))
-    return str(sink.add("Min", above, sink.add("Gather", sink.constant(high), leaf)))
+    """clip(features · slopes + intercept, low, high) of leaves (k, n): seconds (k, n, 1).
+
+    One table of rows (slopes, intercept, low, high): what costs time is to look up, not to compute.
+    """
+    rows = [np.column_stack([tree.slopes, tree.intercept, tree.low, tree.high]) for tree in trees]
+    row = sink.add("Gather", sink.constant(np.concatenate(rows)), leaf)  # (k, n, f + 3)
+    widths = sink.constant(np.array([rows[0].shape[1] - 2, 1, 1]))
+    slopes, low, high = sink.add("Split", row, widths, outputs=3, axis=2)
+    total = sink.add("ReduceSum", sink.add("Mul", slopes, features), sink.constant(np.array([-1])), keepdims=1)
+    return str(sink.add("Min", sink.add("Max", total, low), high))
 
 
 def _flat(sink: Sink, values: str) -> str:

@@ -46,14 +46,14 @@ def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
     try:
         graph = read_graph(model)
         ensembles = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
-        formula = _constant(graph, "Mul", 2)
         read = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)
         if read is None:
             return None
         first, lower, upper, said = read
-        if formula is None:
+        formulas = _formulas(graph)
+        if formulas is None:
             return _plain(first, lower, upper, said, len(graph.nodes), graph)
-        return _linear(graph, first, lower, upper, said, formula)
+        return _linear(graph, first, lower, upper, said, formulas)
     except (ValueError, KeyError, IndexError):
         return None
 
@@ -68,19 +68,29 @@ def _plain(first: Ints, lower: Floats, upper: Floats, said: Floats, nodes: int, 
 
 
 def _linear(
-    graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats, formula: Floats
+    graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats, formulas: Floats
 ) -> TreeBoxes | None:
     """Leaves that say which row of the constants holds their formula."""
     rows = said.astype(np.int64)
-    low, high = _constant(graph, "Max", 1), _constant(graph, "Min", 1)
-    if low is None or high is None or not np.array_equal(rows, said):
+    if not np.array_equal(rows, said):
         return None
     spread = _constant(graph, "Reshape", 1)
     if spread is None and "Sqrt" not in {node.op for node in graph.nodes[-3:]}:
         return None
-    slopes = formula[rows]
-    ends = (low[rows], high[rows], None if spread is None else spread[rows])
-    return TreeBoxes(first, lower, upper, slopes[:, :-1], slopes[:, -1], *ends)
+    said_by = formulas[rows]
+    ends = (said_by[:, -2], said_by[:, -1], None if spread is None else spread[rows])
+    return TreeBoxes(first, lower, upper, said_by[:, :-3], said_by[:, -3], *ends)
+
+
+def _formulas(graph: Contents) -> Floats | None:
+    """Rows of slopes, intercept, low and high; older graphs keep the ends in constants of their own."""
+    packed = _constant(graph, "Split", 2)
+    if packed is not None:
+        return packed
+    slopes, low, high = (_constant(graph, op, axes) for op, axes in (("Mul", 2), ("Max", 1), ("Min", 1)))
+    if slopes is None or low is None or high is None:
+        return None
+    return np.column_stack([slopes, low, high])
 
 
 def _constant(graph: Contents, op: str, axes: int) -> Floats | None:
