@@ -17,6 +17,7 @@ class FailureForest(FailureModel):
       trees: How many.
       cost_ratio: Cost of a missed failure over that of a false alarm; moves the threshold, not the probabilities.
       min_rows: Rows in a leaf at least.
+      feature_share: Of the features, as many are looked at for each split; fewer make the trees differ more.
       random_state: Seed or generator that draws episodes and features.
     """
 
@@ -25,11 +26,13 @@ class FailureForest(FailureModel):
         trees: int = 32,
         cost_ratio: float = 1.0,
         min_rows: int = 8,
+        feature_share: float = 0.7,
         random_state: int | np.random.Generator | None = 0,
     ) -> None:
         self.trees = trees
         self.cost_ratio = cost_ratio
         self.min_rows = min_rows
+        self.feature_share = feature_share
         self.random_state = random_state
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
@@ -43,7 +46,7 @@ class FailureForest(FailureModel):
             weights = np.bincount(rng.integers(0, count, count), minlength=count)[episodes].astype(np.float64)
             drawn = np.flatnonzero(weights)
             tree = DecisionTreeClassifier(
-                min_samples_leaf=least, max_features="sqrt", random_state=int(rng.integers(2**31))
+                min_samples_leaf=least, max_features=self.feature_share, random_state=int(rng.integers(2**31))
             ).fit(features[drawn], success[drawn], weights[drawn])
             self.steps_.append((splits_of(tree), _shares(tree)))
         return self
