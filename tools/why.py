@@ -22,7 +22,7 @@ from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import Explanation
 from tools.viewer.recorded import timed
 from tools.viewer.rows import number
-from tools.viewer.wording import advice, durations, effort, in_words, nearness, seen
+from tools.viewer.wording import advice, durations, effort, in_words, nearness, proven, seen
 
 NAMED = 3  # actions of a sequence; a word that the arm writes has dozens
 
@@ -109,6 +109,7 @@ def _show(reasons: Sequence[Reason]) -> None:
         for situation in reason.explanation.situations:
             console.print(f"  {seen(situation)}", highlight=False)
         console.print(f"  {nearness(reason.explanation.chosen_cost, reason.best_cost)}", highlight=False)
+        console.print(f"  {proven(reason.decision.report)}", highlight=False)
         if reason.decision.report is not None and (advised := advice(reason.decision.report)):
             console.print(f"  {advised}", highlight=False)
         console.print(f"  {effort(reason.decision)}\n", highlight=False)
@@ -129,6 +130,7 @@ def _told(reason: Reason) -> dict[str, Any]:
             "checks": report.checks,
             "slower": report.slower if report.slower >= 0 else None,
             "kept_greedy": report.kept_greedy,
+            "gap_pct": report.gap_pct if report.gap_pct >= 0 else None,
         },
         "thinking_s": decision.work_s,
         "actual_s": None if decision.finished is None else decision.finished.actual_s,

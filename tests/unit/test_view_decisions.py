@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from schemas import messages as m
 from tests import synthetic_run
 from tools.viewer.decisions import acted_on, decisions_of, in_force
 from tools.viewer.recorded import Timed
+from tools.viewer.wording import proven
 
 BEGIN = m.Subgoals(0, 5, 2, ())
 
@@ -47,6 +50,16 @@ def test_thinking_counts_all_ticks_of_the_search_and_no_others() -> None:
     (decision,) = run.decisions
     assert (decision.ticks, decision.report.checks, decision.report.best_s) == (2, 20, 8.5)
     assert decision.work_s == pytest.approx(0.060 + 0.030)
+
+
+def test_a_proof_told_later_belongs_to_the_decision_and_costs_it_no_thinking() -> None:
+    proof = dataclasses.replace(report(5, 20, 8.5), tick=7, gap_pct=0.8)
+    run = run_of(tick(4, 60), report(5, 20, 8.5), BEGIN, tick(5, 61), tick(7, 50), proof)
+    (decision,) = run.decisions
+    assert decision.report.gap_pct == 0.8
+    assert decision.ticks == 1
+    assert proven(decision.report) == "certified: within 0.8 % of the models' optimum"
+    assert "not certified" in proven(report(5, 20))
 
 
 def test_a_new_search_does_not_count_for_the_old_decision() -> None:

@@ -41,6 +41,11 @@ def decisions_of(messages: Iterable[Timed]) -> Run:
         message = t.message
         if isinstance(message, Provenance):
             run.provenance = run.provenance or message.json
+        elif isinstance(message, RefinementReport) and search and _proves(message, search[-1]):
+            proven = [*search[:-1], replace(message, tick=search[-1].tick)]  # its ticks are not the search's
+            if run.decisions and run.decisions[-1].report is search[-1]:
+                run.decisions[-1] = replace(run.decisions[-1], report=proven[-1])
+            search = proven
         elif isinstance(message, RefinementReport):
             goes_on = bool(search) and message.checks > search[-1].checks
             search = [*search, message] if goes_on else [message]
@@ -56,6 +61,12 @@ def decisions_of(messages: Iterable[Timed]) -> Run:
         elif isinstance(message, ActionFinished) and run.decisions:
             run.decisions[-1] = replace(run.decisions[-1], finished=message)
     return run
+
+
+def _proves(message: RefinementReport, last: RefinementReport) -> bool:
+    """Whether a report tells no more of the search than the last one did, but how near it is to the optimum."""
+    same = (message.evaluations, message.checks, message.best_s) == (last.evaluations, last.checks, last.best_s)
+    return same and message.gap_pct >= 0
 
 
 def in_force(decisions: Iterable[Decision], at_s: float) -> Decision | None:

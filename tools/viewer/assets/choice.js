@@ -32,7 +32,8 @@ class ChoicePanel {
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
     const slower = report.slower === null ? "" : `costs time with ${(100 * report.slower).toFixed(0)} %`;
     const advice = slower && `, ${report.keptGreedy ? "greedy kept, refining" : "refined, which"} ${slower}`;
-    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${advice}`;
+    const gap = report.gap === null ? "" : `, within ${report.gap.toFixed(1)} % of the models' optimum`;
+    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}${advice}`;
   }
 
   /** With the models at hand: chosen against greedy, and the alternatives. */
