@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from executive.actions.approach_ball import ApproachBall
 from executive.actions.dribble_ball import DribbleBall
 from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
 from executive.domains.soccer import robot
-from executive.library import Action, Array, Parameter
+from executive.domains.soccer.behind import Behind
+from executive.library import Action, Parameter
 
 FIELD_X_M = 3.5
 FIELD_Y_M = 2.25
@@ -38,23 +37,10 @@ def _places(start_mps: float, goal_mps: float, ball_tolerance: float | None = No
     return tuple(made)
 
 
-def behind_goal(values: Array) -> Array:
-    """Goal place -> pose of the axle behind the ball, with the clearance in which an approach ends; shape (n, 8)."""
-    return _shifted(values, (4,), robot.BEHIND_BALL_M)
-
-
-def behind_both(values: Array) -> Array:
-    """Both places -> poses of the axle with the ball in the rail; shape (n, 8)."""
-    return _shifted(values, (0, 4), robot.IN_RAIL_M)
-
-
-def _shifted(values: Array, offsets: tuple[int, ...], distance: float) -> Array:
-    moved = np.array(values, dtype=np.float64)
-    for at in offsets:
-        moved[:, at] -= distance * np.cos(moved[:, at + 2])
-        moved[:, at + 1] -= distance * np.sin(moved[:, at + 2])
-    return moved
-
+# Goal place -> pose of the axle behind the ball, with the clearance in which an approach ends
+behind_goal = Behind((4,), robot.BEHIND_BALL_M)
+# Both places -> poses of the axle with the ball in the rail
+behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
 _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), robot.IN_RAIL_M)
@@ -68,9 +54,15 @@ APPROACH_BALL = Action(
     "approachBall/success",
     detour="goToPose",
     arguments=behind_goal,
+    spans=behind_goal.spans,
 )
 DRIBBLE_BALL = Action(
-    "dribbleBall", _places(AT_BALL_MPS, AT_BALL_MPS), _dribble, "dribbleBall/duration", arguments=behind_both
+    "dribbleBall",
+    _places(AT_BALL_MPS, AT_BALL_MPS),
+    _dribble,
+    "dribbleBall/duration",
+    arguments=behind_both,
+    spans=behind_both.spans,
 )
 
 ACTIONS = {action.name: action for action in (GO_TO_POSE, APPROACH_BALL, DRIBBLE_BALL)}
