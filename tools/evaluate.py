@@ -5,9 +5,12 @@ from __future__ import annotations
 import argparse
 import importlib
 import itertools
+import sys
 from typing import Any
 
+from executive import domains
 from schemas.errors import UsageError
+from tools.evaluations.overview import page_is_there, write_overview
 
 # name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 EVALUATIONS: dict[str, tuple[str, str]] = {
@@ -28,6 +31,16 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "live": ("tools.evaluations.live", "a sample live over the bus against the same starts in lock-step"),
 }
 ALL = "all"
+RESUME = "--resume"
+STOPPED = 130
+EPILOG = """
+`tailor evaluate NAME --help` tells its own flags. With `all`, each evaluation takes the flags that it knows.
+--resume: leave out what has a page in the report's folder already. Finished episodes are kept in any case.
+
+examples:
+  tailor evaluate table3 table4 figure16 --domain soccer --report out/report
+  tailor evaluate all --report out/report --resume
+"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -35,18 +48,38 @@ def configure(parser: argparse.ArgumentParser) -> None:
     width = max(map(len, EVALUATIONS))
     rows = [f"  {name:<{width}}  {text}" for name, (_, text) in EVALUATIONS.items()]
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.usage = "tailor evaluate NAME [NAME ...] [--json] [--report DIR] [...]"
-    parser.epilog = "\n".join(
-        ["evaluations:", *rows, f"  {ALL:<{width}}  the lot", "", "`tailor evaluate NAME --help` tells its own flags."]
-    )
+    parser.usage = "tailor evaluate NAME [NAME ...] [--json] [--report DIR [--resume]] [...]"
+    parser.epilog = "\n".join(["evaluations:", *rows, f"  {ALL:<{width}}  the lot", EPILOG])
     parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME", help="which evaluations, then their flags")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run each evaluation; the exit code is the worst of theirs."""
     names, flags = _names_and_flags(arguments.words)
-    parsed = [_parsed(name, flags) for name in names]  # a wrong flag is told before anything runs
-    return max(int(module.run(settings)) for module, settings in parsed)
+    everything = ALL in arguments.words[:1]
+    chosen = _chosen(names, [flag for flag in flags if flag != RESUME], everything)  # a wrong flag is told first
+    code = 0
+    for name, module, settings in chosen:
+        if RESUME in flags and settings.report is not None and page_is_there(settings.report, name):
+            continue
+        done = _run_one(name, module, settings, everything)
+        if settings.report is not None:
+            write_overview(settings.report, list(EVALUATIONS))
+        if done == STOPPED:
+            return STOPPED
+        code = max(code, done)
+    return code
+
+
+def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:
+    """One evaluation; where the lot is asked for, one that cannot run does not keep the others from it."""
+    try:
+        return int(module.run(settings))
+    except UsageError as error:
+        if not everything:
+            raise
+        print(f"tailor evaluate {name}: {error}", file=sys.stderr)
+        return 2
 
 
 def _names_and_flags(words: list[str]) -> tuple[list[str], list[str]]:
@@ -58,8 +91,29 @@ def _names_and_flags(words: list[str]) -> tuple[list[str], list[str]]:
     return names, words[len(leading) :]
 
 
-def _parsed(name: str, flags: list[str]) -> tuple[Any, argparse.Namespace]:
+def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[str, Any, argparse.Namespace]]:
+    """Evaluations with their modules and settings; of the lot, those of another domain are left out."""
+    parsed = [(name, *_parsed(name, flags)) for name in names]
+    unknown = [rest for *_, rest in parsed]
+    needed = all if everything else any
+    nobodys = [flag for flag in flags if needed(flag in rest for rest in unknown)]
+    if nobodys:
+        raise UsageError(f"unknown: {' '.join(nobodys)} (`tailor evaluate NAME --help` tells an evaluation's flags)")
+    chosen = []
+    for name, module, settings, _ in parsed:
+        known = getattr(module, "DOMAINS", ("soccer",))
+        if not settings.domain or settings.domain in known:
+            chosen.append((name, module, settings))
+        elif not everything:
+            raise UsageError(f"--domain {settings.domain}: {name} is of: {', '.join(known)}")
+    return chosen
+
+
+def _parsed(name: str, flags: list[str]) -> tuple[Any, argparse.Namespace, list[str]]:
     module = importlib.import_module(EVALUATIONS[name][0])
     parser = argparse.ArgumentParser(prog=f"tailor evaluate {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
-    return module, parser.parse_args(flags)
+    settings, unknown = parser.parse_known_args(flags)
+    if settings.domain and hasattr(settings, "robot"):
+        settings.robot = domains.load(settings.domain).robot
+    return module, settings, unknown

@@ -25,6 +25,7 @@ from tools.writing.lockstep import Hand, ListenedBody, write
 from tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
 from tools.writing.track import Written
 
+DOMAINS = ("arm",)
 FIRST_SEED = 1_000_000  # as in table3: never trained on
 ALL_AHEAD = 9  # more actions than a letter has
 BASE = RefinementSettings()

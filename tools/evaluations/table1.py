@@ -24,6 +24,7 @@ PAPER = {
     ("b21", "reach"): (2200, 2.6, 0.10),
     ("powercube", "reach"): (1100, 2.9, 0.21),
 }
+DOMAINS = ("soccer", "arm")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -23,12 +23,13 @@ SCENARIOS = {
     "soccer": ("soccer", "approach-dribble", "9.8 s, 9.1 s, 6.6 %"),
     "arm": ("arm", "every letter", "10.6 s, 10.0 s, 5.7 %, p = 0.08, n = 4"),
 }
+DOMAINS = ("soccer", "arm")
 FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table3`."""
-    parser.add_argument("scenarios", nargs="*", default=["soccer"], help=f"of: {', '.join(SCENARIOS)}")
+    parser.add_argument("scenarios", nargs="*", help=f"of: {', '.join(SCENARIOS)} (default: the domain's, or soccer)")
     parser.add_argument("--episodes", type=int, default=500, help="pairs (default %(default)s)")
     parser.add_argument("--oracle", type=int, default=50, metavar="N", help="starts at which every choice is simulated")
     parser.add_argument("--points", type=int, default=18, help="angles that the oracle tries (default %(default)s)")
@@ -38,16 +39,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when every scenario improved significantly."""
-    unknown = [name for name in arguments.scenarios if name not in SCENARIOS]
+    scenarios = arguments.scenarios or [arguments.domain or "soccer"]
+    unknown = [name for name in scenarios if name not in SCENARIOS]
     if unknown:
         raise UsageError(f"unknown scenario '{unknown[0]}' for table3, expected one of: {', '.join(SCENARIOS)}")
     rows, plots = [], {}
-    for name in arguments.scenarios:
+    for name in scenarios:
         row, durations = evaluate(name, arguments)
         rows.append(row)
         if arguments.report is not None:
             plots[f"{name}: greedy and refined"] = draw_pairs(*durations, arguments.report / f"table3-{name}.png")
-    remarks = [f"paper, {name}: {SCENARIOS[name][2]}" for name in arguments.scenarios]
+    remarks = [f"paper, {name}: {SCENARIOS[name][2]}" for name in scenarios]
     tell(Report("table3", "Table 3: subgoal refinement", rows, remarks, plots), arguments.json, arguments.report)
     return 0 if all(row["p_value"] < 0.001 and row["improvement_pct"] > 0 for row in rows) else 1
 

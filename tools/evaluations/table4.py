@@ -22,18 +22,19 @@ SCENARIOS = {"soccer": ("soccer", "waypoints", (1, 2, 3, 4), "10.6 %, 0.7 %, 0.2
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table4`."""
-    parser.add_argument("scenarios", nargs="*", default=["soccer"], help=f"of: {', '.join(SCENARIOS)}")
+    parser.add_argument("scenarios", nargs="*", help=f"of: {', '.join(SCENARIOS)} (default: soccer)")
     parser.add_argument("--episodes", type=int, default=200, help="episodes a horizon (default %(default)s)")
     configure_report(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when looking two actions ahead is significantly faster and looking further no slower."""
-    unknown = [name for name in arguments.scenarios if name not in SCENARIOS]
+    scenarios = arguments.scenarios or [arguments.domain or "soccer"]
+    unknown = [name for name in scenarios if name not in SCENARIOS]
     if unknown:
         raise UsageError(f"unknown scenario '{unknown[0]}' for table4, expected one of: {', '.join(SCENARIOS)}")
     rows, remarks = [], []
-    for name in arguments.scenarios:
+    for name in scenarios:
         rows += evaluate(name, arguments)
         remarks.append(f"paper, {name}, each horizon over the one before: {SCENARIOS[name][3]}")
     plots = {}

@@ -1,0 +1,58 @@
+"""The report's first page: every evaluation that has been run, its main figures, and the way to its own page."""
+
+from __future__ import annotations
+
+import html
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tools.evaluations.report import shown
+from tools.figures.page import page, table
+
+ROWS_MAX = 6
+# What an evaluation is judged by, of all that its page tells.
+MAIN = (
+    "scenario", "domain", "robot", "action", "model", "run", "start", "hand", "space", "learner", "learned from",
+    "horizon", "n", "episodes", "mae_s", "mae_ci95", "floor_s", "accuracy_pct", "mean_greedy_s", "mean_refined_s",
+    "mean_lockstep_s", "mean_s", "duration_s", "improvement_pct", "gated_pct", "ci95", "p_value", "slower_pct",
+    "oracle_pct", "regret_pct", "correlation", "success_before_pct", "success_after_pct", "needless_pct",
+    "difference_pct", "ci95_pct", "equivalent",
+)  # fmt: skip
+
+
+def page_is_there(folder: Path, name: str) -> bool:
+    """Whether an evaluation has told its result there, whole."""
+    return (folder / f"{name}.json").exists() and (folder / f"{name}.html").exists()
+
+
+def write_overview(folder: Path, names: Sequence[str]) -> Path:
+    """Write index.html with a section for each evaluation that has a page; others are named as missing.
+
+    Args:
+      folder: Where the pages are; made if it is not there.
+      names: All evaluations, in order.
+    """
+    there = [name for name in names if page_is_there(folder, name)]
+    missing = [name for name in names if name not in there]
+    body = [_section(folder, name) for name in there]
+    if missing:
+        body.append(f"<p>Not run: {html.escape(', '.join(missing))}.</p>")
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "index.html"
+    path.write_text(page("Tailor: evaluations", body), encoding="utf-8")
+    return path
+
+
+def _section(folder: Path, name: str) -> str:
+    """Title with a link, when it was run, the main figures of the first rows."""
+    file = folder / f"{name}.json"
+    said = json.loads(file.read_text())
+    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(file.stat().st_mtime))
+    rows: list[dict[str, Any]] = said["rows"][:ROWS_MAX]
+    columns = [column for column in MAIN if any(column in row for row in rows)]
+    cells = [["" if row.get(column) is None else shown(row[column]) for column in columns] for row in rows]
+    heading = f'<h2><a href="{name}.html">{html.escape(said["title"])}</a></h2>'
+    return f"{heading}{table(f'{name}, {when}', columns, cells)}"
