@@ -14,6 +14,7 @@ from schemas.errors import UsageError
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
 MAX_STEPS = 200  # as many as our own plans may have
+MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
 _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
@@ -87,35 +88,53 @@ def _read_line(line: str, draft: _Draft) -> None:
         draft.consumer, draft.has_goal = GOAL, True
     elif stripped.startswith("orderings"):
         draft.part = "orderings"
-        draft.orderings += [(int(i), int(j)) for i, j in _PAIR.findall(stripped)]
+        draft.orderings += [(_whole(i), _whole(j)) for i, j in _PAIR.findall(stripped)]
     elif stripped.startswith("tolerance"):
-        draft.tick_s = float(stripped.partition("=")[2])
+        draft.tick_s = _number(stripped.partition("=")[2].strip())
     elif stripped.startswith("bindings"):
         draft.part = "bindings"
     elif draft.part == "bindings":
         draft.bindings.append(line)
     elif draft.part == "orderings":
-        draft.bounds.append(tuple(None if word == "inf" else int(word) for word in stripped.split()))
+        draft.bounds.append(tuple(None if word == "inf" else _whole(word) for word in stripped.split()))
     else:
         _read_step(stripped, draft)
 
 
 def _read_step(line: str, draft: _Draft) -> None:
     if match := _STEP.fullmatch(line):
-        draft.consumer = int(match[1])
+        draft.consumer = _whole(match[1])
         if draft.consumer in draft.actions or draft.consumer == 0:
             raise ValueError(f"step {draft.consumer} stands there twice")
         draft.actions[draft.consumer] = _fact(match[2])
     elif match := _LINK.fullmatch(line):
         if draft.consumer is None:
             raise ValueError("a causal link before any step")
-        draft.links.append(Link(int(match[1]), _literal(match[2]), draft.consumer))
+        draft.links.append(Link(_whole(match[1]), _literal(match[2]), draft.consumer))
     elif match := _PLAIN.fullmatch(line):
-        duration = float(match[3]) if match[3] else 1.0
+        duration = _number(match[3]) if match[3] else 1.0
         draft.durations += match[3] is not None
-        draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), float(match[1]), duration))
+        draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), _number(match[1]), duration))
     else:
         raise ValueError(f"expected a step, a causal link or a part's name, found '{line[:60]}'")
+
+
+def _whole(text: str) -> int:
+    _check_length(text)
+    return int(text)
+
+
+def _number(text: str) -> float:
+    _check_length(text)
+    value = float(text)
+    if not 0 <= value < 10**MAX_DIGITS:
+        raise ValueError(f"expected a time, found '{text}'")
+    return value
+
+
+def _check_length(text: str) -> None:
+    if len(text.partition(".")[0].lstrip("-")) > MAX_DIGITS:
+        raise ValueError(f"a number of more than {MAX_DIGITS} digits: {text[:20]}...")
 
 
 def _facts(text: str) -> list[Fact]:

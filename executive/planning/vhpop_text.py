@@ -44,7 +44,7 @@ def _links(links: tuple[Link, ...]) -> Iterator[str]:
 
 def _matrix(plan: Plan) -> Iterator[str]:
     for row in plan.bounds:
-        yield "".join(f"{'inf' if bound is None else bound:>7}" for bound in row)
+        yield "".join(f" {'inf' if bound is None else bound:>6}" for bound in row)
 
 
 def atom(fact: Fact) -> str:
