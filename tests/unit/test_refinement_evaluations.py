@@ -10,7 +10,7 @@ import pytest
 
 from executive.library import Interval
 from schemas.errors import UsageError
-from tools.evaluations import benefit, figure16, table3, table4
+from tools.evaluations import benefit, figure1, figure11, figure15, figure16, live, table3, table4
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.journal import Journal
 from tools.evaluations.oracle import _judged, _values, subgoal_parameters
@@ -133,7 +133,7 @@ def test_assertion_is_counted_as_the_paper_counts_it():
     assert row["predicted_fail_observed_success_pct"] == 75.0
 
 
-@pytest.mark.parametrize("module", [table3, table4, figure16, benefit])
+@pytest.mark.parametrize("module", [table3, table4, figure1, figure11, figure15, figure16, benefit, live])
 def test_every_evaluation_has_the_same_flags(module):
     parser = argparse.ArgumentParser()
     module.configure(parser)

@@ -42,7 +42,7 @@ REMARKS = (
     "Each run against the lock-step runs of the same start, which differ by their noise alone. The second row is one "
     "more lock-step run of each start, treated alike: what perfect agreement looks like with so few starts.",
     "difference_pct, ci95_pct, p_value: of the geometric means, paired; p_rank: whether a run's rank among its start's "
-    "lock-step runs is as often high as low; within_90_pct: runs within the central 90 % of their start's.",
+    "lock-step runs is as often high as low; within_range_pct: runs between the shortest and longest of their start's.",
     f"equivalent: both one-sided t-tests (TOST) say at 5 % that the means are less than {MARGIN_PCT:g} % apart.",
 )
 
