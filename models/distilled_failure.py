@@ -45,7 +45,7 @@ class DistilledFailureTree(FailureModel):
         """Fit a forest to features (n, f) and outcomes (n,), two classes, then one tree to the forest."""
         features, _, _ = self._checked(X, y, groups)
         rng = np.random.default_rng(self.random_state or 0)
-        forest = FailureForest(self.trees, self.cost_ratio, self.min_rows, rng).fit(X, y, groups)
+        forest = FailureForest(self.trees, self.cost_ratio, self.min_rows, random_state=rng).fit(X, y, groups)
         asked = np.concatenate([features, between(features, min(ROWS, ROWS_EACH * len(features)), rng)])
         said = forest.predict_proba(asked)[:, -1]
         grown = DecisionTreeRegressor(max_leaf_nodes=self.leaves, min_samples_leaf=LEAST_ROWS, random_state=0)
