@@ -230,6 +230,11 @@ class ModelBounds(Protocol):
         """The largest mean."""
         ...
 
+    @property
+    def effort(self) -> int:
+        """Elementary comparisons that one bound takes, roughly."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Models:

@@ -12,6 +12,8 @@ from models.spans import Span
 from models.tree_boxes import TreeBoxes
 
 Floats = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Spans = tuple[Span, ...]
 
 NO_LEAF = np.float32(1e30)  # in sums instead of infinity, which the clip below could not tell from a large number
 MET = np.float32(1e20)
@@ -35,13 +37,18 @@ class LeafBounds:
         ends = np.maximum(*(np.abs(np.clip(side, -FARTHEST, FARTHEST)) for side in (boxes.lower, boxes.upper)))
         self.slack = ROUNDING * float((np.abs(boxes.intercept) + (np.abs(boxes.slopes) * ends).sum(axis=1)).max())
 
-    def least(self, features: tuple[Span, ...], k_std: float = 0.0) -> Floats:
+    @property
+    def leaves(self) -> int:
+        """Of all trees."""
+        return len(self._tree)
+
+    def least(self, features: Spans, k_std: float = 0.0, trees: Bools | None = None) -> Floats:
         """The least of each tree, shape (trees, ...), for features whose spans broadcast to (...).
 
-        Where leaves have a spread of their own, `k_std` times that is added.
+        Where leaves have a spread of their own, `k_std` times that is added. Only `trees` are asked, where given.
         """
         order = sorted(range(len(features)), key=lambda j: features[j].lower.size)
-        leaves = np.arange(len(self._boxes.low))
+        leaves = np.arange(self.leaves) if trees is None else np.flatnonzero(trees[self._tree])
         sums: dict[tuple[int, ...], Floats] = {}
         for j in order:
             said = self._term(features[j], j, leaves)

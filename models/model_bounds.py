@@ -5,6 +5,7 @@ A bag's spread is bounded from below by a plane that touches it, so that it neve
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from models.leaf_bounds import Floats, LeafBounds
 from models.spans import Array, Span
 from models.tree_boxes import tree_boxes
 
+LEAST_SPREAD = 1e-9  # s: below, all trees agree
 Columns = tuple[Array, ...]  # one array an argument; they broadcast to one shape of three axes
 
 
@@ -28,13 +30,21 @@ class ModelBounds:
 
     def least(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """The least mean plus `k_std` standard deviations, for arguments between `lower` and `upper`."""
-        return self._least(self.lowest, tuple(map(Span, lower, upper)), k_std)
+        return self._over_cases(tuple(map(Span, lower, upper)), lambda features: self._spread(features, k_std))
 
     def most(self, lower: Columns, upper: Columns) -> Array:
         """The largest mean, for arguments between `lower` and `upper`."""
-        return -self._least(self.highest, tuple(map(Span, lower, upper)), 0.0)
+        highest = self.highest
+        return -self._over_cases(
+            tuple(map(Span, lower, upper)), lambda features: highest.least(features).mean(axis=0) - highest.slack
+        )
 
-    def _least(self, leaves: LeafBounds, arguments: Spans, k_std: float) -> Array:
+    @property
+    def effort(self) -> int:
+        """Leaves that one bound looks at, at most."""
+        return self.lowest.leaves
+
+    def _over_cases(self, arguments: Spans, least: Callable[[Spans], Floats]) -> Array:
         """The least over all cases in which the features may come about, each for the part where it is possible."""
         shape = np.broadcast_shapes(*(span.lower.shape for span in arguments))
         found = np.full(shape, np.inf)
@@ -43,11 +53,31 @@ class ModelBounds:
             place = tuple(np.flatnonzero(possible.any(axis=other)) for other in ((1, 2), (0, 2), (0, 1)))
             if not len(place[0]):
                 continue
-            trees = leaves.least(tuple(_picked(span, place) for span in case.features), k_std)
-            said = _mean_and_spread(trees, k_std) - leaves.slack
-            at = np.ix_(*place)
+            said, at = least(tuple(_picked(span, place) for span in case.features)), np.ix_(*place)
             found[at] = np.where(possible[at], np.minimum(found[at], said), found[at])
         return found
+
+    def _spread(self, features: Spans, k_std: float) -> Floats:
+        """Mean plus k standard deviations of the trees, shape (...), at least.
+
+        That is convex in what the trees say. Its tangent plane at their least values has weights 1 + k z, z being the
+        standard scores. Trees with a negative weight, far below the others, count with the most that they say; or all
+        such weights are set to zero, and what their trees say does not matter: the better of the two.
+        """
+        lasting = self.lowest.least(features, k_std)
+        mean: Floats = lasting.mean(axis=0)
+        if k_std <= 0 or len(lasting) == 1:
+            return mean - np.float32(self.lowest.slack)
+        off = lasting - mean
+        spread = np.sqrt((off * off).mean(axis=0))
+        weights = 1 + k_std * off / np.maximum(spread, LEAST_SPREAD)
+        least = mean + k_std * _projected(weights, off, k_std)
+        outliers = (weights < 0).any(axis=tuple(range(1, weights.ndim)))
+        if outliers.any():
+            most = -self.highest.least(features, 0.0, outliers)
+            rise = np.minimum(weights[outliers], 0.0) * (most - lasting[outliers] + self.highest.slack)
+            least = np.maximum(least, mean + k_std * spread + rise.sum(axis=0) / len(lasting))
+        return np.asarray(least - self.lowest.slack, np.float32)
 
 
 def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
@@ -56,23 +86,13 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
     return None if boxes is None else ModelBounds(space, LeafBounds(boxes), LeafBounds(boxes.negated()))
 
 
-def _mean_and_spread(lasting: Floats, k_std: float) -> Floats:
-    """Mean plus k standard deviations of the trees at least, shape (...), of their least values, (trees, ...).
-
-    The sum is convex in what the trees say. Its tangent plane at their least values has weights 1 + k z, z being the
-    standard scores; with the negative ones set to zero it never falls in any of them.
-    """
-    mean: Floats = lasting.mean(axis=0)
-    if k_std <= 0 or len(lasting) == 1:
-        return mean
-    off = lasting - mean
-    spread = np.sqrt((off * off).mean(axis=0))
-    weights = np.maximum(1 + k_std * off / np.maximum(spread, 1e-9), 0.0)
-    weights /= weights.mean(axis=0)
-    scores = (weights - 1) / k_std
+def _projected(weights: Floats, off: Floats, k_std: float) -> Floats:
+    """The mean product of scores and deviations, with scores that give no tree a weight below zero."""
+    kept = np.maximum(weights, 0.0)
+    scores = (kept / kept.mean(axis=0) - 1) / k_std
     scores /= np.maximum(np.sqrt((scores * scores).mean(axis=0)), 1.0)
-    least: Floats = mean + k_std * (scores * off).mean(axis=0)
-    return least
+    product: Floats = (scores * off).mean(axis=0)
+    return product
 
 
 def _picked(span: Span, place: tuple[NDArray[np.intp], ...]) -> Span:

@@ -5,8 +5,10 @@ Dynamic programming over the boxes gives the least of all chains, which no choic
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +18,19 @@ from executive.refinement.boxes import NOWHERE, Boxes, joined
 from executive.refinement.chain import forward_costs, through_costs, traced
 
 Places = NDArray[np.intp]
-PairBound = Callable[[Boxes, Boxes], Array]  # boxes before and own to seconds, shape (len(before), len(own))
+
+
+class PairBound(Protocol):
+    """What a pair of boxes costs at least."""
+
+    @property
+    def effort(self) -> int:
+        """Elementary comparisons for one pair, roughly."""
+        ...
+
+    def least(self, before: Boxes, own: Boxes) -> Array:
+        """Seconds, shape (len(before), len(own))."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +52,13 @@ class BoxChain:
     Args:
       bounds: What a pair of boxes costs at least, action by action.
       boxes: The first boxes of each subgoal.
-      pairs: Of boxes that are bounded in one step.
+      effort: Elementary comparisons in one step, roughly.
     """
 
-    def __init__(self, bounds: Sequence[PairBound], boxes: Sequence[Boxes], pairs: int) -> None:
+    def __init__(self, bounds: Sequence[PairBound], boxes: Sequence[Boxes], effort: int) -> None:
         self.boxes = list(boxes)
         self._bounds = bounds
-        self._pairs = pairs
+        self._effort = effort
         self._tables = [np.full((len(a), len(b)), -np.inf) for a, b in zip([NOWHERE, *boxes], boxes, strict=False)]
 
     def begin(self) -> Iterator[None]:
@@ -90,10 +104,12 @@ class BoxChain:
     def _bound(self, index: int, table: Array, before: Places, own: Places) -> Iterator[None]:
         """Raise some of a table's entries to what is proven for their boxes, a few at a time."""
         first = self.boxes[index - 1] if index else NOWHERE
-        width = max(1, self._pairs // max(1, len(before)))
-        for start in range(0, len(own) if len(before) else 0, width):
-            some = own[start : start + width]
-            said = self._bounds[index](first.part(before), self.boxes[index].part(some))
-            at = np.ix_(before, some)
+        pairs = max(1, self._effort // self._bounds[index].effort)
+        high = max(1, min(len(before), pairs))
+        wide = max(1, pairs // high)
+        for i, j in product(range(0, len(before), high), range(0, len(own), wide)):
+            here, there = before[i : i + high], own[j : j + wide]
+            said = self._bounds[index].least(first.part(here), self.boxes[index].part(there))
+            at = np.ix_(here, there)
             table[at] = np.maximum(table[at], said)
             yield

@@ -19,7 +19,7 @@ from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
 
-ROWS_AT_ONCE = 1024  # pairs of boxes times displaced arrivals that one check bounds: about 1 ms
+EFFORT = 500_000  # comparisons of boxes and leaves in one check: about 1 ms, for most leaves are ruled out at once
 CUT_AT_ONCE = 16  # boxes of a subgoal
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
@@ -102,8 +102,7 @@ class Certificate:
         for i, block in enumerate(self._blocks):
             for _ in range(FIRST_CUTS if len(block) else 0):
                 boxes[i] = boxes[i].halves(weight[block])
-        ways = max(stage.ways for stage in self._objective.stages)
-        return BoxChain([bound.least for bound in self._bounds], boxes, ROWS_AT_ONCE // ways)
+        return BoxChain(self._bounds, boxes, EFFORT)
 
     def _note(self, chain: BoxChain, costs: Costs) -> None:
         """Take up what is proven; and the middle of the cheapest chain of boxes, where it is a better choice."""

@@ -41,6 +41,12 @@ class StageBound:
     success: ModelBounds | None
     energy: ModelBounds | None
 
+    @property
+    def effort(self) -> int:
+        """Elementary comparisons that one pair of boxes takes, roughly."""
+        models = [model for model in (self.duration, self.success, self.energy) if model is not None]
+        return self.stage.ways * sum(model.effort for model in models)
+
     def least(self, before: Boxes, own: Boxes) -> Array:
         """Seconds, shape (len(before), len(own)): no values in the two boxes cost less; +inf: all are INVALID."""
         arguments = self.spans(*self._parameters(before, own))
