@@ -75,7 +75,8 @@ class Search:
             if settings.ground:
                 yield from self._explore(GroundSpace(task, grounded.world, settings, rng))
             else:
-                lifted = lifted_task(task, grounded.world, settings.action_cost)
+                order = rng if settings.random_open_conditions else None
+                lifted = lifted_task(task, grounded.world, settings.action_cost, order)
                 yield from self._explore(LiftedSpace(lifted, settings, rng))
         except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), *self.counts)

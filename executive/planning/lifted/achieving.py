@@ -25,7 +25,7 @@ from executive.planning.lifted.schema import Schema
 from executive.planning.lifted.task import Achiever, LiftedTask, Placed
 from executive.planning.orderings import INITIAL, Orderings
 
-MAX_ABSENT = 10_000  # facts that a negative condition with free variables is tried on: a tenth of a second
+MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second
 
 
 def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> list[LiftedPlan]:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from executive.planning.durations import duration_range
 from executive.planning.ground_formula import Facts, World
@@ -49,6 +51,12 @@ def schemata(world: World, tick_s: float, work: Facts) -> tuple[Schema, ...]:
     for action, names in renamed:
         made += _schemata(action, names, Lowering(world, parameters, work), world, tick_s)
     return tuple(sorted(made, key=lambda schema: schema.name))
+
+
+def shuffled(schema: Schema, rng: np.random.Generator) -> Schema:
+    """The same schema with its conditions in random order: so open conditions come in another order."""
+    conditions = tuple(schema.conditions[n] for n in rng.permutation(len(schema.conditions)))
+    return replace(schema, conditions=conditions)
 
 
 def _schemata(

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
+
 from executive.library import Fact
 from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value
 from executive.planning.ground_formula import Facts, World
@@ -15,11 +17,13 @@ from executive.planning.language import Typed
 from executive.planning.lifted.effects import LiftedEffect
 from executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
 from executive.planning.lifted.lowering import Lowering
-from executive.planning.lifted.schema import Schema, schemata
+from executive.planning.lifted.schema import Schema, schemata, shuffled
 from executive.planning.orderings import FIRST
 
 Pattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects where they are known
+Place = tuple[str, bool, int, str]  # predicate, positive, position (-1: any), object
 Achiever = tuple[Schema, LiftedEffect]
+MAX_FORMULAS = 50_000  # a quarter of a second; only "forall" over many objects comes near
 
 
 class Placed(NamedTuple):
@@ -33,7 +37,7 @@ class Placed(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiftedTask:
-    """What a lifted search plans with. `values` and `placed` only remember; they never change an answer."""
+    """What a lifted search plans with. `values` and `placed` grow as they are asked; that never changes an answer."""
 
     ground: GroundTask
     world: World
@@ -43,7 +47,8 @@ class LiftedTask:
     timed: tuple[Placed, ...]  # the timed literals
     achievers: dict[tuple[str, bool], tuple[Achiever, ...]]  # by predicate and sign
     costs: dict[Schema, float]
-    values: dict[Pattern, Value] = field(default_factory=dict)
+    names: dict[Place, list[int]]  # the ground literals that have an object at a place of their predicate
+    values: dict[Pattern, Value]
     placed: dict[tuple[Schema, int], tuple[Placed, ...]] = field(default_factory=dict)
 
     @property
@@ -91,30 +96,40 @@ class LiftedTask:
             if (found > 0) if positive else (found == 0 or None in known):
                 yield NOTHING
             return
-        spoken = False
-        for number, name in enumerate(self.ground.names):
-            if name.positive == positive and name.fact[0] == predicate and _fits(name.fact, known):
-                spoken = True
-                yield self.ground.estimates.values[number]
-        if not positive and not (spoken and None not in known):
+        if None in known:  # `values` knows the others from the start
+            for number in self._candidates(pattern):
+                if _fits(self.ground.names[number].fact, known):
+                    yield self.ground.estimates.values[number]
+        if not positive:
             yield NOTHING._replace(work=1)  # facts that no action speaks of are false from the start
+
+    def _candidates(self, pattern: Pattern) -> list[int]:
+        """The ground literals of a predicate and sign, with the object that fewest of them have where it is known."""
+        predicate, positive, known = pattern
+        places = [(predicate, positive, n, name) for n, name in enumerate(known) if name is not None]
+        lists = [self.names.get(place, []) for place in places or [(predicate, positive, -1, "")]]
+        return min(lists, key=len)
 
 
 def _fits(fact: Fact, known: tuple[str | None, ...]) -> bool:
     return all(name is None or name == own for name, own in zip(known, fact[1:], strict=True))
 
 
-def lifted_task(ground: GroundTask, world: World, cost: CostOf = "unit") -> LiftedTask:
-    """The lifted task of a problem.
+def lifted_task(
+    ground: GroundTask, world: World, cost: CostOf = "unit", rng: np.random.Generator | None = None
+) -> LiftedTask:
+    """The lifted task of a problem; with `rng`, conditions stand in random order.
 
     Raises:
       TooMuchToGround: Universal quantifiers or durations bring too many formulas.
     """
-    problem, work = ground.problem, Facts()
+    problem, work = ground.problem, Facts(limit=MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
     made = schemata(world, ground.tick_s, work)
+    if rng is not None:
+        made = tuple(shuffled(schema, rng) for schema in made)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))
     lowering = Lowering(world, numbers, work)  # its variables are the goal's: they meet no schema's
     goal = lowering.lowered(problem.goal, {})
@@ -128,7 +143,18 @@ def lifted_task(ground: GroundTask, world: World, cost: CostOf = "unit") -> Lift
         tuple(Placed(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
         _achievers(made),
         _costs(made, cost),
+        _places(ground),
+        {(n.fact[0], n.positive, n.fact[1:]): v for n, v in zip(ground.names, ground.estimates.values, strict=True)},
     )
+
+
+def _places(ground: GroundTask) -> dict[Place, list[int]]:
+    places: dict[Place, list[int]] = {}
+    for number, (predicate, *terms) in enumerate(name.fact for name in ground.names):
+        positive = ground.names[number].positive
+        for place in ((-1, ""), *enumerate(terms)):
+            places.setdefault((predicate, positive, *place), []).append(number)
+    return places
 
 
 def _achievers(made: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achiever, ...]]:
