@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -10,13 +11,13 @@ import pytest
 
 from executive.library import Interval
 from schemas.errors import UsageError
-from tools.evaluations import benefit, figure1, figure11, figure15, figure16, live, table3, table4
+from tools.evaluations import benefit, figure1, figure11, figure15, figure16, live, oracle, replicas, table3, table4
+from tools.evaluations.baselines import against_oracle
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.journal import Journal
 from tools.evaluations.oracle import _judged, _values, subgoal_parameters
 from tools.evaluations.outcome import Outcome, Task, Variant
 from tools.evaluations.pinned import PinnedDomain
-from tools.evaluations.table3 import against_oracle
 from tools.evaluations.trials import paired
 
 DONE = Outcome(
@@ -147,3 +148,56 @@ def test_unknown_scenario_is_a_usage_error(module):
     module.configure(parser)
     with pytest.raises(UsageError, match="chess"):
         module.run(parser.parse_args(["chess"]))
+
+
+def test_the_row_over_models_has_an_interval_between_models():
+    row = {"scenario": "soccer", "horizon": 2, "n": 100, "mean_greedy_s": 12.0, "mean_refined_s": 11.0}
+    row |= {"slower_pct": 10.0, "bias_greedy_s": 0.1, "bias_refined_s": 0.3}
+    over = replicas.over_models([{**row, "improvement_pct": gain} for gain in (8.0, 9.0, 10.0)])
+    assert (over["n"], over["improvement_pct"], over["least_pct"], over["most_pct"]) == (300, 9.0, 8.0, 10.0)
+    assert over["ci95"] == pytest.approx((9 - 4.303 / np.sqrt(3), 9 + 4.303 / np.sqrt(3)), abs=0.01)
+    assert over["p_value"] < 0.01
+
+
+@pytest.mark.slow
+def test_a_model_trained_anew_is_made_once_and_is_another_than_the_next(tmp_path):
+    recipe = replicas.Recipe("soccer", "agilo", 60, 0)
+    first, second = (replicas.replica(recipe, number, tmp_path, 2) for number in (1, 2))
+    sums = [json.loads((zoo / "agilo/goToPose/duration.card.json").read_text())["sha256"] for zoo in (first, second)]
+    assert sums[0] != sums[1]
+    made = _files(tmp_path)
+    assert replicas.replica(recipe, 1, tmp_path, 2) == first
+    assert _files(tmp_path) == made
+
+
+def _files(folder):
+    """When each was written; manifests are written every time."""
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json")
+    return {path: path.stat().st_mtime_ns for path in files}
+
+
+def test_oracles_choice_is_executed_again_with_other_noise(monkeypatch):
+    asked = []
+
+    def run_all(task, variants, seeds, jobs, store, title):
+        asked.extend(variants)
+        took = {"again": 9.0}
+        return {v.name: {s: replace(DONE, seed=s, duration_s=took.get(v.name.split("-")[0], 8.0 + abs(v.pins[0][2])))
+                         for s in seeds} for v in variants}  # fmt: skip
+
+    monkeypatch.setattr(oracle, "run_all", run_all)
+    free = [("pos2", "phi", -np.pi, np.pi)]
+    (one,) = oracle.consult(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
+    again = [variant for variant in asked if variant.name.startswith("again")]
+    assert {round(variant.pins[0][2], 9) for variant in again} == {0.0}
+    assert len({variant.noise for variant in again}) == len(again) == 3
+    assert all(variant.noise for variant in again)
+    assert one.again_s == 9.0
+
+
+def test_greedy_by_the_oracle_does_not_count_an_approach_that_failed_soon():
+    failed_soon = replace(
+        DONE, actions=("approachBall", *DONE.actions), outcomes=("failed", "done", "done"),
+        actual_s=(1.0, 4.0, 6.0), duration_s=20.0,
+    )  # fmt: skip
+    assert _judged(1, [DONE, failed_soon], DONE).greedy_s == DONE.duration_s
