@@ -63,14 +63,22 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
         help="flaw order: a name or {n,s}LR/{l}MW_add; several take turns (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
         help="plans that the flaw order before it may generate, or 'unlimited'; without one: all")  # fmt: skip
-    add("-s", "--search-algorithm", dest="search", choices=("A", "IDA"), default="A", help="A* (default) or IDA*")
+    add(
+        "-s",
+        "--search-algorithm",
+        dest="search",
+        choices=("A", "IDA"),
+        default="A",
+        type=str.upper,
+        help="A* (default) or IDA*",
+    )
     add("-w", "--weight", type=float, default=1.0, help="weight of the heuristic (default 1)")
     add("-a", "--action-cost", choices=("UNIT", "DURATION", "RELATIVE"), default="UNIT", type=str.upper,
         help="what a step costs (default UNIT)")  # fmt: skip
     add("-t", "--tolerance", type=float, default=0.01, metavar="S", help="one tick of a durative plan (default 0.01)")
     add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
     add("-S", "--seed", type=int, default=0, help="seed of everything random (default 0)")
-    add("-T", "--time-limit", type=float, default=None, metavar="MINUTES", help="give up after that many minutes")
+    add("-T", "--time-limit", type=_minutes, default=None, metavar="MINUTES", help="give up after that many minutes")
     add("--planner", metavar="COMMAND", help="let a real vhpop plan instead, e.g. 'vhpop -g -f MW-Loc'")
 
 
@@ -80,8 +88,9 @@ def _configure_output(group: argparse._ArgumentGroup) -> None:
     forms.add_argument("--json", action="store_true", help="one JSON object, also when there is no plan")
     forms.add_argument("--dot", action="store_true", help="the partial order as a Graphviz graph")
     forms.add_argument("--svg", action="store_true", help="the partial order as an SVG picture")
-    group.add_argument("-v", "--verbose", nargs="?", type=int, const=1, default=0, metavar="LEVEL",
-                       help="say on stderr what the search cost")  # fmt: skip
+    group.add_argument("-v", "--verbose", action="store_true", help="say on stderr what the search cost (also -v1 ...)")
+    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(10)]  # VHPOP's: all say the same
+    group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)
 
 
 class _AppendOrder(argparse.Action):
@@ -101,6 +110,14 @@ class _LimitOrder(argparse.Action):
             namespace.orders = [*before, dataclasses.replace(last, limit=limit)]
         else:
             namespace.node_limit = limit if limit is not None else sys.maxsize
+
+
+def _minutes(text: str) -> float:
+    """A time limit; raises argparse's own kind of error."""
+    minutes = float(text)
+    if not minutes >= 0:
+        raise ValueError(text)
+    return minutes
 
 
 def _positive(text: str) -> int:
@@ -125,9 +142,9 @@ class _TimeBudget:
 
 def run(args: argparse.Namespace) -> int:
     """Plans and prints; 0 with a plan, 1 without."""
+    started = time.process_time()
     domain = parse_domain(_read(args.domain), str(args.domain))
     problem = parse_problem(_read(args.problem), domain, str(args.problem))
-    started = time.process_time()
     result = _ask(args, domain, problem) if args.planner else _search(args, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if result.plan is not None:
@@ -142,11 +159,11 @@ def run(args: argparse.Namespace) -> int:
 
 def _read(path: Path) -> str:
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise UsageError(
-                f"{path}: {path.stat().st_size} bytes are more than the {MAX_BYTES} that a PDDL file may have"
-            )
-        return path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size to look at
+        if len(content) > MAX_BYTES:
+            raise UsageError(f"{path}: more than the {MAX_BYTES} bytes that a PDDL file may have")
+        return content.decode()
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from executive.planning.flaw_orders import parse_flaw_order
 from executive.planning.ranking import check_rankings
 from schemas.errors import UsageError
+
+SHORTEST_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +50,12 @@ class Settings:
         for order in self.flaw_orders:
             parse_flaw_order(order.text)
         check_rankings(self.rankings)
-        if not self.weight >= 0:
-            raise UsageError(f"planner settings: expected a weight of at least 0, found {self.weight}")
-        if not 0 < self.tolerance_s <= 1e3:
-            raise UsageError(f"planner settings: expected a tolerance in (0, 1000] s, found {self.tolerance_s}")
+        if not 0 <= self.weight < math.inf:
+            raise UsageError(f"planner settings: expected a finite weight of at least 0, found {self.weight}")
+        if not SHORTEST_TICK_S <= self.tolerance_s <= 1e3:
+            raise UsageError(f"planner settings: expected a tolerance in [1e-6, 1000] s, found {self.tolerance_s}")
+        if self.seed < 0:
+            raise UsageError(f"planner settings: expected a seed of at least 0, found {self.seed}")
 
 
 DEFAULT_RANKINGS = ("ADDR", "ADDR_WORK", "BUC", "LIFO")

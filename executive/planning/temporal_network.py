@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from executive.planning.orderings import GOAL, INITIAL, Lasting
 
-UNBOUNDED = 10**12  # ticks; sums of two stay far above any real bound
+UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
 Row = tuple[int, ...]
+_FREE: Row = (UNBOUNDED, UNBOUNDED)  # the bounds of a new step's start and end to what does not touch them
 
 
 class TemporalNetwork(NamedTuple):
@@ -39,7 +40,7 @@ class TemporalNetwork(NamedTuple):
         unbounded = (UNBOUNDED,) * start
         own = [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
         if before != GOAL:
-            via = (*self.rows[before], UNBOUNDED, UNBOUNDED)
+            via = self.rows[before] + _FREE
             node = start + moment
             if via[INITIAL] + first[node] < 1:
                 return None
@@ -47,7 +48,7 @@ class TemporalNetwork(NamedTuple):
             own = [_through(row, row[node] - 1, via) for row in own]
         late = list(self.late)
         late[INITIAL] |= 3 << start
-        rows = [first, *[(*row, UNBOUNDED, UNBOUNDED) for row in self.rows[1:]], *own]
+        rows = [first, *[row + _FREE for row in self.rows[1:]], *own]
         # only the initial state comes before the step: others are bound to it by way of the start of all, if at all
         for other, row in enumerate(rows):
             if other != INITIAL and row[INITIAL] < UNBOUNDED // 2:

@@ -9,6 +9,7 @@ import pytest
 
 from executive.planning import parse_plan, validate
 from tests.planning_problems import DATA, own, printed
+from tests.unit.test_planning_language import LAMPS, SWITCHES
 from tools.main import main
 
 OWN = DATA / "own"
@@ -61,7 +62,7 @@ def test_dot_and_svg_draw_links_and_orderings_apart(capsys):
 
 def test_options_have_vhpops_letters_and_names(capsys):
     options = ["-g", "-h", "ADDR/LIFO", "-f", "LCFR", "-l", "5000", "-f", "ZLIFO", "-l", "unlimited", "-s", "A", "-w2",
-               "-a", "unit", "-t", "0.1", "-r", "-S", "3", "-v", "1", "-T", "1"]  # fmt: skip
+               "-a", "unit", "-t", "0.1", "-r", "-S", "3", "-v1", "-T", "1"]  # fmt: skip
     code, out, err = plan(capsys, DOMAIN, PROBLEM, *options)
     assert code == 0
     assert validate(parse_plan(out), *own("kitchen-s1")) == ""
@@ -70,6 +71,37 @@ def test_options_have_vhpops_letters_and_names(capsys):
             "--search-algorithm", "IDA", "--weight", "1", "--action-cost", "DURATION", "--tolerance", "0.01",
             "--random-open-conditions", "--seed", "1", "--verbose", "--time-limit", "1"]  # fmt: skip
     assert plan(capsys, DOMAIN, PROBLEM, *long)[0] == 0
+
+
+def test_verbose_stands_before_the_files_as_well(capsys):
+    for option in ("-v", "-v2", "--verbose", "--verbose=1"):
+        code, _, err = plan(capsys, option, DOMAIN, PROBLEM)
+        assert (code, err[:10]) == (0, "generated ")
+
+
+@pytest.mark.parametrize("minutes", ["-1", "nan", "soon"])
+def test_a_time_limit_is_a_number_of_minutes(capsys, minutes):
+    with pytest.raises(SystemExit) as caught:
+        plan(capsys, DOMAIN, PROBLEM, "-T", minutes)
+    assert caught.value.code == 2
+
+
+def test_lifted_planning_speaks_what_ground_planning_does(capsys, tmp_path):
+    replaced = {
+        "unlock": "(or (on a) (on b))",
+        "finish": "(forall (?r - room) (open ?r))",
+        "effect": "(forall (?l - blue) (when (on ?l) (done)))",
+        "goal": "(and (done) (exists (?l - red) (not (on ?l))))",
+    }
+    files = {"domain": SWITCHES, "problem": LAMPS}
+    for name in files:
+        for mark, formula in replaced.items():
+            files[name] = files[name].replace(f"{{{mark}}}", formula)
+        (tmp_path / name).write_text(files[name])
+    for form in ("--ground-actions", "--lifted"):
+        code, out, _ = plan(capsys, *(str(tmp_path / name) for name in files), form, "--json")
+        assert code == 0
+        assert sorted(step["action"][0] for step in json.loads(out)["steps"]) == ["finish", "press", "unlock", "unlock"]
 
 
 # --- no plan -------------------------------------------------------------------------------------
@@ -100,7 +132,11 @@ def test_unsolvable_and_limit_are_told_apart(capsys, hopeless):
         ([DOMAIN, PROBLEM, "-f", "FOO"], "flaw order 'FOO': expected a name"),
         ([DOMAIN, PROBLEM, "-h", "FOO"], "ranking 'FOO' is unknown"),
         ([DOMAIN, PROBLEM, "-l", "0"], "--limit: expected a number of plans of at least 1"),
-        ([DOMAIN, PROBLEM, "-w", "-1"], "expected a weight of at least 0"),
+        ([DOMAIN, PROBLEM, "-w", "-1"], "expected a finite weight of at least 0, found -1.0"),
+        ([DOMAIN, PROBLEM, "-w", "inf"], "expected a finite weight"),
+        ([DOMAIN, PROBLEM, "-S", "-1"], "expected a seed of at least 0"),
+        ([DOMAIN, PROBLEM, "-t", "1e-9"], "expected a tolerance in [1e-6, 1000] s"),
+        ([DOMAIN, "/dev/zero"], "/dev/zero: more than the 4000000 bytes"),
         ([DOMAIN, PROBLEM, "--planner", "no-such-planner"], "planner command 'no-such-planner': cannot be started"),
     ],
 )
