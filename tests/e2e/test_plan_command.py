@@ -94,10 +94,11 @@ def test_lifted_planning_speaks_what_ground_planning_does(capsys, tmp_path):
         "goal": "(and (done) (exists (?l - red) (not (on ?l))))",
     }
     files = {"domain": SWITCHES, "problem": LAMPS}
-    for name in files:
+    for name, text in files.items():
+        whole = text
         for mark, formula in replaced.items():
-            files[name] = files[name].replace(f"{{{mark}}}", formula)
-        (tmp_path / name).write_text(files[name])
+            whole = whole.replace(f"{{{mark}}}", formula)
+        (tmp_path / name).write_text(whole)
     for form in ("--ground-actions", "--lifted"):
         code, out, _ = plan(capsys, *(str(tmp_path / name) for name in files), form, "--json")
         assert code == 0
