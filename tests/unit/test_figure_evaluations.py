@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from schemas.messages import ActionFinished
 from tests.unit.test_refinement_evaluations import DONE
 from tools.evaluations import figure11, figure15
-from tools.evaluations.figure1 import handover_mps, slow_s
+from tools.evaluations.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
 from tools.evaluations.figure16 import assertion_task, variants
 from tools.evaluations.ground import ground_of
 from tools.evaluations.outcome import Task, Variant
@@ -34,6 +35,15 @@ def test_time_spent_hardly_moving_and_the_speed_at_the_ball_are_read_off_the_tra
     assert slow_s(track) == pytest.approx(0.2)
     assert handover_mps(track) == pytest.approx(0.02)
     assert math.isnan(handover_mps(Track("run", track.points[:2])))
+
+
+def test_path_and_durations_are_read_off_the_track():
+    track = Track("run", [replace(point(0.1 * k, 0.5, "a"), x=0.3 * k, y=0.4 * k) for k in range(3)])
+    names = ("approachBall", "dribbleBall", "approachBall", "dribbleBall")
+    track.finished += [ActionFinished(0, 0, name, k, "done", "", 0.0, k + 1.0) for k, name in enumerate(names)]
+    assert path_m(track) == pytest.approx(1.0)
+    assert (until_ball_s(track), dribble_s(track)) == (6.0, 4.0)
+    assert path_m(Track("empty")) == 0.0
 
 
 def test_sweep_splits_an_episode_where_the_approach_has_succeeded():

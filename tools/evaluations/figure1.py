@@ -1,12 +1,12 @@
-"""The paper's Figure 1: the same actions from the same start, greedy and refined, drawn; and how smooth they pass over.
+"""The paper's Figure 1: the same actions from the same start, greedy and refined, drawn; and how they pass over.
 
-Between approach and dribble the greedy robot stops and turns around the ball; the refined one keeps rolling.
+Greedy gets to the ball soonest and then has to turn around with it; refined comes later and goes straight on.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run, draw and tell; 0 when refined runs lose less time standing than greedy ones."""
+    """Run, draw and tell; 0 when refined runs are faster in the mean."""
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     task = Task("soccer", "approach-dribble", "", arguments.zoo)
     variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.json,
         arguments.report,
     )
-    return 0 if rows[1]["slow_s"] < rows[0]["slow_s"] else 1
+    return 0 if rows[1]["improvement_pct"] > 0 else 1
 
 
 def _row(name: str, horizon: int, found: Found, seeds: Sequence[int]) -> dict[str, Any]:
@@ -66,24 +66,39 @@ def _row(name: str, horizon: int, found: Found, seeds: Sequence[int]) -> dict[st
         "n": len(both),
         "duration_s": float(np.mean(these_s)),
         "improvement_pct": compare(greedy_s, these_s).improvement_pct if len(both) > 1 else float("nan"),
-        "slow_s": float(np.mean([slow_s(found[name, seed].track) for seed in both])),
-        "speed_at_ball_mps": float(np.mean([handover_mps(found[name, seed].track) for seed in both])),
+        **{
+            key: float(np.nanmean([measure(found[name, seed].track) for seed in both]))
+            for key, measure in MEASURES.items()
+        },
     }
 
 
 def _example(name: str, horizon: int, watched: Watched) -> dict[str, Any]:
     outcome = watched.outcome
-    return {
-        "run": f"{name}, seed {outcome.seed}",
-        "horizon": horizon,
-        "n": 1,
-        "duration_s": outcome.duration_s,
-        "slow_s": slow_s(watched.track),
-        "speed_at_ball_mps": handover_mps(watched.track),
-        "actions": outcome.actions,
-        "actual_s": outcome.actual_s,
-        "predicted_s": outcome.predicted_s,
-    }
+    figures = {key: measure(watched.track) for key, measure in MEASURES.items()}
+    predicted = {"predicted_s": sum(outcome.predicted_s)}
+    run = {"run": f"{name}, {outcome.seed}", "horizon": horizon, "n": 1, "duration_s": outcome.duration_s}
+    return {**run, **figures, **predicted}
+
+
+def until_ball_s(track: Track) -> float:
+    """Seconds of all actions before the last dribble; NaN without a dribble."""
+    names = [action.action for action in track.finished]
+    if "dribbleBall" not in names:
+        return float("nan")
+    last = len(names) - 1 - names[::-1].index("dribbleBall")
+    return sum(action.actual_s for action in track.finished[:last])
+
+
+def dribble_s(track: Track) -> float:
+    """Seconds of the last dribble; NaN without one."""
+    return next((action.actual_s for action in track.finished[::-1] if action.action == "dribbleBall"), float("nan"))
+
+
+def path_m(track: Track) -> float:
+    """Length of the robot's path."""
+    places = np.array([(point.x, point.y) for point in track.points]).reshape(-1, 2)
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
 
 
 def slow_s(track: Track) -> float:
@@ -97,6 +112,15 @@ def handover_mps(track: Track) -> float:
     """Speed where the dribble took over from what came before; NaN without a dribble."""
     speeds = [abs(point.v) for point in track.points if point.name == "dribbleBall"]
     return speeds[0] if speeds else float("nan")
+
+
+MEASURES: Mapping[str, Callable[[Track], float]] = {
+    "until_ball_s": until_ball_s,
+    "dribble_s": dribble_s,
+    "path_m": path_m,
+    "slow_s": slow_s,
+    "speed_at_ball_mps": handover_mps,
+}
 
 
 def _draw(found: Found, seeds: Sequence[int], folder: Path) -> dict[str, Path]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from tools.evaluations.agreement import Starts, agreement
 from tools.evaluations.plots import ACCENT, INK, PALE
@@ -32,6 +33,7 @@ def draw_agreement(pairs: Mapping[str, Starts], margin_pct: float, path: Path) -
     left.plot([], [], "D", color=ACCENT, label=name)
     left.plot([], [], "o", color=PALE, label="lock-step, each with noise of its own")
     left.set(xlabel="start, by its mean duration", ylabel="duration (s)", ylim=(0, None), title="each start")
+    left.xaxis.set_major_locator(MaxNLocator(integer=True))
     left.legend(frameon=False)
     right.axvspan(-margin_pct, margin_pct, color=PALE, alpha=0.4, label=f"margin ± {margin_pct:g} %")
     right.axvline(0, color=PALE)
