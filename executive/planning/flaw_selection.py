@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -19,11 +21,11 @@ T = TypeVar("T")  # threats
 class FlawMeasures(Protocol[P_contra, C, T]):
     """What flaw orders ask about the flaws of a plan; lists of flaws begin with the newest."""
 
-    def conditions(self, plan: P_contra) -> Iterator[C]:
+    def conditions(self, plan: P_contra) -> Iterable[C]:
         """The open conditions."""
         ...
 
-    def threats(self, plan: P_contra) -> Iterator[T]:
+    def threats(self, plan: P_contra) -> Iterable[T]:
         """The threats."""
         ...
 
@@ -64,6 +66,19 @@ class FlawMeasures(Protocol[P_contra, C, T]):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class _Choice(Generic[P, C, T]):
+    """A criterion with what it asks at every plan worked out once."""
+
+    criterion: Criterion
+    threat_key: Callable[[P, T], float]
+    condition_key: Callable[[P, C], float]
+    least: float  # no key is smaller
+    any_threat: bool  # takes threats of both kinds, whatever their number of refinements
+    no_threat: bool
+    no_condition: bool
+
+
 class FlawSelection(Generic[P, C, T]):
     """One flaw order, ready to choose in the plans of one search."""
 
@@ -72,28 +87,55 @@ class FlawSelection(Generic[P, C, T]):
     ) -> None:
         self._measures = measures
         self._rng = rng
-        self._criteria = tuple((c, self._threat_key(c), self._condition_key(c)) for c in criteria)
+        self._choices = tuple(self._prepared(criterion) for criterion in criteria)
+
+    def _prepared(self, criterion: Criterion) -> _Choice[P, C, T]:
+        types = criterion.types
+        return _Choice(
+            criterion,
+            self._threat_key(criterion),
+            self._condition_key(criterion),
+            0 if criterion.order in ("LIFO", "LR") else -math.inf,
+            {"n", "s"} <= types and criterion.limit is None,
+            not types & {"n", "s"},
+            types <= {"n", "s"},
+        )
 
     def choose(self, plan: P) -> C | T:
         """The flaw of a plan that has one."""
-        for criterion, threat_key, condition_key in self._criteria:
-            oldest = criterion.order == "FIFO"
-            threats = self._threats(plan, criterion)
-            conditions = self._conditions(plan, criterion)
-            if len(threats) + len(conditions) == 1:
-                return threats[0] if threats else conditions[0]
-            valued: list[tuple[float, C | T]] = [(threat_key(plan, threat), threat) for threat in threats]
-            valued += [(condition_key(plan, condition), condition) for condition in conditions]
-            if valued:
-                return min(reversed(valued) if oldest else valued, key=_first)[1]
+        for choice in self._choices:
+            threats = [] if choice.no_threat else self._threats(plan, choice)
+            conditions = [] if choice.no_condition else self._conditions(plan, choice.criterion)
+            if threats or conditions:
+                return self._best(plan, choice, threats, conditions)
         raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
 
-    def _threats(self, plan: P, criterion: Criterion) -> list[T]:
+    def _best(self, plan: P, choice: _Choice[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
+        """The flaw with the smallest key, of equals the newest."""
+        best: C | T = threats[0] if threats else conditions[0]
+        if len(threats) + len(conditions) == 1:
+            return best
+        if choice.criterion.order == "FIFO":
+            return conditions[-1] if conditions else threats[-1]
+        smallest = math.inf
+        for threat in threats:
+            key = choice.threat_key(plan, threat)
+            if key < smallest:
+                best, smallest = threat, key
+                if key <= choice.least:
+                    return best
+        for condition in conditions:
+            key = choice.condition_key(plan, condition)
+            if key < smallest:
+                best, smallest = condition, key
+        return best
+
+    def _threats(self, plan: P, choice: _Choice[P, C, T]) -> list[T]:
         """The threats that a criterion applies to."""
-        measures, types, limit = self._measures, criterion.types, criterion.limit
-        if not types & {"n", "s"}:
-            return []
-        threats = list(measures.threats(plan))
+        threats = list(self._measures.threats(plan))
+        if choice.any_threat or not threats:
+            return threats
+        measures, types, limit = self._measures, choice.criterion.types, choice.criterion.limit
         if not {"n", "s"} <= types:
             threats = [threat for threat in threats if measures.separable(plan, threat) == ("s" in types)]
         if limit is not None:
@@ -103,8 +145,6 @@ class FlawSelection(Generic[P, C, T]):
     def _conditions(self, plan: P, criterion: Criterion) -> list[C]:
         """The open conditions that a criterion applies to."""
         measures, types, limit = self._measures, criterion.types, criterion.limit
-        if types <= {"n", "s"}:
-            return []
         conditions = list(measures.conditions(plan))
         if "o" not in types and conditions:
             local = measures.step(conditions[0]) if "l" in types else None
@@ -160,7 +200,3 @@ class FlawSelection(Generic[P, C, T]):
             return sign * measures.value(plan, condition)[field]
 
         return key
-
-
-def _first(valued: tuple[float, object]) -> float:
-    return valued[0]

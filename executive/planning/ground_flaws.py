@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from executive.planning.additive_heuristic import Value, literals_of
 from executive.planning.ground_formula import Some
 from executive.planning.ground_task import GroundTask
@@ -17,20 +15,25 @@ class GroundFlaws:
 
     def __init__(self, task: GroundTask) -> None:
         self._task = task
+        self.threat_choices = choices
 
-    def conditions(self, plan: PartialPlan) -> Iterator[OpenCondition]:
+    def conditions(self, plan: PartialPlan) -> list[OpenCondition]:
         """See `FlawMeasures`."""
+        found = []
         cell = plan.open
         while cell is not None:
-            yield cell
+            found.append(cell)
             cell = cell.rest
+        return found
 
-    def threats(self, plan: PartialPlan) -> Iterator[Threat]:
+    def threats(self, plan: PartialPlan) -> list[Threat]:
         """See `FlawMeasures`."""
+        found = []
         cell = plan.threats
         while cell is not None:
-            yield cell
+            found.append(cell)
             cell = cell.rest
+        return found
 
     def separable(self, plan: PartialPlan, threat: Threat) -> bool:
         """Only a conditional effect can be separated."""
@@ -59,10 +62,6 @@ class GroundFlaws:
             return len(literal.parts) if isinstance(literal, Some) else 1
         old = reusable(plan, condition).bit_count()
         return len(self._task.achievers[literal]) + old + (literal in self._task.initial)
-
-    def threat_choices(self, plan: PartialPlan, threat: Threat) -> int:
-        """See `FlawMeasures`."""
-        return choices(plan, threat)
 
     def by_new_step(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`."""

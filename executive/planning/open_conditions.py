@@ -17,6 +17,7 @@ from executive.planning.partial_plan import (
     OpenCondition,
     PartialPlan,
     Threat,
+    new,
     step_of,
 )
 
@@ -93,28 +94,31 @@ def _by_new_step(
     if orderings is None:
         return None
     steps = (*plan.steps, action)
-    link = Link(node + effect.moment, literal, first, last, plan.links)
+    link = new(Link, (node + effect.moment, literal, first, last, plan.links))
     undoing |= action.bits.get(literal ^ 1, 0) << node
     threats, count = _threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
     threats, count = _threats_by(action, node, orderings.late, plan.links, threats, count)
     conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
-    return PartialPlan(
-        steps,
-        orderings,
-        plan.effects.with_step(action, node),
-        link,
-        _opened_by(conditions, node, plan.open),
-        threats,
-        plan.open_count + len(conditions),
-        count,
-        plan.cost + task.costs[action.number],
+    return new(
+        PartialPlan,
+        (
+            steps,
+            orderings,
+            plan.effects.with_step(action, node),
+            link,
+            _opened_by(conditions, node, plan.open),
+            threats,
+            plan.open_count + len(conditions),
+            count,
+            plan.cost + task.costs[action.number],
+        ),
     )
 
 
 def _opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:
     """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
     for condition, (first, last) in reversed(conditions):
-        cell = OpenCondition(condition, node + first, node + last, cell)
+        cell = new(OpenCondition, (condition, node + first, node + last, cell))
     return cell
 
 
@@ -139,10 +143,13 @@ def _linked(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, producer: int, orderings: Orderings
 ) -> PartialPlan:
     _, first, last, _ = flaw
-    link = Link(producer, literal, first, last, plan.links)
+    link = new(Link, (producer, literal, first, last, plan.links))
     undoing = plan.effects.masks()[literal ^ 1]
     threats, count = _threats_to(task, plan.steps, orderings, undoing, link, plan.threats, plan.threat_count)
-    return PartialPlan(plan.steps, orderings, plan.effects, link, plan.open, threats, plan.open_count, count, plan.cost)
+    return new(
+        PartialPlan,
+        (plan.steps, orderings, plan.effects, link, plan.open, threats, plan.open_count, count, plan.cost),
+    )
 
 
 # --- threats -------------------------------------------------------------------------------------

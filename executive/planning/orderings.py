@@ -67,7 +67,7 @@ class Closure(NamedTuple):
         """See `Orderings`; such a step has one node, and nothing comes before it but the initial state."""
         late = self.late
         bit = 1 << len(late)
-        return Closure((late[0] | bit, *late[1:], bit | late[before]))
+        return tuple.__new__(Closure, ((late[0] | bit, *late[1:], bit | late[before]),))
 
     def ordered(self, a: int, b: int) -> Closure | None:
         """See `Orderings`."""
@@ -78,7 +78,7 @@ class Closure(NamedTuple):
             return None
         if late[a] >> b & 1:
             return self
-        return Closure(tuple([mask | after if mask & bit else mask for mask in late]))
+        return tuple.__new__(Closure, (tuple([mask | after if mask & bit else mask for mask in late]),))
 
     def earliest(self) -> tuple[float, ...]:
         """The longest chain of steps that ends in each node."""

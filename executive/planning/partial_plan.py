@@ -15,6 +15,7 @@ from executive.planning.step_effects import StepEffects
 from executive.planning.temporal_network import TemporalNetwork
 
 GOAL_STEP = -1  # what links and orderings call the goal; the initial state is step 0
+new = tuple.__new__  # makes a named tuple of a plain one in half the time of its constructor, a Python function
 
 
 class Link(NamedTuple):

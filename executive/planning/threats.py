@@ -7,7 +7,7 @@ from executive.planning.ground_action import Span
 from executive.planning.ground_formula import GroundCondition, conjunction, negation
 from executive.planning.ground_task import GroundTask
 from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, new
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:
@@ -39,17 +39,11 @@ def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[P
 
 
 def _without(plan: PartialPlan, threat: Threat, orderings: Orderings) -> PartialPlan:
-    """The plan without a threat, with other orderings; spelled out because `_replace` takes three times as long."""
-    return PartialPlan(
-        plan.steps,
-        orderings,
-        plan.effects,
-        plan.links,
-        plan.open,
-        without(plan.threats, threat),
-        plan.open_count,
-        plan.threat_count - 1,
-        plan.cost,
+    """The plan without a threat, with other orderings; spelled out because `_replace` takes six times as long."""
+    threats, count = without(plan.threats, threat), plan.threat_count - 1
+    return new(
+        PartialPlan,
+        (plan.steps, orderings, plan.effects, plan.links, plan.open, threats, plan.open_count, count, plan.cost),
     )
 
 
