@@ -208,11 +208,11 @@ class BenefitModel(Protocol):
 
     @property
     def threshold(self) -> float:
-        """Above this probability the greedy choice is kept."""
+        """Above this risk the greedy choice is kept."""
         ...
 
     def slower(self, situations: Array) -> Array:
-        """Probability that refining costs time, shape (n,), of situations (n, k); NaN is invalid."""
+        """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN is invalid."""
         ...
 
 

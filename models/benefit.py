@@ -6,16 +6,14 @@ twins that had not seen the pair.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.distilled_failure import DistilledFailureTree
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureModel, FailureTree
+from models.benefit_trees import LEARNERS, RiskTrees, grow_tree
 from models.features import FeatureSpace, Quantity
 from models.rules import success_rules
 from schemas.errors import UsageError
@@ -25,12 +23,10 @@ Bools = NDArray[np.bool_]
 
 LEAST = 100  # pairs: fewer say nothing about a few in a hundred
 FOLDS = 8
-THRESHOLDS = tuple(round(0.2 + 0.025 * k, 3) for k in range(17))  # 0.2 .. 0.6
-LEARNERS: Mapping[str, Callable[[int], FailureModel]] = {
-    "forest": lambda seed: FailureForest(trees=96, random_state=seed),
-    "distilled": lambda seed: DistilledFailureTree(leaves=12, random_state=seed),
-    "tree": lambda seed: FailureTree(min_rows=25, random_state=seed),
-}
+THRESHOLDS = tuple(round(0.1 + 0.0125 * k, 4) for k in range(41))  # 0.1 .. 0.6
+CLIP = 0.1  # a pair counts by its gain or loss, as a share of greedy's time, up to this: ball luck is worth no more
+BASE_STAKE = 0.005
+PRICE_PCT = 0.3  # of improvement, in points, that fewer slower episodes may cost
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,32 +42,45 @@ class Pairs:
         """Whether refining cost time, shape (n,)."""
         return self.refined_s > self.greedy_s
 
+    @property
+    def gain(self) -> Array:
+        """What refining gained, clipped, as a share of greedy's time, shape (n,)."""
+        return np.clip(1 - self.refined_s / self.greedy_s, -CLIP, CLIP)
+
+    def grown(self, learner: str, chosen: Bools, seed: int) -> RiskTrees:
+        """Trees learned from the chosen pairs, (n,)."""
+        stakes = np.abs(self.gain[chosen]) + BASE_STAKE
+        return LEARNERS[learner](self.situations[chosen], self.slower[chosen], stakes, np.random.default_rng(seed))
+
 
 @dataclass(frozen=True, slots=True)
 class TrainedBenefit:
-    """A learner fitted to all pairs, the probability above which greedy is kept, and what its twins reached."""
+    """Trees learned from all pairs, the risk above which greedy is kept, and what their twins reached."""
 
-    learner: FailureModel
+    trees: RiskTrees
     threshold: float
     test: Mapping[str, Any]
-    rules: tuple[str, ...]  # of one small tree that says nearly the same
+    rules: tuple[str, ...]  # of one tree of four rules that says much the same
 
 
 def space(names: tuple[str, ...]) -> FeatureSpace:
     """Situations as they are told; a name ends in its unit."""
     units = {"s": "s", "pct": "%", "rad": "rad"}
-    quantities = tuple(Quantity(name, units.get(name.rpartition("_")[2], "1")) for name in names)
+    quantities = tuple(Quantity(name, units.get(name.rpartition("_")[2], "")) for name in names)
     return FeatureSpace("situation", quantities, quantities, lambda columns, _: columns)
 
 
-def train_benefit(pairs: Pairs, names: tuple[str, ...], learner: str, seed: int) -> TrainedBenefit:
-    """Learn from pairs; the same pairs and seed give the same tree.
+def train_benefit(
+    pairs: Pairs, names: tuple[str, ...], learner: str, seed: int, price_pct: float = PRICE_PCT
+) -> TrainedBenefit:
+    """Learn from pairs; the same pairs and seed give the same trees.
 
     Args:
       pairs: Of training seeds.
       names: Of the columns of the situations.
       learner: One of LEARNERS.
       seed: Draws folds and what the learner draws.
+      price_pct: Points of improvement that fewer slower episodes may cost, see `chosen`.
 
     Raises:
       UsageError: Too few pairs, pairs that all ended alike, or an unknown learner.
@@ -84,16 +93,17 @@ def train_benefit(pairs: Pairs, names: tuple[str, ...], learner: str, seed: int)
         raise UsageError("refining ended alike in all pairs, expected some slower and some not")
     unseen = _said_by_twins(pairs, learner, seed)
     curve = [judged(pairs, unseen > threshold, threshold) for threshold in THRESHOLDS]
-    best = _best(curve, pairs)
-    few = LEARNERS["distilled"](seed).fit(pairs.situations, pairs.slower)
-    splits, said = few.steps_[0]
-    lines = [
-        rule.replace("then success in", "then slower in") for rule in success_rules(splits, said, space(names).features)
-    ]
-    test = {**best, "ungated": judged(pairs, np.zeros_like(pairs.slower), 1.0), "curve": curve}
-    return TrainedBenefit(
-        LEARNERS[learner](seed).fit(pairs.situations, pairs.slower), best["threshold"], test, tuple(lines)
-    )
+    best = chosen(curve, price_pct)
+    everything = np.ones_like(pairs.slower)
+    ungated = judged(pairs, ~everything, 1.0)
+    test = {**best, "ungated": ungated, "perfect": judged(pairs, pairs.slower, 0.0), "curve": curve}
+    return TrainedBenefit(pairs.grown(learner, everything, seed), best["threshold"], test, _rules(pairs, names))
+
+
+def chosen(curve: list[dict[str, Any]], price_pct: float) -> dict[str, Any]:
+    """The fewest slower episodes that `price_pct` points of clipped improvement buy."""
+    affordable = [row for row in curve if row["price_pct"] <= price_pct] or curve[-1:]
+    return min(affordable, key=lambda row: (row["slower_pct"], row["price_pct"]))
 
 
 def judged(pairs: Pairs, kept: Bools, threshold: float) -> dict[str, Any]:
@@ -107,23 +117,23 @@ def judged(pairs: Pairs, kept: Bools, threshold: float) -> dict[str, Any]:
         "right_pct": 100 * float(np.mean(kept == slower)),
         "kept_pct": 100 * float(kept.mean()),
         "improvement_pct": 100 * float(np.mean(1 - taken_s / pairs.greedy_s)),
+        "price_pct": 100 * float(np.mean(np.where(kept, pairs.gain, 0.0))),
         "slower_pct": 100 * float(np.mean(taken_s > pairs.greedy_s)),
         "confusion": confusion,  # rows: refining was not slower, was slower; columns: refined, greedy kept
     }
 
 
 def _said_by_twins(pairs: Pairs, learner: str, seed: int) -> Array:
-    """Probability that refining is slower, shape (n,), each said by a twin that has not seen the pair."""
+    """The risk, shape (n,), each said by a twin that has not seen the pair."""
     fold = np.random.default_rng(seed).permutation(len(pairs.slower)) % FOLDS
     said = np.empty(len(fold))
     for k in range(FOLDS):
-        twin = LEARNERS[learner](seed).fit(pairs.situations[fold != k], pairs.slower[fold != k])
-        said[fold == k] = twin.predict_proba(pairs.situations[fold == k])[:, 1]
+        said[fold == k] = pairs.grown(learner, fold != k, seed).risk(pairs.situations[fold == k])
     return said
 
 
-def _best(curve: list[dict[str, Any]], pairs: Pairs) -> dict[str, Any]:
-    """Most often right among the thresholds that do not cost time on average; of equals the most careful one."""
-    plain = judged(pairs, np.zeros_like(pairs.slower), 1.0)["improvement_pct"]
-    good = [row for row in curve if row["improvement_pct"] >= plain] or curve[-1:]
-    return max(good, key=lambda row: (row["right_pct"], -row["slower_pct"]))
+def _rules(pairs: Pairs, names: tuple[str, ...]) -> tuple[str, ...]:
+    stakes = np.abs(pairs.gain) + BASE_STAKE
+    ((splits, shares),) = grow_tree(pairs.situations, pairs.slower, stakes, np.random.default_rng(0)).steps
+    said = success_rules(splits, shares, space(names).features)
+    return tuple(rule.replace("then success in", "then refining risks") for rule in said)

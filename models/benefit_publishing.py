@@ -17,7 +17,7 @@ from models.card import FORMAT, Card, card_path, identity, sha256_of, write_card
 from models.onnx_features import add_features
 from models.onnx_graph import Graph
 from models.onnx_trees import add_probability
-from models.publishing import GOLDEN, LIBRARIES, leaves
+from models.publishing import GOLDEN, LIBRARIES
 from models.runtime import BENEFIT
 
 
@@ -60,7 +60,7 @@ def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> by
     """Double `arguments` (n, k) to float `slower` (n,)."""
     graph, columns = Graph(), space(names)
     features = add_features(graph, columns, "arguments")
-    slower = add_probability(graph, features, trained.learner.steps_)
+    slower = add_probability(graph, features, trained.trees.steps)
     return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
 
 
@@ -87,7 +87,7 @@ def _card(pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> dict[st
         "models": dict(about.models),
         "settings": dict(about.settings),
         "episodes": {**about.episodes, "count": len(pairs.slower), "sha256": hashlib.sha256(content).hexdigest()},
-        "learner": {"name": about.learner, "leaves": leaves(trained.learner), "seed": about.seed},
+        "learner": {"name": about.learner, "leaves": trained.trees.leaves, "seed": about.seed},
         "test": trained.test,
         "rules": list(trained.rules),
         "golden": _golden(pairs, trained),
@@ -100,5 +100,5 @@ def _golden(pairs: Pairs, trained: TrainedBenefit) -> dict[str, Sequence[Any]]:
     """Situations spread over the pairs, and what the learner itself says of them."""
     chosen = np.linspace(0, len(pairs.slower) - 1, GOLDEN).astype(int)
     situations = pairs.situations[chosen]
-    slower = trained.learner.predict_proba(situations)[:, 1]
-    return {"arguments": situations.tolist(), "slower": np.round(slower.astype(np.float64), 6).tolist()}
+    said = np.round(trained.trees.risk(situations), 6)
+    return {"arguments": situations.tolist(), "slower": said.tolist()}

@@ -73,7 +73,7 @@ class OnnxBenefit:
 
     session: Any
     card: Card
-    threshold: float  # above this probability the greedy choice is kept
+    threshold: float  # above this risk the greedy choice is kept
 
     @property
     def asks(self) -> tuple[str, ...]:
@@ -86,7 +86,7 @@ class OnnxBenefit:
         return frozenset(tuple(names) for names in self.card["sequences"])
 
     def slower(self, situations: Array) -> Array:
-        """Probability that refining costs time, shape (n,), of situations (n, k); NaN where it is invalid."""
+        """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN where it is invalid."""
         return _probability(self.session, situations)
 
 

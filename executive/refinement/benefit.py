@@ -40,7 +40,7 @@ class Verdict:
     """What the tree saw and said; empty where there was nothing to compare."""
 
     situation: tuple[float, ...] = ()  # by SITUATION
-    slower: float = NOT_ASKED  # probability that refining costs time
+    slower: float = NOT_ASKED  # risk that refining costs time, 0..1
     keep_greedy: bool = False
 
 

@@ -62,7 +62,14 @@ def advice(report: RefinementReport) -> str:
     if report.slower < 0:
         return ""
     said = "greedy kept" if report.kept_greedy else "refined"
-    return f"{said}: the benefit tree says that refining costs time with a probability of {100 * report.slower:.0f} %"
+    return f"{said}: the benefit tree puts the risk that refining costs time at {100 * report.slower:.0f} %"
+
+
+def proven(report: RefinementReport | None) -> str:
+    """How near the refined choice is to the optimum of the models, where that was proven live."""
+    if report is None or report.gap_pct < 0:
+        return "not certified: nothing was proven of the models' optimum"
+    return f"certified: within {report.gap_pct:.1f} % of the models' optimum"
 
 
 def proven(report: RefinementReport | None) -> str:
