@@ -7,11 +7,11 @@ import numpy as np
 from executive.library import Array
 from executive.refinement.solver import Limits, Objective, Solver
 
-INDIVIDUALS_PER_PARAMETER = 8
-INDIVIDUALS_MIN = 32
+INDIVIDUALS_PER_PARAMETER = 5  # few, and most of them after the best: there is time for some 60 generations only
+INDIVIDUALS_MIN = 24
 CROSSOVER = 0.8
 STEP_MIN, STEP_MAX = 0.4, 0.9  # the difference's weight, drawn for every child: dither avoids stagnation
-TO_BEST_SHARE = 0.5  # children that start half way to the best, the others from their own parent
+TO_BEST_SHARE = 0.8  # children that start half way to the best, the others from their own parent
 
 
 class DifferentialEvolution(Solver):
@@ -29,6 +29,8 @@ class DifferentialEvolution(Solver):
         self._size = max(INDIVIDUALS_MIN, INDIVIDUALS_PER_PARAMETER * objective.ranges.count)
         self._population: Array | None = None
         self._costs = np.empty(0)
+        self._turning = np.flatnonzero(objective.ranges.periodic)
+        self._turn = objective.ranges.width[self._turning]
 
     def _check(self) -> None:
         if self._population is None:
@@ -63,7 +65,7 @@ class DifferentialEvolution(Solver):
 
     def _shortest(self, difference: Array) -> Array:
         """Differences with the angles taken the short way round."""
-        ranges = self._objective.ranges
-        width = np.where(ranges.periodic, ranges.width, 1.0)
-        turned = np.mod(difference + width / 2, width) - width / 2
-        return np.where(ranges.periodic, turned, difference)
+        if len(self._turning):
+            angles = difference[:, self._turning]
+            difference[:, self._turning] = np.mod(angles + self._turn / 2, self._turn) - self._turn / 2
+        return difference

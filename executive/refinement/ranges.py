@@ -32,12 +32,13 @@ class Ranges:
 
     def confine(self, candidates: Array) -> Array:
         """Candidates, shape (n, d), brought into the ranges: angles wrap, the rest stops at the end."""
-        clipped = np.clip(candidates, self.lower, self.upper)
-        if not self.periodic.any():
-            return clipped
-        turned = self.lower + np.mod(candidates - self.lower, self.width)
-        # Rounding may put a value a hair beyond the end; the last clip keeps the promise exact.
-        return np.where(self.periodic, np.minimum(turned, self.upper), clipped)
+        confined: Array = np.minimum(np.maximum(candidates, self.lower), self.upper)
+        turning = np.flatnonzero(self.periodic)
+        if len(turning):
+            lower, upper = self.lower[turning], self.upper[turning]
+            turned = lower + np.mod(candidates[:, turning] - lower, upper - lower)
+            confined[:, turning] = np.minimum(turned, upper)  # rounding may put it a hair beyond the end
+        return confined
 
     def draw(self, count: int, rng: np.random.Generator) -> Array:
         """Uniform candidates, shape (count, d), one from each of `count` layers of every parameter."""

@@ -72,6 +72,10 @@ class Stage:
         self._displaced = np.array([j for j, i in enumerate(ids) if i in arrived], dtype=np.intp)
         quantities = [instance.action.parameters[j].quantity for j in self._displaced]
         self._displacements = displacements(quantities, dict(settings.arrival_spread))
+        parameters = [instance.action.parameters[j] for j in self._displaced]
+        self._within = np.array([k for k, parameter in enumerate(parameters) if not parameter.periodic], dtype=np.intp)
+        self._lower = np.array([parameters[k].lower for k in self._within])
+        self._upper = np.array([parameters[k].upper for k in self._within])
 
     @property
     def ways(self) -> int:
@@ -84,25 +88,22 @@ class Stage:
         arguments = self.action.arguments(self.parameters(rows))
         self.rows += count * ways
         mean, std = self.models.duration.predict(arguments)
-        failure = np.zeros((ways, count))
+        likely = worst = energy = np.zeros(count)
         if self.models.success is not None:
-            failure = 1 - self.models.success.probability(arguments).reshape(ways, count)
-        energy = np.zeros(count)
+            failure = 1 - self.models.success.probability(arguments)
+            likely, worst = _mean(failure, ways), failure.reshape(ways, count).max(axis=0)
         if self.models.energy is not None:
-            energy = self.models.energy.predict(arguments)[0].reshape(ways, count).mean(axis=0)
-        return Prediction(
-            mean.reshape(ways, count).mean(axis=0),
-            std.reshape(ways, count).mean(axis=0),
-            failure.mean(axis=0),
-            failure.max(axis=0),
-            energy,
-        )
+            energy = _mean(self.models.energy.predict(arguments)[0], ways)
+        return Prediction(_mean(mean, ways), _mean(std, ways), likely, worst, energy)
 
     def cost(self, rows: Array) -> Array:
         """Seconds, shape (n,), for rows of shape (n, len(columns)); +inf is INVALID."""
         said, settings = self.predict(rows), self._settings
-        cost = said.duration_s + settings.k_std * said.spread_s + settings.risk_cost_s * said.failure
-        cost += settings.energy_weight * said.energy_j
+        cost: Array = said.duration_s + settings.k_std * said.spread_s
+        if self.models.success is not None:
+            cost += settings.risk_cost_s * said.failure
+        if self.models.energy is not None:
+            cost += settings.energy_weight * said.energy_j
         valid = np.isfinite(cost) & (said.worst_failure <= self.p_fail_max)
         return np.where(valid, cost, np.inf)
 
@@ -119,14 +120,19 @@ class Stage:
 
     def _bounded(self, displaced: Array, exact: Array) -> Array:
         """Displaced values kept to the parameters' ranges, where models know something; angles go free."""
-        bounded = displaced
-        for k, j in enumerate(self._displaced):
-            parameter = self.action.parameters[j]
-            if not parameter.periodic:
-                lower = np.minimum(exact[:, :, k], parameter.lower)
-                upper = np.maximum(exact[:, :, k], parameter.upper)
-                bounded[:, :, k] = np.clip(displaced[:, :, k], lower, upper)
-        return bounded
+        place = self._within
+        lower = np.minimum(exact[:, :, place], self._lower)
+        upper = np.maximum(exact[:, :, place], self._upper)
+        displaced[:, :, place] = np.minimum(np.maximum(displaced[:, :, place], lower), upper)
+        return displaced
+
+
+def _mean(values: Array, ways: int) -> Array:
+    """Mean over the displaced arrivals, shape (n,), of values (ways * n,): numpy's own takes three times as long."""
+    if ways == 1:
+        return values
+    total: Array = np.add.reduce(values.reshape(ways, -1), axis=0)
+    return total / ways
 
 
 def models_of(action: Action, models: Models, settings: RefinementSettings) -> StageModels:
