@@ -16,7 +16,8 @@ from models.split_tree import SplitTree
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
-CELLS_MAX = 1 << 19  # of all trees: 2 MB of table, which still lies in a processor's cache
+CELLS_MAX = 1 << 20  # of all trees: 2 MB of table, which still lies in a processor's cache
+LEAVES_MAX = 1 << 16  # a table's numbers take two bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,8 @@ def cells_of(trees: Sequence[SplitTree], features: int) -> Cells | None:
     """The cells of trees over so many features; None if there are too many to be worth it, or nothing but roots."""
     own = [_thresholds(tree, features) for tree in trees]
     sizes = [int(np.prod([len(some) + 1 for some in each])) for each in own]
-    if not len(trees) < sum(sizes) <= CELLS_MAX:
+    leaves = sum(tree.leaves for tree in trees)
+    if leaves == len(trees) or leaves > LEAVES_MAX or sum(sizes) > CELLS_MAX:
         return None
     union = [np.unique(np.concatenate([each[f] for each in own])) for f in range(features)]
     strides = np.stack([_strides(each, union) for each in own], axis=1)

@@ -19,7 +19,7 @@ from models.onnx_features import append_one
 from models.onnx_graph import ML, ML_OPSET, OPSET
 from models.onnx_trees import add_bag, add_probability, add_tree
 
-TYPES = {"f4": TensorProto.FLOAT, "i4": TensorProto.INT32, "i8": TensorProto.INT64}
+TYPES = {"f4": TensorProto.FLOAT, "u2": TensorProto.UINT16, "i4": TensorProto.INT32, "i8": TensorProto.INT64}
 
 
 class _ContainerSink:

@@ -93,7 +93,8 @@ def _leaves_by_cell(sink: Sink, features: str, cells: Cells, width: int) -> str:
     limits = (sink.constant(np.array(limit, np.int32)) for limit in (0, len(cells.leaf) - 1))
     # what is not a number may be cast to any cell: its formula gives no number either
     number = sink.add("Clip", sink.add("Cast", cell, to=TensorProto.INT32), *limits)
-    return str(sink.add("Gather", sink.constant(cells.leaf), number))
+    leaf = sink.add("Gather", sink.constant(cells.leaf.astype(np.uint16)), number)
+    return str(sink.add("Cast", leaf, to=TensorProto.INT32))
 
 
 def _formula(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree]) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 VARINT, FIXED64, BYTES, FIXED32 = 0, 1, 2, 5  # wire types of protocol buffers
 FLOATS_TAG, INTS_TAG = 7 << 3 | FIXED32, 8 << 3 | VARINT  # AttributeProto.floats and .ints, one tag an element
-DTYPES = {1: "<f4", 6: "<i4", 7: "<i8", 11: "<f8"}  # TensorProto.data_type
+DTYPES = {1: "<f4", 4: "<u2", 6: "<i4", 7: "<i8", 11: "<f8"}  # TensorProto.data_type
 
 
 @dataclass(frozen=True, slots=True)

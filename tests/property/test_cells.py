@@ -54,10 +54,10 @@ def test_a_cell_lies_in_the_leaf_that_its_rows_fall_into(seed: int, count: int, 
 def test_too_many_cells_and_trees_without_splits_have_no_table() -> None:
     rng = np.random.default_rng(0)
     assert cells_of([random_tree(rng, 1)], FEATURES) is None
-    fine = np.array([(k % FEATURES, k / 7.0) for k in range(3 * 90)])  # 91 ** 3 cells
+    fine = np.array([(k % FEATURES, k / 7.0) for k in range(3 * 120)])  # 121 ** 3 cells
     nodes = [(int(f), t, k + 1, len(fine) + 1 + k, -1) for k, (f, t) in enumerate(fine)]
     nodes += [(LEAF, 0.0, 0, 0, k) for k in range(len(fine) + 1)]
-    assert CELLS_MAX < 91**3
+    assert CELLS_MAX < 121**3
     assert cells_of([SplitTree.of(nodes)], FEATURES) is None
 
 
