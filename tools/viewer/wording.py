@@ -72,13 +72,6 @@ def proven(report: RefinementReport | None) -> str:
     return f"certified: within {report.gap_pct:.1f} % of the models' optimum"
 
 
-def proven(report: RefinementReport | None) -> str:
-    """How near the refined choice is to the optimum of the models, where that was proven live."""
-    if report is None or report.gap_pct < 0:
-        return "not certified: nothing was proven of the models' optimum"
-    return f"certified: within {report.gap_pct:.1f} % of the models' optimum"
-
-
 def effort(decision: Decision) -> str:
     """What the search took, and what came of it."""
     said = []
