@@ -103,7 +103,7 @@ def _row(sweep: Sweep) -> dict[str, Any]:
         "simulated_min_s": float(sweep.simulated_s[2, simulated]),
         "regret_pct": 100 * float(sweep.simulated_s[2, model] / sweep.simulated_s[2, simulated] - 1),
         "mae_s": float(np.nanmean(np.abs(sweep.predicted_s[2] - sweep.simulated_s[2]))),
-        "bias_s": float(np.nanmean(sweep.predicted_s[2] - sweep.simulated_s[2])),
+        **dict(zip(("bias_approach_s", "bias_dribble_s", "bias_s"), sweep.bias_s, strict=True)),
         "correlation": sweep.correlation,
         "detours_pct": 100 * float(np.mean(sweep.detoured)),
     }

@@ -17,6 +17,7 @@ from tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]
 WIDE = 9  # columns that still fit a screen
+LEAST_WIDTH = 120  # a file or a pipe has no width of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +72,11 @@ def shown(value: object) -> str:
 
 def _print(report: Report) -> None:
     console = Console()
+    console.width = max(console.width, LEAST_WIDTH)
     made = Table(title=report.title)
     head, cells = _tabled(report.rows)
     for column in head:
-        made.add_column(column, justify="left" if column == head[0] else "right")
+        made.add_column(column, justify="left" if column == head[0] else "right", no_wrap=column == head[0])
     for row in cells:
         made.add_row(*row)
     console.print(made)

@@ -39,6 +39,12 @@ class Sweep:
         return int(np.nanargmin(self.simulated_s[2]))
 
     @property
+    def bias_s(self) -> list[float]:
+        """Mean of predicted minus simulated over the angles: approach, what comes after it, sum."""
+        means: list[float] = np.nanmean(self.predicted_s - self.simulated_s, axis=1).tolist()
+        return means
+
+    @property
     def correlation(self) -> float:
         """Of predicted and simulated sums over the angles."""
         both = np.isfinite(self.predicted_s[2]) & np.isfinite(self.simulated_s[2])
