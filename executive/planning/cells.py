@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, TypeVar
 
 
 class Cell(Protocol):
-    """A named tuple with the cell behind it as `rest`."""
+    """A named tuple with the cell behind it as its last field, `rest`."""
 
     @property
     def rest(self) -> Any:
         """The next cell; None at the end."""
         ...
 
-    def _replace(self, *, rest: Any) -> Self: ...
+    def __getitem__(self, fields: slice) -> tuple[Any, ...]: ...
 
 
 C = TypeVar("C", bound=Cell)
+_new: Any = tuple.__new__  # makes a named tuple in a third of the time of its `_replace`
 
 
 def without(cells: C | None, gone: C) -> C | None:
@@ -28,5 +29,5 @@ def without(cells: C | None, gone: C) -> C | None:
         cells = cells.rest
     rest: C | None = gone.rest
     for cell in reversed(before):
-        rest = cell._replace(rest=rest)
+        rest = _new(type(cell), (*cell[:-1], rest))
     return rest

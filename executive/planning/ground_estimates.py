@@ -13,6 +13,7 @@ class GroundEstimates:
 
     def __init__(self, task: GroundTask) -> None:
         self._task = task
+        self._costs, self._works = task.estimates.cost, task.estimates.work
 
     def plain(self, plan: PartialPlan) -> Estimate:
         """See `PlanEstimates`."""
@@ -28,8 +29,7 @@ class GroundEstimates:
 
     def reusing(self, plan: PartialPlan) -> Estimate:
         """See `PlanEstimates`; the hottest loop of the planner, hence without calls."""
-        estimates = self._task.estimates
-        costs, works = estimates.cost, estimates.work
+        costs, works = self._costs, self._works
         late, effects = plan.orderings.late, plan.effects
         known, bits, node = effects.known, effects.bits, effects.node
         cost: float = 0
@@ -47,7 +47,7 @@ class GroundEstimates:
                     cost += costs[condition]
                     work += works[condition]
             else:
-                value = estimates.of(condition)
+                value = self._task.estimates.of(condition)
                 cost += value.cost
                 work += value.work
         return cost, work
