@@ -46,3 +46,15 @@ def duration_range(bounds: tuple[DurationBound, ...], binding: Binding, world: W
         if bound.operator != ">=":
             longest = min(longest, value)
     return (shortest, longest) if shortest <= longest else None
+
+
+def ticks_of(bounds: tuple[float, float], tick_s: float) -> tuple[int, int | None]:
+    """Shortest and longest duration in ticks, None without an upper limit.
+
+    What may take time takes a tick at least, lest its end meets its start.
+    """
+    shortest = round(bounds[0] / tick_s)
+    if math.isinf(bounds[1]):
+        return max(shortest, 1), None
+    longest = round(bounds[1] / tick_s)
+    return min(max(shortest, 1), longest), longest

@@ -6,13 +6,12 @@ to right.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.planning.durations import duration_range
+from executive.planning.durations import duration_range, ticks_of
 from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span
 from executive.planning.ground_formula import (
     FALSE,
@@ -165,16 +164,14 @@ def _instance(
     for effect in effects:
         bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
     name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
-    shortest, longest = bounds
     return GroundAction(
         number,
         name,
         conditions,
         effects,
         bits,
-        round(shortest / tick_s),
-        None if math.isinf(longest) else round(longest / tick_s),
-        shortest,
+        *ticks_of(bounds, tick_s),
+        bounds[0],
         not any(effect.conditions for effect in effects),
     )
 

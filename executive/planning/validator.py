@@ -89,14 +89,14 @@ def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
     began: dict[int, State] = {}  # by step, the state just before its start
     for events in _happenings(plan, problem):
         _check_conditions(events, state, problem, bound)
-        running = [step for step in running if not any(event.ends and event.step is step for event in events)]
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
         changes = [(event, *_changes(event, state, began, problem, bound)) for event in events]
-        _check_disturbance(changes, problem, bound)
+        _check_disturbance(changes, state, problem, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
         state = (state - removed) | added
         running += [event.step for event in events if event.step and not event.ends and plan.durative]
+        running = [step for step in running if not any(event.ends and event.step is step for event in events)]
         _check_invariants(running, state, problem, bound)
     return state
 
@@ -188,14 +188,17 @@ def affected(
 _Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
 
 
-def _check_disturbance(changes: list[_Change], problem: Problem, bound: Bound) -> None:
-    """Simultaneous events must neither touch what another needs nor contradict one another (no moving targets)."""
+def _check_disturbance(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
+    """Simultaneous events must neither change what another needs nor contradict one another (no moving targets).
+
+    What an event makes true that is true already is no change: the planner's no-op rule never sees it.
+    """
     for event, added, removed in changes:
         for other, more, less in changes:
             if event is other:
                 continue
             needed = _needed(other, problem, bound)
-            if (added | removed) & needed or added & less or removed & more:
+            if ((added - state) | (removed & state)) & needed or added & less or removed & more:
                 raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
 
 

@@ -19,6 +19,7 @@ from executive.planning import (
     parse_problem,
     validate,
 )
+from tests.pddl_mutations import mutated, regrown
 from tests.planning_problems import DATA, OWN, read, solve
 from tests.unit.test_planning_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
 
@@ -35,56 +36,6 @@ PAIRS = [
         for name in OWN
     ),
 ]
-WORDS = [
-    *(
-        [
-            "(",
-            ")",
-            "and",
-            "or",
-            "not",
-            "when",
-            "forall",
-            "exists",
-            "-",
-            "=",
-            "?x",
-            "?duration",
-            "at",
-            "start",
-            "end",
-            "over",
-            "all",
-            "1",
-            "-1",
-            "1e9",
-            "0",
-        ]
-    ),
-    *(["object", "either", ":init", ":goal", ":effect", ":condition", "p1", "table1", "a", "b"]),
-]
-
-
-def mutated(text, rng):
-    """The text with a few of its tokens dropped, doubled, swapped or replaced."""
-    text = "\n".join(line.partition(";")[0] for line in text.splitlines())
-    tokens = text.replace("(", " ( ").replace(")", " ) ").split()
-    for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
-        i, j = rng.randrange(len(tokens)), rng.randrange(len(tokens))
-        match rng.randrange(6):
-            case 0 if len(tokens) > 2:
-                del tokens[i]
-            case 1:
-                tokens.insert(i, tokens[j])
-            case 2:
-                tokens[i], tokens[j] = tokens[j], tokens[i]
-            case 3:
-                tokens[i] = rng.choice(WORDS)
-            case 4:
-                tokens[i] = tokens[i][::-1] + chr(rng.randrange(1, 0x3000))
-            case _:
-                tokens[i:i] = tokens[j : j + rng.randrange(12)]
-    return " ".join(tokens)
 
 
 def survives(domain_text, problem_text, ground):
@@ -110,9 +61,10 @@ def fuzz(count, seed):
     for _ in range(count):
         domain, problem = rng.choice(PAIRS)
         which = rng.randrange(3)
-        domain = mutated(domain, rng) if which != 1 else domain
-        problem = mutated(problem, rng) if which != 0 else problem
-        seen[survives(domain, problem, rng.random() < 0.8)] += 1
+        mutate = rng.choice((mutated, regrown, regrown))
+        domain = mutate(domain, rng) if which != 1 else domain
+        problem = mutate(problem, rng) if which != 0 else problem
+        seen[survives(domain, problem, rng.random() < 0.6)] += 1
     assert min(seen.values()) > 0, seen
     return seen
 

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from executive.planning import GOAL, Link, Literal, relink, suffix, validate
+from executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, suffix, validate
 from tests.planning_problems import OWN, own, read, solve
 
 
@@ -95,6 +95,34 @@ def test_simultaneous_events_that_disturb_each_other_are_found():
     assert validate(plan, domain, problem) == ""
     together = dataclasses.replace(plan, steps=tuple(dataclasses.replace(s, start=1.0) for s in plan.steps), links=())
     assert "disturbs" in validate(together, domain, problem)
+
+
+LAMP = """(define (domain lamp) (:requirements :durative-actions :duration-inequalities) (:predicates (on) (dim) (off))
+  (:durative-action look :parameters () :duration {}
+    :condition (and (over all (on)) (at end (on))) :effect (and (at start (on)) (at end (dim))))
+  (:durative-action hide :parameters () :duration (= ?duration 1) :condition (at start (dim))
+    :effect (and (at start (not (on))) (at end (off)))))"""
+DARK = "(define (problem p) (:domain lamp) (:init (on)) (:goal (and (dim) (off))))"
+
+
+def test_what_lasts_no_time_needs_nothing_afterwards():
+    domain, problem = read(LAMP.replace("{}", "(= ?duration 0)"), DARK)
+    plan = parse_plan(";p\n1:(look)[0]\n2:(hide)[1]\n")
+    assert validate(plan, domain, problem) == ""
+
+
+def test_what_may_take_time_takes_a_tick():
+    domain, problem = read(LAMP.replace("{}", "(<= ?duration 5)"), DARK)
+    for ground in (True, False):
+        plan = solve(domain, problem, Settings(ground=ground)).plan
+        assert validate(plan, domain, problem) == ""
+        assert next(step.duration for step in plan.steps if step.action == ("look",)) == pytest.approx(0.01)
+
+
+def test_making_true_what_is_true_disturbs_nobody():
+    domain, problem = read(LAMP.replace("{}", "(= ?duration 1)"), DARK)
+    plan = parse_plan(";p\n1:(look)[1]\n1:(look)[1]\n3:(hide)[1]\n")
+    assert validate(plan, domain, problem) == ""
 
 
 # --- what is left of a plan ----------------------------------------------------------------------

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.planning.durations import duration_range
+from executive.planning.durations import duration_range, ticks_of
 from executive.planning.ground_formula import Facts, World
 from executive.planning.language import Action, Function, Number, Numeric, Operation, Typed
 from executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -75,7 +74,7 @@ def _schemata(
     equalities = tuple(part for part, _ in lowered if isinstance(part, Equality))
     effects = lifted_effects(action, names, conditions, lowering, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
-    for fixed, (shortest, longest) in _durations(action, lowering, world):
+    for fixed, bounds in _durations(action, lowering, world):
         yield Schema(
             action.name,
             parameters,
@@ -84,9 +83,8 @@ def _schemata(
             equalities,
             {names[name]: value for name, value in fixed.items()},
             effects,
-            round(shortest / tick_s),
-            None if math.isinf(longest) else round(longest / tick_s),
-            shortest,
+            *ticks_of(bounds, tick_s),
+            bounds[0],
         )
 
 
