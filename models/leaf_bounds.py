@@ -5,6 +5,9 @@ A leaf's formula is a sum over features, so that what depends on one side of a p
 
 from __future__ import annotations
 
+from functools import reduce
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,10 +16,9 @@ from models.tree_boxes import TreeBoxes
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Places = NDArray[np.intp]
 Spans = tuple[Span, ...]
 
-NO_LEAF = np.float32(1e30)  # in sums instead of infinity, which the clip below could not tell from a large number
-MET = np.float32(1e20)
 ROUNDING = 2.0**-21  # of the terms of a sum: eight units in the last place
 FARTHEST = 10.0  # no feature is larger, in metres or radians
 
@@ -31,9 +33,10 @@ class LeafBounds:
     """
 
     def __init__(self, boxes: TreeBoxes) -> None:
-        self._boxes = boxes
+        self.boxes = boxes
         self._tree = np.repeat(np.arange(len(boxes.first)), np.diff([*boxes.first, len(boxes.low)]))
         self._rises = boxes.slopes >= 0
+        self._flat = not boxes.slopes.any()
         ends = np.maximum(*(np.abs(np.clip(side, -FARTHEST, FARTHEST)) for side in (boxes.lower, boxes.upper)))
         self.slack = ROUNDING * float((np.abs(boxes.intercept) + (np.abs(boxes.slopes) * ends).sum(axis=1)).max())
 
@@ -47,43 +50,56 @@ class LeafBounds:
 
         Where leaves have a spread of their own, `k_std` times that is added. Only `trees` are asked, where given.
         """
-        order = sorted(range(len(features)), key=lambda j: features[j].lower.size)
         leaves = np.arange(self.leaves) if trees is None else np.flatnonzero(trees[self._tree])
-        sums: dict[tuple[int, ...], Floats] = {}
-        for j in order:
-            said = self._term(features[j], j, leaves)
-            met = (said < MET).reshape(len(leaves), -1).any(axis=1)
-            leaves, said = leaves[met], said[met]
-            sums = {shape: part[met] for shape, part in sums.items()}
-            shape = said.shape[1:]
-            sums[shape] = sums[shape] + said if shape in sums else said
-        return self._of_trees(sums, leaves, np.float32(k_std))
-
-    def _of_trees(self, sums: dict[tuple[int, ...], Floats], leaves: NDArray[np.intp], k_std: np.float32) -> Floats:
-        """The least of each tree over its leaves, whose formulas' parts are given by shape."""
-        boxes = self._boxes
-        axes = (slice(None), *(None,) * len(next(iter(sums))))
-        total = boxes.intercept[leaves][axes]
-        for part in sorted(sums.values(), key=np.size):
-            total = total + part
-        missed = total > MET
-        np.maximum(total, boxes.low[leaves][axes], out=total)
-        np.minimum(total, boxes.high[leaves][axes], out=total)
-        if boxes.spread is not None:
-            total += k_std * boxes.spread[leaves][axes]
-        total[missed] = np.inf
-        trees = self._tree[leaves]
-        starts = np.flatnonzero(np.diff(trees, prepend=-1))
+        leaves, met = self._met(features, leaves)
+        said = self._formulas(features, leaves)
+        if self.boxes.spread is not None:
+            said = said + _along(np.float32(k_std) * self.boxes.spread[leaves], features)
+        total = np.where(met, said, np.float32(np.inf))
+        starts = np.flatnonzero(np.diff(self._tree[leaves], prepend=-1))
         least: Floats = np.minimum.reduceat(total, starts, axis=0)
         return least
 
-    def _term(self, span: Span, column: int, leaves: NDArray[np.intp]) -> Floats:
-        """What one feature adds to each leaf at least, shape (leaves, ...); NO_LEAF where it lies outside."""
-        boxes = self._boxes
-        axes = (slice(None), *(None,) * np.ndim(span.lower))
-        lower, upper = span.lower.astype(np.float32), span.upper.astype(np.float32)  # as arguments are rounded
-        over, up_to = boxes.lower[leaves, column][axes], boxes.upper[leaves, column][axes]
-        ends = np.where(self._rises[leaves, column][axes], np.maximum(lower, over), np.minimum(upper, up_to))
-        said: Floats = ends * boxes.slopes[leaves, column][axes]
-        said[(lower > up_to) | (upper <= over)] = NO_LEAF
-        return said
+    def _met(self, features: Spans, leaves: Places) -> tuple[Places, Bools]:
+        """The leaves that any box meets, and which boxes meet each, (leaves, ...): the quick questions come first."""
+        masks: dict[tuple[int, ...], Bools] = {}
+        for j in sorted(range(len(features)), key=lambda j: features[j].lower.size):
+            lower, upper = _single(features[j])
+            beyond = lower > _along(self.boxes.upper[leaves, j], features)
+            met = ~(beyond | (upper <= _along(self.boxes.lower[leaves, j], features)))
+            kept = met.reshape(len(leaves), -1).any(axis=1)
+            if not kept.all():
+                leaves, met = leaves[kept], met[kept]
+                masks = {shape: mask[kept] for shape, mask in masks.items()}
+            shape = met.shape[1:]
+            masks[shape] = masks[shape] & met if shape in masks else met
+        return leaves, reduce(np.logical_and, sorted(masks.values(), key=np.size))
+
+    def _formulas(self, features: Spans, leaves: Places) -> Floats:
+        """The least of each leaf's formula where a box meets it, (leaves, ...); a sum over features, by their shape."""
+        boxes = self.boxes
+        low = _along(boxes.low[leaves], features)
+        if self._flat:
+            return low
+        sums: dict[tuple[int, ...], Floats] = {}
+        for j, span in enumerate(features):
+            lower, upper = _single(span)
+            least = np.maximum(lower, _along(boxes.lower[leaves, j], features))
+            most = np.minimum(upper, _along(boxes.upper[leaves, j], features))
+            rises = _along(self._rises[leaves, j], features)
+            part = np.where(rises, least, most) * _along(boxes.slopes[leaves, j], features)
+            shape = part.shape[1:]
+            sums[shape] = sums[shape] + part if shape in sums else part
+        total = reduce(np.add, sorted(sums.values(), key=np.size), _along(boxes.intercept[leaves], features))
+        clipped: Floats = np.minimum(np.maximum(total, low), _along(boxes.high[leaves], features))
+        return clipped
+
+
+def _along(values: NDArray[Any], features: Spans) -> NDArray[Any]:
+    """One value a leaf, (leaves,), with axes for the boxes."""
+    return values[(slice(None), *(None,) * features[0].lower.ndim)]
+
+
+def _single(span: Span) -> tuple[Floats, Floats]:
+    """Both ends in single precision, rounded as arguments are."""
+    return span.lower.astype(np.float32), span.upper.astype(np.float32)

@@ -19,7 +19,7 @@ from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
 
-EFFORT = 500_000  # comparisons of boxes and leaves in one check: about 1 ms, for most leaves are ruled out at once
+EFFORT = 300_000  # comparisons of boxes and leaves in one check: about 1 ms, for most leaves are ruled out at once
 CUT_AT_ONCE = 16  # boxes of a subgoal
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained

@@ -1,7 +1,7 @@
 """How fast the solvers come close to the optimum: gap to the best known against milliseconds, on one core.
 
 Chain solver, the paper's genetic algorithm and our differential evolution beside scipy's and, where installed, CMA-ES;
-all call the same objective: sequences of AGILO with its learned models.
+all call the same objective: sequences of AGILO with its learned models. Then how long proofs of the optimum take.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from rich.table import Table
 
 from executive.library import Models
 from models.runtime import load_robot
+from tools.benchmarks import certificates
 from tools.benchmarks.refine_cases import Case, cases
 from tools.benchmarks.refine_runners import Found, ours, runners
 
@@ -64,3 +65,5 @@ def run(console: Console, quick: bool) -> None:
         gaps = [f"{row[f'gap_pct_at_{moment}_ms']:.2f} %" for moment in MOMENTS_MS]
         table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
     console.print(table)
+    models = Models(*load_robot("agilo"))
+    certificates.show(console, models, cases(models, 3 if quick else 9))

@@ -27,9 +27,9 @@ class Case:
     variables: tuple[Variable, ...]
     starts: tuple[Mapping[int, float], ...] = ()
 
-    def objective(self, models: Models) -> SequenceObjective:
-        """The sequence's predicted cost with the default settings."""
-        return SequenceObjective(self.actions, self.variables, models, RefinementSettings())
+    def objective(self, models: Models, settings: RefinementSettings | None = None) -> SequenceObjective:
+        """The sequence's predicted cost, with the default settings if none are given."""
+        return SequenceObjective(self.actions, self.variables, models, settings or RefinementSettings())
 
 
 def cases(models: Models, count: int) -> dict[str, list[Case]]:

@@ -1,0 +1,131 @@
+"""How long proofs take: CPU time until a choice is certified within 5 % and 1 % of the models' optimum.
+
+Beside the shipped objective (mean and spread of a bag, displaced arrivals) the same for the first tree of each bag.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from executive.budget import CheckBudget
+from executive.library import Array, Models
+from executive.refinement.certificate import Certificate, certificate
+from executive.refinement.selection import solver_for
+from executive.refinement.settings import RefinementSettings
+from models.features import SPACES
+from models.leaf_bounds import LeafBounds
+from models.model_bounds import ModelBounds
+from models.tree_boxes import TreeBoxes
+from tools.benchmarks.refine_cases import Case
+
+GAPS_PCT = (5.0, 1.0)
+LIMIT_S = 2.0
+SHIPPED = RefinementSettings(certify_checks=10**6)
+SINGLE = replace(SHIPPED, k_std=0.0, arrival_spread=())
+
+
+@dataclass(frozen=True, slots=True)
+class OneTree:
+    """The first tree of a bag as a model of its own."""
+
+    space: str
+    boxes: TreeBoxes
+    bounds: ModelBounds
+
+    def predict(self, arguments: Array) -> tuple[Array, Array]:
+        """Mean, and no spread."""
+        boxes, features = self.boxes, SPACES[self.space](arguments)
+        inside: NDArray[np.bool_] = np.ones((len(features), len(boxes.low)), bool)
+        for j in range(features.shape[1]):
+            inside &= (features[:, j, None] > boxes.lower[:, j]) & (features[:, j, None] <= boxes.upper[:, j])
+        leaf = np.argmax(inside, axis=1)
+        said = (features * boxes.slopes[leaf]).sum(axis=1) + boxes.intercept[leaf]
+        return np.clip(said, boxes.low[leaf], boxes.high[leaf]).astype(np.float64), np.zeros(len(features))
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """CPU milliseconds until each of GAPS_PCT was proven, inf where it was not; the last gap; the longest check."""
+
+    until_ms: tuple[float, ...]
+    gap_pct: float
+    longest_ms: float
+
+
+def rows(models: Models, tasks: dict[str, list[Case]]) -> list[dict[str, object]]:
+    """One row for each case with the shipped objective, and with single trees where there is no success model."""
+    table = []
+    for name, cases in tasks.items():
+        table.append(_row(name, "shipped", [proof(case, models, SHIPPED) for case in cases]))
+        if not any(action.action.success_model for action in cases[0].actions):
+            single = Models({path: _first_tree(model) for path, model in models.durations.items()}, {})
+            table.append(_row(name, "single tree", [proof(case, single, SINGLE) for case in cases]))
+    return table
+
+
+def proof(case: Case, models: Models, settings: RefinementSettings) -> Proof:
+    """Search for a choice, then prove how good it is."""
+    objective = case.objective(models, settings)
+    solver = solver_for(objective, settings, np.random.default_rng(0), objective.vectors(case.starts))
+    solver.advance(CheckBudget(settings.checks_max))
+    assert solver.best is not None, "the cases have valid choices"
+    made = certificate(objective, solver.best, settings)
+    assert isinstance(made, Certificate), "AGILO's models are trees"
+    until, longest = dict.fromkeys(GAPS_PCT, np.inf), 0.0
+    began = before = time.process_time()
+    while not made.finished and before - began < LIMIT_S:
+        made.advance(CheckBudget(1))
+        now = time.process_time()
+        longest, before = max(longest, now - before), now
+        for gap in GAPS_PCT:
+            if made.gap_pct is not None and made.gap_pct <= gap + 1e-6:
+                until[gap] = min(until[gap], 1e3 * (now - began))
+    return Proof(tuple(until.values()), made.gap_pct if made.gap_pct is not None else np.inf, 1e3 * longest)
+
+
+def _first_tree(model: object) -> OneTree:
+    bounds: ModelBounds = model.bounds  # type: ignore[attr-defined]
+    boxes = bounds.lowest.boxes
+    end = int(boxes.first[1]) if len(boxes.first) > 1 else len(boxes.low)
+    parts = (getattr(boxes, name)[:end] for name in ("lower", "upper", "slopes", "intercept", "low", "high"))
+    alone = TreeBoxes(boxes.first[:1], *parts)
+    return OneTree(bounds.space, alone, ModelBounds(bounds.space, LeafBounds(alone), LeafBounds(alone.negated())))
+
+
+def _row(case: str, objective: str, proofs: Sequence[Proof]) -> dict[str, object]:
+    until = np.median([one.until_ms for one in proofs], axis=0)
+    reached = np.mean([np.isfinite(one.until_ms) for one in proofs], axis=0)
+    return {
+        "case": case,
+        "objective": objective,
+        "n": len(proofs),
+        **{f"median_ms_to_{gap:g}_pct": float(ms) for gap, ms in zip(GAPS_PCT, until, strict=True)},
+        **{f"share_within_{gap:g}_pct": float(share) for gap, share in zip(GAPS_PCT, reached, strict=True)},
+        "median_gap_pct": float(np.median([one.gap_pct for one in proofs])),
+        "worst_gap_pct": float(np.max([one.gap_pct for one in proofs])),
+        "longest_check_ms": float(np.max([one.longest_ms for one in proofs])),
+    }
+
+
+def show(console: Console, models: Models, tasks: dict[str, list[Case]]) -> None:
+    """Print the table."""
+    table = Table("case", "objective", title="certificate: CPU time of the proof, median; gap left after 2 s")
+    for name in ("to 5 %", "to 1 %", "within 1 %", "gap", "worst gap", "longest check"):
+        table.add_column(name, justify="right")
+    for row in rows(models, tasks):
+        ms = [_milliseconds(row[f"median_ms_to_{gap:g}_pct"]) for gap in GAPS_PCT]
+        gaps = [f"{row[name]:.1f} %" for name in ("median_gap_pct", "worst_gap_pct")]
+        share = f"{row['share_within_1_pct']:.0%}"
+        table.add_row(str(row["case"]), str(row["objective"]), *ms, share, *gaps, f"{row['longest_check_ms']:.1f} ms")
+    console.print(table)
+
+
+def _milliseconds(value: object) -> str:
+    return f"{value:.0f} ms" if isinstance(value, float) and np.isfinite(value) else "not proven"
