@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from models.features import Quantity
 from models.linear_tree import LinearTree
 from models.split_tree import LEAF, SplitTree
+from models.tree_boxes import TreeBoxes
 
 DEGREES = 180 / np.pi
 TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term
@@ -72,7 +73,7 @@ def conditions(box: Bounds, quantities: Sequence[Quantity]) -> str:
     return " and ".join(said) or "in all cases"
 
 
-def formula(tree: LinearTree, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
+def formula(tree: LinearTree | TreeBoxes, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
     """The linear formula of a leaf in its unit, slopes of angles per degree, and the range that it is kept in."""
     terms = []
     for quantity, slope in zip(quantities, tree.slopes[leaf].tolist(), strict=True):
@@ -81,7 +82,8 @@ def formula(tree: LinearTree, leaf: int, quantities: Sequence[Quantity], of: str
             sign = "-" if shown < 0 else "+"
             terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
     start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
-    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}, ± {tree.spread[leaf]:.2f} {of}]"
+    spread = "" if tree.spread is None else f", ± {tree.spread[leaf]:.2f} {of}"
+    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{spread}]"
 
 
 def _value(value: float, quantity: Quantity) -> str:

@@ -7,13 +7,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from models.card import UNITS, Card
-from models.runtime import ZOO, OnnxBenefit, OnnxDuration, OnnxModel, load_model
+from models.card import Card
+from models.runtime import ZOO, OnnxBenefit, OnnxModel, load_model
 from schemas.errors import UsageError
 
 EPILOG = """\
@@ -21,6 +20,7 @@ examples:
   tailor models list
   tailor models show agilo/goToPose/duration
   tailor models rules agilo/goToPose
+  tailor models rules agilo/goToPose --of bag:3
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
 
@@ -36,7 +36,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("verb", choices=VERBS, help="what to do")
     parser.add_argument("models", nargs="*", metavar="MODEL", help="which models (default: all)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
-    parser.add_argument("--data", type=Path, help="plot: folder with the data sets (default: data/ROBOT)")
+    parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--of", metavar="TREE", help="rules: one of the model's own trees, as bag:3 or forest:1")
+    which.add_argument("--distilled", action="store_true", help="rules: a tree that stands for all (default if many)")
     parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
     parser.add_argument("--json", action="store_true", help="list, show, check: print JSON")
 
@@ -53,8 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
         for model in loaded:
             _show(model.card, arguments.json)
     elif arguments.verb == "rules":
-        for model in loaded:
-            print(rules(model))
+        for name, model in zip(names, loaded, strict=True):
+            print(_rules(model, name, arguments))
     else:
         from tools.figures import learned
 
@@ -66,23 +69,13 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def rules(model: OnnxModel) -> str:
-    """A model as rules: those of a tree that says what the model says."""
+def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
+    from tools.model_rules import DISTILLED, rules, tree_number
+
     if isinstance(model, OnnxBenefit):
         return _benefit_rules(model.card)
-    from models.asking import distilled_duration, distilled_success, space_of
-    from models.rules import duration_rules, success_rules
-
-    quantities, rng = space_of(model.card).features, np.random.default_rng(0)
-    if isinstance(model, OnnxDuration):
-        tree, off = distilled_duration(model, rng)
-        unit = UNITS[model.card["kind"]]
-        said, differ = duration_rules(tree, quantities, unit), f"{off:.3f} {unit}"
-    else:
-        splits, success, off = distilled_success(model, rng)
-        said, differ = success_rules(splits, success, quantities), f"{100 * off:.1f} %"
-    name = "/".join(model.card[key] for key in ("robot", "action", "kind"))
-    return "\n\n".join([f"{name}: {len(said)} rules, which differ from the model by {differ} on average", *said])
+    tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
+    return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
 
 
 def _benefit_rules(card: Card) -> str:

@@ -55,8 +55,20 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
 def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert main(["models", "rules", "agilo/goToPose"]) == 0
     first, _, rule, *_ = capsys.readouterr().out.splitlines()
-    assert "rules, which differ from the model by" in first
+    assert "rules of a tree distilled from it, which differ from the model by" in first
+    assert "R² 0.9" in first
     assert rule.startswith("if ")
+
+
+@pytest.mark.parametrize("name", ["agilo/goToPose", "agilo/approachBall/success"])
+def test_rules_of_any_single_tree_can_be_asked_for(name: str, capsys) -> None:
+    assert main(["models", "rules", name, "--of", "bag:3"]) == 0
+    first, _, rule, then, *_ = capsys.readouterr().out.splitlines()
+    assert "rules of its tree 3, which differ from the model by" in first
+    assert rule.startswith("if ")
+    assert then.startswith(("then time =", "then success in"))
+    assert main(["models", "rules", name, "--of", "bag:99"]) == 2
+    assert "there is no tree 99" in capsys.readouterr().err
 
 
 def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monkeypatch, capsys) -> None:
