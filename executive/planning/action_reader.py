@@ -102,6 +102,8 @@ def _when(form: Form, scope: Scope, durative: bool) -> tuple[Effect, ...]:
     given = form.items[1]
     condition = read_timed(given, scope) if durative else (Condition(read_formula(given, scope)),)
     inner = _effects(form.items[2], scope, durative)
+    if durative and any(effect.when == "start" for effect in inner) and any(c.when != "start" for c in condition):
+        raise form.place.unsupported("an effect at start under a condition over all or at end")
     return tuple(replace(effect, condition=condition + effect.condition) for effect in inner)
 
 

@@ -277,6 +277,11 @@ def domain_with(part):
         ("(:process x)", "4:2", "a process"),
         ("(:constraints (p))", "4:2", "a trajectory constraint"),
         ("(:durative-action a :duration (= ?duration 1) :effect (over all (p)))", "4:56", "an effect over all"),
+        (
+            "(:durative-action a :duration (= ?duration 1) :effect (when (at end (p)) (at start (p))))",
+            "4:56",
+            "an effect at start under a condition over all or at end",
+        ),
     ],
 )
 def test_what_is_not_supported_is_refused_by_name_with_its_place(part, place, feature):
