@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
+import joblib
 import numpy as np
 import pytest
 
 from models.episodes import read_data_set
 from schemas.errors import UsageError
+from tests import far_backend
 from tools import gathering
 from tools.gathering import EVALUATION_STREAM, PART, Work
 from tools.main import main
@@ -82,6 +84,23 @@ def test_what_is_not_a_data_set_is_told(tmp_path: Path) -> None:
     (tmp_path / "manifest.json").write_text('{"robot": 1}')
     with pytest.raises(UsageError, match="not a manifest"):
         read_data_set(tmp_path)
+
+
+def test_another_joblib_backend_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    far_backend.register()
+    sent = far_backend.FarBackend.sent
+    with joblib.parallel_config(far_backend.NAME):
+        assert gather(tmp_path, "--jobs", "2") == 0
+    assert far_backend.FarBackend.sent == sent + 2  # both parts were made elsewhere
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+
+
+def test_dask_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="pip install 'dask[distributed]' to test it")
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with cluster, distributed.Client(cluster), joblib.parallel_config("dask"):
+        assert gather(tmp_path, "--jobs", "2") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
 
 
 @pytest.mark.slow
