@@ -1,0 +1,63 @@
+"""In a whole run left-over budget proves how near subgoals are to the models' optimum; a replay proves the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from executive import domains
+from executive.composition import Order, compose
+from executive.core.context import Settings
+from executive.refinement.settings import RefinementSettings
+from executive.replay import replay
+from schemas.messages import RefinementReport, Subgoals
+from tools.episodes import SENDER, run_episode
+from tools.sim import make_world
+
+
+def told(outputs, kind):
+    return [output.message for tick in outputs for output in tick if isinstance(output.message, kind)]
+
+
+def run(certify_checks: int, checks: int = 12):
+    """The begin of a run past waypoints: context, ticks as given, and what the core answered."""
+    refinement = replace(RefinementSettings(), certify_checks=certify_checks)
+    context = compose(Order("soccer", "waypoints", Settings(seed=3, refinement=refinement)), SENDER)
+    ticks, outputs = [], []
+
+    def witness(tick, said):
+        ticks.append(tick)
+        outputs.append(said)
+
+    _, start = domains.seeded_scenario("soccer", "waypoints", 3)
+    body = make_world(context.domain.robot, "waypoints", 3).body
+    run_episode(context, body, start, 3, limit_s=5.0, checks=checks, witness=witness)
+    return context, ticks, outputs
+
+
+@pytest.fixture(scope="module")
+def certified():
+    return run(300)
+
+
+def test_gap_to_the_optimum_is_told_once_the_search_is_finished(certified):
+    reports = told(certified[2], RefinementReport)
+    proven = [report for report in reports if report.gap_pct >= 0]
+    assert proven
+    assert all(report.finished for report in proven)
+    assert proven[-1].gap_pct <= 5.0
+    gaps = [report.gap_pct for report in proven if report.checks == proven[0].checks]
+    assert gaps == sorted(gaps, reverse=True)
+
+
+def test_replay_of_the_same_checks_tells_the_same_gaps(certified):
+    context, ticks, outputs = certified
+    again = [said for _, said in replay(context, iter(ticks))]
+    assert told(again, RefinementReport) == told(outputs, RefinementReport)
+
+
+def test_proof_changes_no_decision(certified):
+    _, _, unproven = run(0)
+    assert told(unproven, Subgoals) == told(certified[2], Subgoals)
+    assert all(report.gap_pct == -1.0 for report in told(unproven, RefinementReport))
