@@ -24,6 +24,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
     "benefit": ("tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
+    "energy": ("tools.evaluations.energy", "time against energy: what a joule's worth in seconds changes"),
     "figure1": ("tools.evaluations.figure1", "paths, greedy and refined, and how smooth actions pass over"),
     "figure11": ("tools.evaluations.figure11", "durations over the angle of approach, predicted and simulated"),
     "figure15": ("tools.evaluations.figure15", "where an asserted subgoal may lie, and the runs without and with it"),
@@ -96,7 +97,7 @@ def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[
     parsed = [(name, *_parsed(name, flags)) for name in names]
     unknown = [rest for *_, rest in parsed]
     needed = all if everything else any
-    nobodys = [flag for flag in flags if needed(flag in rest for rest in unknown)]
+    nobodys = [group[0] for group in _groups(flags) if needed(group[0] in rest for rest in unknown)]
     if nobodys:
         raise UsageError(f"unknown: {' '.join(nobodys)} (`tailor evaluate NAME --help` tells an evaluation's flags)")
     chosen = []
@@ -109,11 +110,19 @@ def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[
     return chosen
 
 
+def _groups(flags: list[str]) -> list[list[str]]:
+    """Each flag with its values; words before the first flag are one group, too."""
+    starts = [i for i, word in enumerate(flags) if i == 0 or word.startswith("--")]
+    return [flags[a:b] for a, b in itertools.pairwise([*starts, len(flags)])]
+
+
 def _parsed(name: str, flags: list[str]) -> tuple[Any, argparse.Namespace, list[str]]:
     module = importlib.import_module(EVALUATIONS[name][0])
     parser = argparse.ArgumentParser(prog=f"tailor evaluate {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
-    settings, unknown = parser.parse_known_args(flags)
+    groups = _groups(flags)
+    unknown = [group[0] for group in groups if group[0] in parser.parse_known_args(group)[1]]
+    settings = parser.parse_args([word for group in groups if group[0] not in unknown for word in group])
     if settings.domain and hasattr(settings, "robot"):
         settings.robot = domains.load(settings.domain).robot
     return module, settings, unknown
