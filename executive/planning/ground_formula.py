@@ -105,7 +105,7 @@ def ground(formula: Formula, binding: Binding, world: World, facts: Facts, posit
     facts.spend()
     match formula:
         case Atom(predicate, terms):
-            fact = (predicate, *(binding.get(term, term) for term in terms))
+            fact = (predicate, *[binding.get(term, term) for term in terms])
             if predicate in world.static:
                 return TRUE if (fact in world.facts) == positive else FALSE
             return facts.literal(fact, positive)
@@ -124,6 +124,9 @@ def ground(formula: Formula, binding: Binding, world: World, facts: Facts, posit
 
 def bindings(variables: tuple[Typed, ...], binding: Binding, world: World) -> Iterator[Binding]:
     """All ways to extend a binding by objects for the variables."""
+    if not variables:
+        yield binding
+        return
     names = [variable.name for variable in variables]
     for objects in itertools.product(*(world.choices(variable) for variable in variables)):
         yield {**binding, **dict(zip(names, objects, strict=True))}

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from executive.planning.orderings import GOAL, INITIAL, Lasting
 
 UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
+_FAR = UNBOUNDED // 2  # as good as unbounded
 Row = tuple[int, ...]
 _FREE: Row = (UNBOUNDED, UNBOUNDED)  # the bounds of a new step's start and end to what does not touch them
 
@@ -51,7 +52,7 @@ class TemporalNetwork(NamedTuple):
         rows = [first, *[row + _FREE for row in self.rows[1:]], *own]
         # only the initial state comes before the step: others are bound to it by way of the start of all, if at all
         for other, row in enumerate(rows):
-            if other != INITIAL and row[INITIAL] < UNBOUNDED // 2:
+            if other != INITIAL and row[INITIAL] < _FAR:
                 rows[other] = _through(row, row[INITIAL], first)
                 if other < start:
                     late[other] = _late(rows[other], other)
@@ -90,13 +91,11 @@ def _through(row: Row, reach: int, via: Row) -> Row:
 
 
 def _bound(value: int) -> int | None:
-    return value if value < UNBOUNDED // 2 else None
+    return value if value < _FAR else None
 
 
 def _late(row: Row, node: int) -> int:
     """The nodes that cannot be a tick or more before this one; the goal is after all."""
-    mask = 1 << GOAL
-    for other, bound in enumerate(row):
-        if bound < 1:
-            mask |= 1 << other
-    return mask if node != GOAL else 1 << GOAL
+    if node == GOAL:
+        return 1 << GOAL
+    return sum([1 << other for other, bound in enumerate(row) if bound < 1 and other != GOAL], 1 << GOAL)
