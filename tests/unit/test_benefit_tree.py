@@ -1,5 +1,6 @@
 """Benefit trees are learned reproducibly, checked before use, named in provenance, and can be switched off."""
 
+import argparse
 import dataclasses
 import json
 import shutil
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from executive.composition import Order, compose, load_models, provenance, recompose
 from executive.core.context import Settings
@@ -19,7 +21,8 @@ from models.benefit_trees import LEARNERS
 from models.card import card_path, read_card, write_card
 from schemas.errors import UsageError
 from schemas.messages import RefinementReport
-from tools import goldens
+from tools import goldens, train
+from tools.evaluations.outcome import Outcome
 from tools.main import main
 from tools.recorded_run import RecordedRuns
 from tools.verify import verify
@@ -103,6 +106,37 @@ def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
     assert "fresh ones judge" in capsys.readouterr().err
 
 
+def made_up(seed: int, variant: str, greedy_s: float, refined_s: float, situation: np.ndarray) -> Outcome:
+    duration_s = greedy_s if variant == "h1" else refined_s
+    told = (("goToPose", True, 2.0), (KIND[0], False, 3.0), (KIND[1], False, 5.0))
+    seen = tuple(situation) if variant == "h2" else ()
+    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (), foreseen=told,
+                   situation=seen)  # fmt: skip
+
+
+def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes(tmp_path, monkeypatch, capsys) -> None:
+    known, ran = pairs(), []
+
+    def run_all(task, variants, seeds, jobs, store, title):
+        ran.extend(variants)
+        rows = list(zip(seeds, known.greedy_s, known.refined_s, known.situations, strict=True))
+        return {v.name: {row[0]: made_up(row[0], v.name, *row[1:]) for row in rows} for v in variants}
+
+    monkeypatch.setattr("tools.evaluations.trials.run_all", run_all)
+    shutil.copytree(runtime.ZOO / "agilo", tmp_path / "agilo")
+    words = ["agilo", "--episodes", "300", "--zoo", str(tmp_path), "--learner", "tree"]
+    assert main(["train-benefit", *words]) == 0
+    assert "slower episodes" in capsys.readouterr().out
+    assert [(v.refinement.horizon, v.refinement.benefit_gate) for v in ran] == [(1, False), (2, False)]
+    tree = load_models("agilo", str(tmp_path), gated=True).benefit
+    assert tree.sequences == {KIND}  # the detour is left out
+    assert tree.card["episodes"]["seed"] < tree.card["episodes"]["seed"] + 300 <= 1_000_000
+    assert "refinement/benefit" not in tree.card["models"]
+    again = tree.card["command"].split()[1:]
+    assert main([*again, "--zoo", str(tmp_path)]) == 0  # the card's command makes the same bytes
+    assert load_models("agilo", str(tmp_path), gated=True).benefit.card["sha256"] == tree.card["sha256"]
+
+
 def test_a_published_tree_says_what_its_learner_said(zoo: Path, trained: TrainedBenefit) -> None:
     tree = load_models("agilo", str(zoo), gated=True).benefit
     fresh = pairs(1).situations
@@ -160,6 +194,13 @@ def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
     assert withdraw_benefit(zoo, "agilo")
     assert load_models("agilo", str(zoo), gated=True).benefit is None
     assert not withdraw_benefit(zoo, "agilo")
+
+
+def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(zoo: Path) -> None:
+    console = Console(record=True, width=200)
+    train._withdraw(argparse.Namespace(zoo=zoo, robot="agilo"), console)
+    assert not tree_of(zoo).exists()
+    assert "`tailor train-benefit agilo` makes it" in console.export_text()
 
 
 def gated_order(zoo: Path, gate: bool = True) -> Order:
