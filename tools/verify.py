@@ -1,6 +1,7 @@
 """Feed a recording's inputs and granted checks through today's core and compare every output, bit for bit.
 
 With --output, what today's core says is written as a recording of its own; `tailor compare` shows the two side by side.
+Most of the time goes into proving how near every choice is to the optimum: --without-proofs leaves out that alone.
 """
 
 from __future__ import annotations
@@ -9,7 +10,6 @@ import argparse
 import dataclasses
 import json
 import time
-from collections import defaultdict
 from dataclasses import dataclass
 from itertools import tee
 from pathlib import Path
@@ -17,16 +17,12 @@ from typing import TYPE_CHECKING
 
 from executive.composition import recompose
 from executive.core.context import Context
-from executive.core.state import Output
 from executive.replay import replay
 from runtime.machine import contrast, machine, same_kind
-from runtime.recording import Recorded
-from schemas.codec import encode
 from schemas.errors import UsageError
-from schemas.messages import Message
-from schemas.topics import key_of
-from tools.differences import ROUNDING, Difference, first_field, rounding_apart
-from tools.recorded_run import RecordedRun, RecordedRuns, decoded
+from tools.differences import ROUNDING, Difference
+from tools.recorded_run import RecordedRun, RecordedRuns
+from tools.run_comparison import RunComparison, without_proofs
 
 if TYPE_CHECKING:
     from tools.run_tape import RunTape
@@ -55,6 +51,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recording", type=Path, help="an MCAP file of `tailor record` or `tailor up --record`")
     parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
     parser.add_argument(
+        "--without-proofs", action="store_true", help="do not prove choices again, so do not compare gap_pct; faster"
+    )
+    parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="write what today's core says, as a recording of its own"
     )
 
@@ -63,7 +62,9 @@ def run(arguments: argparse.Namespace) -> int:
     """0 when every run in the file is equal, 1 when one differs, 2 when the file cannot be verified."""
     runs = RecordedRuns(arguments.recording)
     if arguments.output is None:
-        verdicts = [verify(runs, found, recompose(found.provenance)) for found in runs.runs]
+        verdicts = [
+            verify(runs, found, recompose(found.provenance), proofs=not arguments.without_proofs) for found in runs.runs
+        ]
     else:
         verdicts = [_verify_onto(arguments.output, runs)]
     if arguments.json:
@@ -74,7 +75,9 @@ def run(arguments: argparse.Namespace) -> int:
     return int(any(verdict.difference for verdict in verdicts))
 
 
-def verify(runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape | None = None) -> Verdict:
+def verify(
+    runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape | None = None, proofs: bool = True
+) -> Verdict:
     """Compare one run with what today's core makes of it, up to the first difference.
 
     Rounding is forgiven only if the recording comes from another kind of machine (`runtime.machine`).
@@ -84,11 +87,12 @@ def verify(runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape
       run: One of its runs.
       context: What today's core is given, as `recompose` makes it.
       tape: Where to write what it says; it then goes on to the end, whatever differs.
+      proofs: Whether to prove choices again and compare how near to the optimum they are.
     """
     here, there = machine(), run.provenance.get("machine", {})
     began = time.perf_counter()
-    comparison = _Comparison(run, context.domain.robot, exact=same_kind(there, here))
-    difference = None
+    comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
+    difference, context = None, context if proofs else without_proofs(context)
     ticks, again = tee(runs.ticks(run))
     for tick, (_, outputs) in zip(ticks, replay(context, again), strict=True):
         difference = difference or comparison.tick(tick.tick, outputs)
@@ -121,49 +125,6 @@ def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
         return verify(runs, run, context, tape)
     finally:
         tape.close()
-
-
-class _Comparison:
-    """What a run said against what is said today, message by message."""
-
-    def __init__(self, run: RecordedRun, robot: str, exact: bool) -> None:
-        self.ticks = self.compared = self.rounded = 0
-        self._run, self._robot, self._exact = run, robot, exact
-        self._taken: dict[str, int] = defaultdict(int)
-
-    def tick(self, tick: int, outputs: tuple[Output, ...]) -> Difference | None:
-        """The first difference in what is said in a tick."""
-        self.ticks = tick
-        for output in outputs:
-            key = key_of(output.topic, self._robot)
-            recorded, number = self._run.said.get(key, []), self._taken[key]
-            self._taken[key] += 1
-            if number >= len(recorded) and tick == self._run.ticks[-1].tick:
-                continue  # the recording ended within this tick
-            self.compared += 1
-            if number >= len(recorded):
-                return Difference(tick, key, "message", "none", str(output.message))
-            difference = self._message(tick, recorded[number], output.message)
-            if difference is not None:
-                return difference
-        return None
-
-    def unsaid(self) -> Difference | None:
-        """A recorded message that today's core has not said by the end."""
-        key = next((key for key, messages in self._run.said.items() if len(messages) > self._taken[key]), None)
-        if key is None:
-            return None
-        return Difference(self.ticks, key, "message", f"number {self._taken[key] + 1}", "none")
-
-    def _message(self, tick: int, recorded: Recorded, today: Message) -> Difference | None:
-        if recorded.data == encode(today):
-            return None
-        then = decoded(recorded)
-        if not self._exact and rounding_apart(then, today):
-            self.rounded += 1
-            return None
-        field, old, new = first_field(then, today)
-        return Difference(tick, recorded.key, field, str(old), str(new))
 
 
 def told(verdict: Verdict) -> str:

@@ -20,7 +20,7 @@ from runtime.recording import open_recording
 from runtime.tape import ENCODING, Tape
 from schemas.codec import encode
 from schemas.errors import UsageError
-from schemas.messages import Provenance, VelocityCommand
+from schemas.messages import Provenance, RefinementReport, VelocityCommand
 from tests.e2e.bus_system import ROOT
 from tools import goldens
 from tools.main import main
@@ -121,6 +121,18 @@ def test_a_last_bit_is_forgiven_and_told_on_another_kind_of_machine(tmp_path, ca
 def test_more_than_rounding_is_a_difference_on_any_machine(tmp_path):
     path = rewritten(SOME, tmp_path / "more.mcap", nudged(lambda v: v + 1e-8, other_machine))
     assert verdict_of(path).difference is not None
+
+
+def test_without_proofs_all_else_is_compared(tmp_path, capsys):
+    def other_gap(message):
+        return replace(message, gap_pct=message.gap_pct + 1) if isinstance(message, RefinementReport) else None
+
+    gaps = str(rewritten(SOME, tmp_path / "gaps.mcap", other_gap))
+    assert main(["verify", gaps]) == 1
+    assert "gap_pct: recorded" in capsys.readouterr().out
+    assert main(["verify", "--without-proofs", gaps]) == 0
+    bit = str(rewritten(SOME, tmp_path / "bit.mcap", nudged(lambda v: math.nextafter(v, 9.0))))
+    assert main(["verify", "--without-proofs", bit]) == 1
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs glibc's switch for CPU features")
