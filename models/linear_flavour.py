@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from models.growing import Examples, Growth, Node, grow, quantile_bins
 from models.linear_tree import LinearTree
+from models.robust_fit import refit
 from models.scaling import Scale
 from models.tree_writing import Source, write_down
 
@@ -25,6 +26,7 @@ class TreeSettings:
     ridge: float = 1e-4  # on standardised features
     bins: int = 128  # candidate thresholds per feature
     clip: bool = True  # keep each leaf within what was seen in it
+    huber: float = 0.0  # leaves fitted robustly, see robust_fit.refit; 0: by least squares
 
 
 def fit_linear(
@@ -50,8 +52,20 @@ def fit_linear(
         size = _best_size(root, splits, z[held_out], features[held_out], y[held_out])
         if weights[held_out].any():  # those episodes are for fitting, too
             root, _ = grow(Examples.of(z, y, weights, bins, edges), replace(limits, max_leaves=size + 1))
+    if settings.huber > 0:
+        _refit_leaves(root, size, z, y, weights, settings)
     source = Source(features, targets, weights, scale)
     return write_down(root, size, source, smoothing=settings.smoothing, clip=settings.clip)
+
+
+def _refit_leaves(node: Node, size: int, z: Array, y: Array, weights: Array, settings: TreeSettings) -> None:
+    """Fit the leaves of the first `size` splits anew, robustly."""
+    if node.order is not None and node.order < size and node.children is not None:
+        for child in node.children:
+            _refit_leaves(child, size, z, y, weights, settings)
+        return
+    rows, start = node.rows, node.coefficients
+    node.coefficients = refit(z[rows], y[rows], weights[rows], start, settings.ridge, settings.huber)
 
 
 def _best_size(root: Node, splits: list[Node], z: Array, features: NDArray[np.float32], y: Array) -> int:

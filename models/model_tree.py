@@ -29,6 +29,7 @@ class _TreeRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         bins: int = 128,
         clip: bool = True,
         random_state: int | Generator | None = 0,
+        huber: float = 0.0,
     ) -> None:
         self.max_leaves = max_leaves
         self.min_rows = min_rows
@@ -37,10 +38,11 @@ class _TreeRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.bins = bins
         self.clip = clip
         self.random_state = random_state
+        self.huber = huber
 
     def _settings(self, rows: int) -> TreeSettings:
         min_rows = min(self.min_rows, max(2.0, rows / 16))  # tiny data sets may split, too
-        return TreeSettings(self.max_leaves, min_rows, self.smoothing, self.ridge, self.bins, self.clip)
+        return TreeSettings(self.max_leaves, min_rows, self.smoothing, self.ridge, self.bins, self.clip, self.huber)
 
     def _checked(self, X: Any, y: Any, groups: Any) -> tuple[NDArray[np.float32], Array, NDArray[np.int64]]:
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64)
@@ -59,7 +61,7 @@ class ModelTreeRegressor(_TreeRegressor):
       flavour: "linear" chooses splits by the error of linear fits on both sides and its size on held-out episodes; "m5"
         is Quinlan's M5' as in WEKA: splits by standard deviation, pruned by its error estimate, smoothed with k = 15.
       held_out: Share of episodes that choose the size of a linear tree; they are used for the final fit as well.
-      max_leaves, min_rows, smoothing, ridge, bins, clip: See `TreeSettings`; m5 uses `clip` alone.
+      max_leaves, min_rows, smoothing, ridge, bins, clip, huber: See `TreeSettings`; m5 uses `clip` alone.
       random_state: Seed or generator that draws the held-out episodes.
     """
 
@@ -74,8 +76,9 @@ class ModelTreeRegressor(_TreeRegressor):
         bins: int = 128,
         clip: bool = True,
         random_state: int | Generator | None = 0,
+        huber: float = 0.0,
     ) -> None:
-        super().__init__(max_leaves, min_rows, smoothing, ridge, bins, clip, random_state)
+        super().__init__(max_leaves, min_rows, smoothing, ridge, bins, clip, random_state, huber)
         self.flavour = flavour
         self.held_out = held_out
 
@@ -119,7 +122,7 @@ class BaggedModelTrees(_TreeRegressor):
 
     Args:
       trees: How many.
-      max_leaves, min_rows, smoothing, ridge, bins, clip: See `TreeSettings`.
+      max_leaves, min_rows, smoothing, ridge, bins, clip, huber: See `TreeSettings`.
       random_state: Seed or generator that draws the episodes.
     """
 
@@ -133,8 +136,9 @@ class BaggedModelTrees(_TreeRegressor):
         bins: int = 64,
         clip: bool = True,
         random_state: int | Generator | None = 0,
+        huber: float = 0.0,
     ) -> None:
-        super().__init__(max_leaves, min_rows, smoothing, ridge, bins, clip, random_state)
+        super().__init__(max_leaves, min_rows, smoothing, ridge, bins, clip, random_state, huber)
         self.trees = trees
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
