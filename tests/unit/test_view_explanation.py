@@ -17,7 +17,7 @@ from tests.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribb
 from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import explain, sequence_of
 from tools.viewer.longer_search import best_cost
-from tools.viewer.wording import nearness
+from tools.viewer.wording import durations, nearness
 
 SETTINGS = synthetic_run.SETTINGS
 
@@ -77,6 +77,19 @@ def test_a_risk_that_was_accepted_is_explained_and_not_called_invalid(refined) -
     strict = replace(SETTINGS, p_fail_max=0.0)
     said = explain(told(*refined), LIBRARY, MODELS, strict, np.random.default_rng(0))
     assert np.isfinite(said.chosen_cost)
+
+
+def test_where_energy_is_weighed_its_part_of_the_cost_is_told(refined) -> None:
+    energies = {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()}
+    models, weighed = replace(MODELS, durations=MODELS.durations | energies), replace(SETTINGS, energy_weight=0.5)
+    said = explain(told(*refined), LIBRARY, models, weighed, np.random.default_rng(0))
+    assert len(said.chosen_j) == len(said.chosen_s)
+    plain = explained(told(*refined))
+    assert said.chosen_cost == pytest.approx(plain.chosen_cost + 0.5 * sum(said.chosen_j))
+    assert fields_of(said)["energy"][0] == pytest.approx(list(said.chosen_j), abs=1e-3)
+    assert "energy" in [str(cell) for cell in durations(said).columns[0].cells]
+    assert plain.chosen_j == ()
+    assert "energy" not in fields_of(plain)
 
 
 def test_fields_are_json_even_where_everything_is_invalid(refined) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -65,8 +65,15 @@ def fields_of(explanation: Explanation) -> Fields:
         "chosen": [number(s) for s in explanation.chosen_s],
         "greedy": [number(s) for s in explanation.greedy_s],
         "cost": [number(explanation.chosen_cost), number(explanation.greedy_cost)],
+        **(
+            {"energy": [_numbers(explanation.chosen_j), _numbers(explanation.greedy_j)]} if explanation.chosen_j else {}
+        ),
         "parameters": [_parameter(parameter) for parameter in explanation.parameters],
     }
+
+
+def _numbers(values: Sequence[float]) -> list[float | None]:
+    return [number(value) for value in values]
 
 
 def _parameter(told: FreeParameter) -> Fields:

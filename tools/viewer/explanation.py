@@ -45,6 +45,8 @@ class Explanation:
     greedy_cost: float
     parameters: tuple[FreeParameter, ...]  # the free ones
     situations: tuple[Situation, ...] = ()  # one for each action, where its model says what it sees
+    chosen_j: tuple[float, ...] = ()  # predicted energies, where energy is weighed
+    greedy_j: tuple[float, ...] = ()
 
 
 def explain(
@@ -77,6 +79,8 @@ def explain(
         float(objective(lone[None])[0]),
         tuple(_parameter(sequence, objective, place, picked, lone, models, settings) for place in range(len(picked))),
         situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
+        _energies(objective, picked, settings),
+        _energies(objective, lone, settings),
     )
 
 
@@ -128,6 +132,12 @@ def accepted(
 
 def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, ...]:
     return tuple(float(said.duration_s[0]) for said in objective.predict(candidate))
+
+
+def _energies(objective: SequenceObjective, candidate: Array, settings: RefinementSettings) -> tuple[float, ...]:
+    if settings.energy_weight == 0:
+        return ()
+    return tuple(float(said.energy_j[0]) for said in objective.predict(candidate))
 
 
 def _parameter(

@@ -22,6 +22,9 @@ def durations(said: Explanation) -> Table:
     for name, chosen, greedy in zip(said.actions, said.chosen_s, said.greedy_s, strict=True):
         table.add_row(name, *_compared(chosen, greedy))
     table.add_row("sum", *_compared(sum(said.chosen_s), sum(said.greedy_s)), style="bold")
+    if said.chosen_j:
+        chosen_j, greedy_j = sum(said.chosen_j), sum(said.greedy_j)
+        table.add_row("energy", f"{chosen_j:.2f} J", f"{greedy_j:.2f} J", f"{chosen_j - greedy_j:+.2f} J")
     table.add_row("objective", *_compared(said.chosen_cost, said.greedy_cost))
     return table
 
