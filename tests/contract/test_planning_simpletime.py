@@ -6,7 +6,7 @@ the giving back away and finds no plan.
 
 import pytest
 
-from executive.planning import Settings, validate
+from executive.planning import FlawOrder, Settings, validate
 from tests.pddl_mutations import text_of, tree_of
 from tests.planning_problems import SHARED, load, read, solve
 
@@ -35,10 +35,13 @@ def with_durations(domain):
     return text_of(tree)
 
 
-@pytest.mark.parametrize("name", ["p02", "p03", "p04"])
-def test_rovers_give_the_channel_back(name):
+@pytest.mark.parametrize("order", ["LCFR", "MW-Loc"])
+@pytest.mark.parametrize("name", ["p01", "p02", "p03", "p04", "p05"])
+def test_rovers_give_the_channel_back(name, order):
+    if order == "MW-Loc" and name in ("p01", "p05"):
+        pytest.skip("MW-Loc needs 55 000 plans and more where LCFR, the least refinements of all flaws, needs 1100")
     domain, problem = read(with_durations((ROVERS / "domain.pddl").read_text()), (ROVERS / f"{name}.pddl").read_text())
-    result = solve(domain, problem, Settings(node_limit=10_000))
+    result = solve(domain, problem, Settings(flaw_orders=(FlawOrder(order),), node_limit=10_000))
     assert validate(result.plan, domain, problem) == ""
     assert sum(step.action[0].startswith("communicate") for step in result.plan.steps) > 1
 
