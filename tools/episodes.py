@@ -6,6 +6,7 @@ The same core as live, and on the robot's side the same driver and guard as on t
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -105,7 +106,7 @@ class _Link:
         self._robot, self._sensors, self._world, self._wire = domain.robot, domain.sensors, world, wire
         self._declared = declaration(domain.robot)
         self._driver = Driver(self._declared, EPOCH)
-        self._sequence = 0
+        self._sequences: Counter[str] = Counter()  # one for each topic, as publishers number
 
     def take(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
         """Hand the tick's commands and requests to the driver."""
@@ -123,7 +124,6 @@ class _Link:
         newest: dict[str, Reading] = {}
         for reading in self._world.advance(PERIOD_NS):
             newest[reading.topic] = reading
-        self._sequence += 1
         for topic in [topic for topic in newest if TOPICS[topic].source == "simulator"]:
             truth = newest.pop(topic).message
             episode.truth.append(truth)
@@ -137,7 +137,8 @@ class _Link:
 
     def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
         heard = message if self._wire is None else self._wire(message)
-        return Sample(key_of(topic, self._robot), heard, arrival_ns, self._sequence, DRIVER)
+        self._sequences[topic] += 1
+        return Sample(key_of(topic, self._robot), heard, arrival_ns, self._sequences[topic], DRIVER)
 
 
 def _note(episode: Episode, state: State, outputs: tuple[Output, ...], now_s: float) -> None:

@@ -55,7 +55,7 @@ def record(golden: Golden, path: Path) -> None:
     context = compose(order, SENDER)
     _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
     world = make_world(context.domain.robot, golden.scenario, golden.seed)
-    tape = RunTape(path, context, {**provenance(order, context), "machine": machine()})
+    tape = RunTape(path, context, {**provenance(order, context), "machine": machine()}, compact=True)
     recording = LockstepRecording(tape)
     run_episode(
         context,

@@ -29,9 +29,9 @@ from schemas.typesystem import ros_type
 class RunTape:
     """One executive's run; messages bear the times of its ticks."""
 
-    def __init__(self, path: Path, context: Context, made_of: Mapping[str, Any]) -> None:
-        """Create the file; `made_of` is the run's provenance."""
-        self._tape = Tape(path, {}, compact=True)
+    def __init__(self, path: Path, context: Context, made_of: Mapping[str, Any], compact: bool = False) -> None:
+        """Create the file; `made_of` is the run's provenance. Compact: without an index, half the size."""
+        self._tape = Tape(path, {}, compact)
         self._context = context
         self._said: Counter[str] = Counter()  # how many of each key, which numbers them
         self._provenance = json.dumps(made_of, sort_keys=True)
@@ -46,11 +46,11 @@ class RunTape:
           outputs: What the core answered.
         """
         now_ns, stamp_ns = tick.now_ns, self._context.stamp(tick.now_ns)
-        if tick.tick == 1:
-            self._say(TOPICS["provenance"].key, Provenance(stamp_ns, self._provenance), now_ns)
         for sample, data in zip(tick.inputs.samples, inputs, strict=True):
             origin = Origin(sample.sequence, 0, sample.sender)
             self._write(sample.key, type(sample.message), data, sample.arrival_ns, origin)
+        if tick.tick == 1:
+            self._say(TOPICS["provenance"].key, Provenance(stamp_ns, self._provenance), now_ns)
         for output in outputs:
             self._say(key_of(output.topic, self._context.domain.robot), output.message, now_ns)
         turn = Turn(now_ns, now_ns, tick.inputs.skipped)

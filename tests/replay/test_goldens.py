@@ -11,6 +11,7 @@ import sys
 from dataclasses import replace
 
 import pytest
+from rosbags.highlevel import AnyReader
 
 from executive.composition import recompose
 from runtime.attachment import Origin, pack
@@ -94,6 +95,13 @@ def test_there_are_no_other_goldens_and_all_together_they_are_small():
     files = set(goldens.FOLDER.iterdir())
     assert files == set(GOLDENS.values())
     assert sum(path.stat().st_size for path in files) < 600_000
+
+
+def test_a_golden_opens_in_another_reader_and_lacks_no_number():
+    with AnyReader([SOME]) as reader:
+        assert sum(1 for _ in reader.messages()) == sum(1 for _ in open_recording(SOME).messages()) > 1000
+    numbers = [recorded.sequence for recorded in open_recording(SOME).messages() if recorded.key == "agilo/odom"]
+    assert numbers == list(range(1, len(numbers) + 1))
 
 
 def test_a_changed_setting_fails_with_tick_field_and_both_values(tmp_path, capsys):
