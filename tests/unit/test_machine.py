@@ -13,6 +13,7 @@ CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "spans.py"]
 VARYING = {"arctan2", "arctan", "arcsin", "arccos", "tan", "exp", "expm1", "log", "log1p", "tanh", "power", "cbrt"}
 KNOWN = {
     "executive/actions/cubic.py",  # powers of Python's floats: libm's, which do not vary
+    "executive/planning/vhpop_reader.py",  # likewise
     "executive/refinement/breakpoints.py",  # the analytic solver's line of sight
     "executive/refinement/chain.py",  # solvers that only longer horizons or a setting ask for
     "executive/refinement/genetic.py",
