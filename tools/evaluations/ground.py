@@ -56,80 +56,87 @@ class Ground:
         return 100 * float(np.mean(np.isfinite(self.total_s)))
 
 
+@dataclass(frozen=True, slots=True)
+class _Decision:
+    """A detour and the action after it, with the subgoal that was chosen between them."""
+
+    sequence: ActionSequence
+    objective: SequenceObjective
+    chosen: Array  # (d,) free vector
+    limit: float
+
+    def place_of(self, quantity: str) -> int:
+        """Place of the subgoal's quantity in the free vector."""
+        variables = self.sequence.variables
+        return next(k for k, i in enumerate(self.objective.ids) if variables[i].quantity == quantity)
+
+    def pose(self, action: int, first: int) -> tuple[float, float, float]:
+        """x, y and heading in an action's parameters from `first` on: 0 where it starts, 4 where it leads."""
+        values = self.objective.values(self.chosen)
+        variables = (self.sequence.variables[i] for i in self.sequence.actions[action].variables[first : first + 3])
+        x, y, phi = (values.get(v.id, 0.0) if v.value is None else v.value for v in variables)
+        return x, y, phi
+
+
 def ground_of(message: Subgoals, context: Context) -> Ground | None:
     """The ground for the first decision of an episode; None unless it puts one detour before its next action."""
+    decision = _decision(message, context)
+    if decision is None:
+        return None
+    start, subgoal, goal = decision.pose(0, 0), decision.pose(0, 4), decision.pose(1, 4)
+    corners = np.array([start[:2], subgoal[:2], goal[:2]])
+    low, high = corners.min(axis=0) - MARGIN_M, corners.max(axis=0) + MARGIN_M
+    x, y = (np.arange(low[k], high[k], STEP_M) for k in (0, 1))
+    places = np.array(list(product(x, y)))
+    parts = -(-len(places) * (HEADINGS + 1) * (SPEEDS + 1) // ROWS_AT_ONCE)
+    tables = [_best(decision, part) for part in np.array_split(places, parts)]
+    first_s, second_s, success = (
+        np.concatenate(column).reshape(len(x), len(y)).T for column in zip(*tables, strict=True)
+    )
+    chosen_s = _durations_s(decision)
+    return Ground(x, y, first_s, second_s, success, decision.limit, subgoal, start[:2], goal, chosen_s)
+
+
+def _decision(message: Subgoals, context: Context) -> _Decision | None:
     sequence = sequence_of(message, context.domain.actions)
     if sequence is None or [action.asserted for action in sequence.actions[:2]] != [True, False]:
         return None
     settings = context.settings.refinement
     objective = SequenceObjective(sequence.actions[:2], sequence.variables, context.models, settings)
     chosen = objective.vector(chosen_values(message))
-    first, second = objective.stages
+    second = objective.stages[1]
     worst = float(second.predict(chosen[None, second.columns]).worst_failure[0])
-    limit = max(settings.p_fail_max, worst + 1e-9)  # where no subgoal kept the limit, the least was settled for
-    quantities = {sequence.variables[i].quantity: place for place, i in enumerate(objective.ids)}
-    named = {quantity: (low, high) for quantity, low, high in _corners(sequence, chosen, quantities)}
-    x, y = (np.arange(low, high, STEP_M) for low, high in (named["x"], named["y"]))
-    places = np.array(list(product(y, x)))
-    tables = [_best(objective, chosen, quantities, part, limit) for part in np.array_split(places, _parts(len(places)))]
-    first_s, second_s, success = (np.concatenate(parts).reshape(len(y), len(x)) for parts in zip(*tables, strict=True))
-    at, to = (_told(sequence, chosen, objective, k) for k in (0, 4))
-    goal = _told(_through(sequence), chosen, objective, 4)
-    took = [float(stage.predict(chosen[None, stage.columns]).duration_s[0]) for stage in (first, second)]
-    return Ground(x, y, first_s, second_s, success, limit, to, at[:2], goal, (took[0], took[1]))
+    # Where no subgoal kept the limit, the least risk was settled for.
+    return _Decision(sequence, objective, chosen, max(settings.p_fail_max, worst + 1e-9))
 
 
-def _through(sequence: ActionSequence) -> ActionSequence:
-    """The sequence from its second action on."""
-    return ActionSequence(sequence.actions[1:], sequence.variables, sequence.library)
+def _durations_s(decision: _Decision) -> tuple[float, float]:
+    """Predicted for the subgoal as chosen: to it, and from it."""
+    first, second = (float(said.duration_s[0]) for said in decision.objective.predict(decision.chosen))
+    return first, second
 
 
-def _told(
-    sequence: ActionSequence, chosen: Array, objective: SequenceObjective, first: int
-) -> tuple[float, float, float]:
-    """x, y and heading of the place that begins at a parameter of the first action."""
-    values = objective.values(chosen)
-    ids = sequence.actions[0].variables[first : first + 3]
-    told = [values.get(i, sequence.variables[i].value) for i in ids]
-    x, y, phi = (0.0 if value is None else float(value) for value in told)
-    return x, y, phi
-
-
-def _corners(sequence: ActionSequence, chosen: Array, quantities: dict[str, int]) -> list[tuple[str, float, float]]:
-    """The stretch of ground to look at: around start, subgoal and goal, within the subgoal's ranges."""
-    corners = []
-    for offset, quantity in enumerate(("x", "y")):
-        start, goal = (
-            sequence.variables[action.variables[place + offset]].value
-            for action, place in zip(sequence.actions[:2], (0, 4), strict=True)
-        )
-        seen = [value for value in (start, goal, float(chosen[quantities[quantity]])) if value is not None]
-        corners.append((quantity, min(seen) - MARGIN_M, max(seen) + MARGIN_M))
-    return corners
-
-
-def _parts(places: int) -> int:
-    return -(-places * (HEADINGS + 1) * (SPEEDS + 1) // ROWS_AT_ONCE)
-
-
-def _best(
-    objective: SequenceObjective, chosen: Array, quantities: dict[str, int], places: Array, limit: float
-) -> tuple[Array, Array, Array]:
+def _best(decision: _Decision, places: Array) -> tuple[Array, Array, Array]:
     """Both durations and the success at some places, each of shape (n,), by the best heading and speed."""
-    phi, v = quantities["phi"], quantities["v"]
-    headings = np.append(np.linspace(-np.pi, np.pi, HEADINGS, endpoint=False), chosen[phi])
-    speeds = np.append(np.linspace(objective.ranges.lower[v], objective.ranges.upper[v], SPEEDS), chosen[v])
-    ways = list(product(headings, speeds))
-    candidates = np.tile(chosen, (len(places) * len(ways), 1))
-    for quantity, column in (("y", 0), ("x", 1)):
-        candidates[:, quantities[quantity]] = np.repeat(places[:, column], len(ways))
-    for quantity, column in (("phi", 0), ("v", 1)):
-        candidates[:, quantities[quantity]] = np.tile(np.array(ways)[:, column], len(places))
+    candidates, objective = _candidates(decision, places), decision.objective
     first, second = (stage.predict(candidates[:, stage.columns]) for stage in objective.stages)
     failure = second.worst_failure.reshape(len(places), -1)
     first_s, second_s = (said.duration_s.reshape(len(places), -1) for said in (first, second))
-    total = np.where(failure <= limit, first_s + second_s, np.inf)
+    total = np.where(failure <= decision.limit, first_s + second_s, np.inf)
     rows, best = np.arange(len(places)), total.argmin(axis=1)
     valid = np.isfinite(total[rows, best])
     picked = [np.where(valid, seconds[rows, best], np.nan) for seconds in (first_s, second_s)]
     return picked[0], picked[1], 1 - failure.min(axis=1)
+
+
+def _candidates(decision: _Decision, places: Array) -> Array:
+    """Every place with every heading and speed, those that were chosen among them, shape (n * ways, d)."""
+    x, y, phi, v = (decision.place_of(quantity) for quantity in ("x", "y", "phi", "v"))
+    chosen, ranges = decision.chosen, decision.objective.ranges
+    headings = np.append(np.linspace(-np.pi, np.pi, HEADINGS, endpoint=False), chosen[phi])
+    speeds = np.append(np.linspace(ranges.lower[v], ranges.upper[v], SPEEDS), chosen[v])
+    ways = np.array(list(product(headings, speeds)))
+    candidates = np.tile(chosen, (len(places) * len(ways), 1))
+    candidates[:, [x, y]] = np.repeat(places, len(ways), axis=0)
+    candidates[:, [phi, v]] = np.tile(ways, (len(places), 1))
+    return candidates
