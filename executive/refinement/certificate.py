@@ -20,10 +20,10 @@ from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
 
 EFFORT = 300_000  # comparisons of boxes and leaves in one check: about 1 ms, for most leaves are ruled out at once
-CUT_AT_ONCE = 16  # boxes of a subgoal
+CUT_AT_ONCE = 8  # boxes of a subgoal
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
-FIRST_CUTS = 3  # before anything is bounded
+FIRST_CUTS = 4  # before anything is bounded
 PROBES = 32  # choices at which it is tried how much each parameter matters
 PROBE_STEP = 0.05  # of a range
 LEAST_CHANGE_S = 1e-3  # where none is seen
