@@ -111,6 +111,13 @@ def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, ca
     assert "Not run: second." in text
 
 
+def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
+    rows = [{"scenario": f"row-{k}"} for k in range(10)]
+    tell(Report("first", "The first one", rows), True, tmp_path)
+    text = write_overview(tmp_path, ["first"]).read_text()
+    assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
+
+
 def test_json_of_a_report_has_its_rows(tmp_path, capsys):
     main(["evaluate", "first", "--json", "--report", str(tmp_path)])
     said = json.loads(capsys.readouterr().out)

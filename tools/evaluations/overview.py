@@ -51,7 +51,8 @@ def _section(folder: Path, name: str) -> str:
     file = folder / f"{name}.json"
     said = json.loads(file.read_text())
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(file.stat().st_mtime))
-    rows: list[dict[str, Any]] = said["rows"][:ROWS_MAX]
+    every: list[dict[str, Any]] = said["rows"]
+    rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
     columns = [column for column in MAIN if any(column in row for row in rows)]
     cells = [["" if row.get(column) is None else shown(row[column]) for column in columns] for row in rows]
     heading = f'<h2><a href="{name}.html">{html.escape(said["title"])}</a></h2>'

@@ -28,11 +28,11 @@ def draw_ground(ground: Ground, ball: tuple[float, float], tracks: Sequence[Trac
       path: Where to; its folder is made.
     """
     figure = Figure(figsize=(15, 9.6), layout="constrained")
-    figure.suptitle(title)
+    figure.suptitle(f"{title}; blank: approachBall from there fails in more than {100 * ground.limit:.0f} %")
     axes = figure.subplots(2, 3)
     tables = (
         ("goToPose to the subgoal (s)", ground.first_s),
-        (f"approachBall from there (s); blank: fails in more than {100 * ground.limit:.0f} %", ground.second_s),
+        ("approachBall from there (s)", ground.second_s),
         ("sum (s)", ground.total_s),
     )
     for axis, (name, table) in zip(axes[0], tables, strict=True):
