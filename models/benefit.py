@@ -26,7 +26,7 @@ FOLDS = 8
 THRESHOLDS = tuple(round(0.1 + 0.0125 * k, 4) for k in range(41))  # 0.1 .. 0.6
 CLIP = 0.1  # a pair counts by its gain or loss, as a share of greedy's time, up to this: ball luck is worth no more
 BASE_STAKE = 0.005
-PRICE_PCT = 0.3  # of improvement, in points, that fewer slower episodes may cost
+PRICE_PCT = 0.1  # of improvement, in points, that fewer slower episodes may cost
 
 
 @dataclass(frozen=True, slots=True)

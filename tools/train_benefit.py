@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--episodes", type=int, default=1200, help="pairs to run (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=FIRST_SEED, help="of the first start (default: %(default)s)")
     parser.add_argument("--learner", default="forest", help="forest, tree (default: %(default)s)")
-    parser.add_argument("--price", type=float, default=0.3, metavar="POINTS", help=PRICE)
+    parser.add_argument("--price", type=float, default=0.1, metavar="POINTS", help=PRICE)
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
     parser.add_argument(
