@@ -5,6 +5,7 @@ import time
 import pytest
 
 from executive.planning import Settings, format_links, parse_plan, validate
+from executive.planning.lifted.bindings import Bindings
 from tests.planning_problems import own, read, solve
 
 LIFTED = Settings(ground=False)
@@ -122,6 +123,21 @@ def test_random_open_conditions_shuffle_lifted_steps_as_well():
     assert results[0] == results[1]
     assert len({result.generated for result in results}) > 1
     assert all(validate(result.plan, *own("kitchen-s1")) == "" for result in results)
+
+
+def test_thousands_of_variables_may_be_left_to_choose():
+    choices = {(f"?v{n}", 1): ["a", "b"] for n in range(1500)}
+    completed = Bindings().with_variables(choices).separated(("?v0", 1), ("?v1", 1)).completed()
+    assert (completed.value(("?v0", 1)), completed.value(("?v1", 1)), completed.value(("?v1499", 1))) == ("a", "b", "a")
+
+
+def test_variables_that_have_too_few_objects_to_differ_have_no_completion():
+    names = [("?x", 1), ("?y", 1), ("?z", 2)]
+    bindings = Bindings().with_variables({name: ["a", "b"] for name in names})
+    for left, right in ((0, 1), (0, 2), (1, 2)):
+        assert bindings.completed() is not None
+        bindings = bindings.separated(names[left], names[right])
+    assert bindings.completed() is None
 
 
 WIDE = "(define (domain wide) (:predicates (p ?a ?b ?c) (q)) (:action a :parameters (?x) :effect {}))"

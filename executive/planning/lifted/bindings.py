@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 Variable = tuple[str, int]  # parameter, step
@@ -143,20 +143,32 @@ class Bindings:
     # --- completion ------------------------------------------------------------------------------
     def completed(self) -> Bindings | None:
         """The bindings with an object for every variable, the first by name that fits; None when there is none."""
-        for variable, group in self._groups.items():
-            if group.value is None:
-                for name in sorted(group.choices):
-                    bound = self.unified([(variable, name)])
-                    done = bound.completed() if bound is not None else None
-                    if done is not None:
-                        return done
-                return None
-        return self
+        current: Bindings | None = self
+        tried: list[tuple[Bindings, Variable, Iterator[str]]] = []  # no recursion: there may be thousands of variables
+        while current is not None:
+            variable = next((v for v, group in current._groups.items() if group.value is None), None)
+            if variable is None:
+                return current
+            tried.append((current, variable, iter(sorted(current._groups[variable].choices))))
+            current = _next_bound(tried)
+        return None
 
     def lines(self) -> tuple[str, ...]:
         """The bindings as VHPOP prints them: a line per group, the one changed last first."""
         groups = dict.fromkeys(reversed(self._groups.values()))
         return tuple(_line(group) for group in groups)
+
+
+def _next_bound(tried: list[tuple[Bindings, Variable, Iterator[str]]]) -> Bindings | None:
+    """The next choice for the last variable tried; where it has none left, for the one before."""
+    while tried:
+        bindings, variable, names = tried[-1]
+        for name in names:
+            bound = bindings.unified([(variable, name)])
+            if bound is not None:
+                return bound
+        tried.pop()
+    return None
 
 
 def _line(group: Group) -> str:
