@@ -11,7 +11,6 @@ import math
 import platform
 import sys
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +28,8 @@ def machine() -> dict[str, str]:
         "cpu": " ".join((platform.machine(), *_features())),
         "libc": " ".join(platform.libc_ver()).strip(),
         "python": ".".join(map(str, sys.version_info[:2])),
-        "numpy": version("numpy"),
-        "onnxruntime": version("onnxruntime"),
+        "numpy": np.__version__,
+        "onnxruntime": _version("onnxruntime"),
     }
 
 
@@ -65,6 +64,16 @@ def arithmetic() -> str:
         digest.update(np.array(list(map(of_two, plain, other))).tobytes())
     digest.update(np.array([math.acos(value / 8) for value in plain]).tobytes())
     return digest.hexdigest()[:12]
+
+
+def _version(name: str) -> str:
+    """A package's version; of one that is loaded, without the costly look into its metadata."""
+    loaded = sys.modules.get(name)
+    if loaded is not None:
+        return str(loaded.__version__)
+    from importlib.metadata import version
+
+    return version(name)
 
 
 def _features() -> list[str]:
