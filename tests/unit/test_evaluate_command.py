@@ -123,3 +123,9 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
     said = json.loads(capsys.readouterr().out)
     assert said["rows"] == [{"scenario": "first", "n": 3}]
     assert json.loads((tmp_path / "first.json").read_text()) == said
+
+
+def test_what_is_no_number_is_null_in_json(capsys):
+    tell(Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None)
+    said = json.loads(capsys.readouterr().out, parse_constant=lambda word: pytest.fail(word))
+    assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]

@@ -93,6 +93,10 @@ def _tabled(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
     return lines[0], lines[1:]
 
 
-def _plain(row: Row) -> dict[str, Any]:
-    """A row that JSON can hold: what is no number becomes null."""
-    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row.items()}
+def _plain(value: Any) -> Any:
+    """What JSON can hold of rows and cells: what is no number becomes null."""
+    if isinstance(value, Mapping):
+        return {key: _plain(cell) for key, cell in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

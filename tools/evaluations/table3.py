@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     rows, plots = [], {}
     for name in scenarios:
         row, durations = evaluate(name, arguments)
-        rows += [row, *_of_other_models(name, arguments)]
+        rows += [row | ({"model": "as shipped"} if arguments.models else {}), *_of_other_models(name, arguments)]
         if arguments.report is not None:
             plots[f"{name}: greedy and refined"] = draw_pairs(*durations, arguments.report / f"table3-{name}.png")
     remarks = [f"paper, {name}: {SCENARIOS[name][3]}" for name in scenarios] + REMARKS
