@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from executive.library import Array, Models
 from executive.refinement.ranges import ranges_of
 from executive.refinement.sequence import InstantiatedAction, Variable
 from executive.refinement.settings import RefinementSettings
+from executive.refinement.spoiling import spoiling
 from executive.refinement.stage import Prediction, Stage
 
 
@@ -37,9 +39,10 @@ class SequenceObjective:
         self.ranges = ranges_of(variables[i] for i in used)
         places = {identifier: place for place, identifier in enumerate(used)}
         stages = []
-        for action in actions:
+        for action, following in zip_longest(actions, actions[1:]):
             shared = arrived & frozenset(action.variables)
-            stages.append(Stage(action, variables, places, shared, models, settings))
+            spoils = spoiling(action, following, variables)
+            stages.append(Stage(action, variables, places, shared, models, settings, spoils))
             arrived = frozenset(action.variables)
         self.stages = tuple(stages)
 

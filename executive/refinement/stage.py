@@ -15,6 +15,7 @@ from executive.library import Action, Array, DurationModel, Models, SuccessModel
 from executive.refinement.arrivals import displacements
 from executive.refinement.sequence import InstantiatedAction, Variable
 from executive.refinement.settings import RefinementSettings
+from executive.refinement.spoiling import Spoiling
 from schemas.errors import UsageError
 
 
@@ -24,7 +25,7 @@ class Prediction:
 
     duration_s: Array  # mean over the displaced arrivals
     spread_s: Array  # the model's standard deviation, likewise
-    failure: Array  # mean probability of failure
+    failure: Array  # mean probability of failure, the next action's on the way included
     worst_failure: Array  # the largest over the displaced arrivals
     energy_j: Array
 
@@ -48,6 +49,7 @@ class Stage:
       arrived: Variables that the action before ends at: only they are displaced.
       models: The loaded models.
       settings: Weights and limits.
+      spoils: The risk that this action, a detour, spoils the next one.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class Stage:
         arrived: frozenset[int],
         models: Models,
         settings: RefinementSettings,
+        spoils: Spoiling | None = None,
     ) -> None:
         ids = instance.variables
         self.columns: NDArray[np.intp] = np.unique([places[i] for i in ids if i in places]).astype(np.intp)
@@ -65,6 +68,7 @@ class Stage:
         self.action = instance.action
         self.models = models_of(instance.action, models, settings)
         self._settings = settings
+        self._spoils = spoils
         self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
         self._template = np.array([variables[i].value or 0.0 for i in ids])
         self.slots = np.array([j for j, i in enumerate(ids) if i in places], dtype=np.intp)
@@ -85,13 +89,16 @@ class Stage:
     def predict(self, rows: Array) -> Prediction:
         """What the models say for rows of shape (n, len(columns))."""
         count, ways = len(rows), len(self._displacements)
-        arguments = self.action.arguments(self.parameters(rows))
+        parameters = self.parameters(rows)
+        arguments = self.action.arguments(parameters)
         self.rows += count * ways
         mean, std = self.models.duration.predict(arguments)
         likely = worst = energy = np.zeros(count)
         if self.models.success is not None:
             failure = 1 - self.models.success.probability(arguments)
             likely, worst = _mean(failure, ways), failure.reshape(ways, count).max(axis=0)
+        if self._spoils is not None:
+            likely = 1 - (1 - likely) * (1 - _mean(self._spoils(parameters), ways))
         if self.models.energy is not None:
             energy = _mean(self.models.energy.predict(arguments)[0], ways)
         return Prediction(_mean(mean, ways), _mean(std, ways), likely, worst, energy)
@@ -100,7 +107,7 @@ class Stage:
         """Seconds, shape (n,), for rows of shape (n, len(columns)); +inf is INVALID."""
         said, settings = self.predict(rows), self._settings
         cost: Array = said.duration_s + settings.k_std * said.spread_s
-        if self.models.success is not None:
+        if self.models.success is not None or self._spoils is not None:
             cost += settings.risk_cost_s * said.failure
         if self.models.energy is not None:
             cost += settings.energy_weight * said.energy_j

@@ -14,6 +14,7 @@ from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
 from executive.domains.soccer import robot
 from executive.domains.soccer.behind import Behind
+from executive.domains.soccer.bumping import bump_risk
 from executive.library import Action, Parameter
 
 FIELD_X_M = 3.5
@@ -53,6 +54,7 @@ APPROACH_BALL = Action(
     "approachBall/duration",
     "approachBall/success",
     detour="goToPose",
+    detour_risk=bump_risk,
     arguments=behind_goal,
     spans=behind_goal.spans,
 )
