@@ -127,5 +127,5 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
 
 def test_what_is_no_number_is_null_in_json(capsys):
     tell(Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None)
-    said = json.loads(capsys.readouterr().out, parse_constant=lambda word: pytest.fail(word))
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]

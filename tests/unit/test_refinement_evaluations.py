@@ -11,6 +11,7 @@ import pytest
 
 from executive.library import Interval
 from schemas.errors import UsageError
+from tools import evaluate
 from tools.evaluations import benefit, figure1, figure11, figure15, figure16, live, oracle, replicas, table3, table4
 from tools.evaluations.baselines import against_oracle
 from tools.evaluations.comparison import compare, share_interval
@@ -140,6 +141,13 @@ def test_every_evaluation_has_the_same_flags(module):
     module.configure(parser)
     given = parser.parse_args(["--episodes", "3", "--jobs", "1", "--json"])
     assert (given.episodes, given.jobs, given.json) == (3, 1, True)
+
+
+@pytest.mark.parametrize("name", evaluate.EVALUATIONS)
+def test_every_evaluation_can_be_one_of_the_lot(name):
+    module, given, unknown = evaluate._parsed(name, ["--jobs", "1", "--report", "out", "--json", "--domain", "soccer"])
+    assert (given.jobs, given.json, str(given.report), unknown) == (1, True, "out", [])
+    assert callable(module.run)
 
 
 @pytest.mark.parametrize("module", [table3, table4])
