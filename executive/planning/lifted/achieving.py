@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from executive.planning.cells import without
 from executive.planning.ground_formula import TooMuchToGround
@@ -15,14 +15,13 @@ from executive.planning.lifted.lifted_plan import (
     LiftedCondition,
     LiftedLink,
     LiftedPlan,
-    LiftedThreat,
     effects_of,
     opened,
-    opposing,
     unifying,
 )
 from executive.planning.lifted.schema import Schema
 from executive.planning.lifted.task import Achiever, LiftedTask, Placed
+from executive.planning.lifted.threatening import threatened, threatened_by_step
 from executive.planning.orderings import INITIAL, Orderings
 
 MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second
@@ -133,7 +132,7 @@ def _by_new_step(
         cost=plan.cost + task.costs[schema],
     )
     child = _linked(task, grown, flaw, literal, node + effect.moment, orderings)
-    return _with_threats_by(task, child, task.effects_of(schema, step), plan.links)
+    return threatened_by_step(task, child, task.effects_of(schema, step), plan.links)
 
 
 def _bound(task: LiftedTask, bindings: Bindings, schema: Schema, step: int) -> Bindings | None:
@@ -179,7 +178,7 @@ def _by_old_step(
     return grown and _linked(task, grown, flaw, literal, node, orderings)
 
 
-# --- links and threats ---------------------------------------------------------------------------
+# --- links --------------------------------------------------------------------------------------
 def _linked(
     task: LiftedTask,
     plan: LiftedPlan,
@@ -193,49 +192,4 @@ def _linked(
     grown = plan._replace(orderings=orderings, links=link)
     if literal.predicate in task.world.static:
         return grown
-    return _threatened(task, grown, effects_of(task, grown), link)
-
-
-def _with_threats_by(
-    task: LiftedTask, plan: LiftedPlan, effects: tuple[Placed, ...], links: LiftedLink | None
-) -> LiftedPlan:
-    while links is not None:
-        if links.literal.predicate not in task.world.static:
-            plan = _threatened(task, plan, effects, links)
-        links = links.rest
-    return plan
-
-
-def _threatened(task: LiftedTask, plan: LiftedPlan, effects: Iterable[Placed], link: LiftedLink) -> LiftedPlan:
-    """The plan with the threats of some effects to one link."""
-    cell, count = plan.threats, plan.threat_count
-    for placed in effects:
-        if opposing(link.literal, placed.literal, plan.bindings):
-            threat = LiftedThreat(link, placed.node, placed.literal, placed.effect.guards, cell)
-            if is_threat(task, plan, threat):
-                cell, count = threat, count + 1
-    return plan._replace(threats=cell, threat_count=count)
-
-
-def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
-    """Whether the effect may still undo the link: by order, by bindings, and unless its own step restores it."""
-    late, link, node = plan.orderings.late, threat.link, threat.node
-    if node in (link.producer, link.last):
-        return False  # the consumer may undo its condition; not at its start what it needs over all
-    if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
-        return False
-    if not opposing(link.literal, threat.effect, plan.bindings):
-        return False
-    step = task.step_of(node)
-    return (
-        threat.effect.positive
-        or step == 0
-        or not any(
-            placed.node == node
-            and placed.literal.positive
-            and not placed.effect.guards
-            and placed.literal.predicate == link.literal.predicate
-            and not plan.bindings.differing(zip(placed.literal.terms, link.literal.terms, strict=True))
-            for placed in task.effects_of(plan.steps[step - 1], step)
-        )
-    )
+    return threatened(task, grown, effects_of(task, grown), link)

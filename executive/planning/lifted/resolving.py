@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from executive.planning.cells import without
-from executive.planning.lifted.achieving import is_threat
 from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat, opened
 from executive.planning.lifted.task import LiftedTask
+from executive.planning.lifted.threatening import is_threat
 
 
 def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> list[LiftedPlan]:
