@@ -25,6 +25,8 @@ def draw(
     """
     if "waypoints" in declared:
         start, places = _waypoints(declared, rng)
+    elif "arrival" in declared:
+        start, places = _ball_alone(declared, rng)
     else:
         start, places = _ball_and_target(declared, rng)
     events = tuple(_event(row, start, places, rng) for row in declared.get("events", ()))
@@ -42,13 +44,30 @@ def _ball_and_target(
             break
     else:
         raise ValueError("the ranges of the scenario leave no room")
-    half_view = declared["robot"]["half_view_rad"]
-    heading = _bearing(robot, ball) + rng.uniform(-half_view, half_view)
+    start = _looking(robot, ball, declared["robot"]["half_view_rad"], rng)
     aside = declared["target"]["aside_rad"]
     phi = _bearing(ball, target) + rng.uniform(-aside, aside)
-    start = {"x": robot[0], "y": robot[1], "phi": wrap(heading), "v": 0.0, "ball_x": ball[0], "ball_y": ball[1]}
     label = declared["settings"]["target_label"]
     return start, {label: {"x": target[0], "y": target[1], "phi": wrap(phi), "v": 0.0}}
+
+
+def _ball_alone(
+    declared: Mapping[str, Any], rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """A ball to approach; heading and speed there are asked for."""
+    field, arrival = declared["field"], declared["arrival"]
+    robot = ball = _point(field, rng)
+    while not _within(robot, ball, declared["apart"]["robot_ball_m"]):
+        ball = _point(field, rng)
+    start = _looking(robot, ball, declared["robot"]["half_view_rad"], rng)
+    asked = {"phi": rng.uniform(*arrival["phi_rad"]), "v": rng.uniform(*arrival["v_mps"])}
+    return start, {declared["settings"]["ball_label"]: asked}
+
+
+def _looking(robot: Point, ball: Point, half_view: float, rng: np.random.Generator) -> dict[str, float]:
+    """A start at rest from which the ball can be seen."""
+    heading = _bearing(robot, ball) + rng.uniform(-half_view, half_view)
+    return {"x": robot[0], "y": robot[1], "phi": wrap(heading), "v": 0.0, "ball_x": ball[0], "ball_y": ball[1]}
 
 
 def _bent(robot: Point, ball: Point, target: Point, apart: Mapping[str, Any]) -> bool:

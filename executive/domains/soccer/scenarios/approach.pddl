@@ -1,0 +1,5 @@
+(define (problem approach)
+  (:domain soccer)
+  (:objects pos1 pos2)
+  (:init (robot pos1) (ball pos2) (final pos2))
+  (:goal (and (final pos2) (atball pos2))))
