@@ -95,21 +95,6 @@ def _pushed(formula: Formula) -> Formula:
             return And(())  # an (in)equality: needs no support
 
 
-def atoms(formula: Formula, binding: Binding, objects: Objects) -> set[Fact]:
-    """Every fact that a formula looks at."""
-    match formula:
-        case Atom():
-            return {fact_of(formula, binding)}
-        case Not(part):
-            return atoms(part, binding, objects)
-        case And(parts) | Or(parts):
-            return set().union(*(atoms(part, binding, objects) for part in parts))
-        case Quantified(_, variables, part):
-            return set().union(*(atoms(part, inner, objects) for inner in objects.bindings(variables, binding)))
-        case _:
-            return set()
-
-
 def conditions_at(conditions: tuple[Condition, ...], when: When) -> And:
     """The conjunction of an action's conditions at one moment."""
     return And(tuple(condition.formula for condition in conditions if condition.when == when))

@@ -12,7 +12,7 @@ from executive.planning.language import Action, Domain, Effect
 from executive.planning.link_check import Bound, faulty_link
 from executive.planning.plan import Plan, Step
 from executive.planning.problem import Problem
-from executive.planning.state import Binding, Objects, State, atoms, conditions_at, fact_of, holds
+from executive.planning.state import Binding, Objects, State, conditions_at, fact_of, holds
 from executive.planning.vhpop_text import atom
 
 SAME_TIME_S = 1e-6  # events closer than this happen together
@@ -136,16 +136,21 @@ def _moments(event: _Event, action: Action) -> tuple[str, ...]:
 
 def _check_conditions(events: list[_Event], state: State, problem: Problem, bound: Bound) -> None:
     for event in events:
-        if event.step is None:
-            continue
-        action, binding = bound[event.step.id]
-        for when in ("start", "end"):
-            if when in _moments(event, action):
-                for condition in action.conditions:
-                    if condition.when == when and not holds(condition.formula, binding, state, Objects(problem)):
-                        raise _Unsound(
-                            f"step {event.step.id}: {atom(event.step.action)} lacks a condition at its {when}"
-                        )
+        when = _unmet(event, state, problem, bound)
+        if when and event.step is not None:
+            raise _Unsound(f"step {event.step.id}: {atom(event.step.action)} lacks a condition at its {when}")
+
+
+def _unmet(event: _Event, state: State, problem: Problem, bound: Bound) -> str:
+    """The moment of an event's condition that does not hold in a state; "" when all hold."""
+    if event.step is None:
+        return ""
+    action, binding = bound[event.step.id]
+    for when in _moments(event, action):
+        for condition in action.conditions:
+            if condition.when == when and not holds(condition.formula, binding, state, Objects(problem)):
+                return when
+    return ""
 
 
 def _check_invariants(running: list[Step], state: State, problem: Problem, bound: Bound) -> None:
@@ -189,24 +194,16 @@ _Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
 
 
 def _check_disturbance(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
-    """Simultaneous events must neither change what another needs nor contradict one another (no moving targets).
+    """Simultaneous events must neither undo what another needs nor contradict one another (no moving targets).
 
-    What an event makes true that is true already is no change: the planner's no-op rule never sees it.
+    What an event needs must hold whichever other comes first, and when all others do.
     """
-    for event, added, removed in changes:
-        for other, more, less in changes:
-            if event is other:
-                continue
-            needed = _needed(other, problem, bound)
-            if ((added - state) | (removed & state)) & needed or added & less or removed & more:
+    for other, more, less in changes:
+        others = [change for change in changes if change[0] is not other]
+        for event, added, removed in others:
+            if added & less or removed & more or _unmet(other, (state - removed) | added, problem, bound):
                 raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
-
-
-def _needed(event: _Event, problem: Problem, bound: Bound) -> set[Fact]:
-    if event.step is None:
-        return set()
-    action, binding = bound[event.step.id]
-    objects = Objects(problem)
-    moments = _moments(event, action)
-    formulas = [condition.formula for condition in action.conditions if condition.when in moments]
-    return set().union(*(atoms(formula, binding, objects) for formula in formulas))
+        gone = frozenset[Fact]().union(*(removed for _, _, removed in others))
+        come = frozenset[Fact]().union(*(added for _, added, _ in others))
+        if _unmet(other, (state - gone) | come, problem, bound):
+            raise _Unsound(f"what happens at the same time disturbs {other.label}")

@@ -125,6 +125,19 @@ def test_making_true_what_is_true_disturbs_nobody():
     assert validate(plan, domain, problem) == ""
 
 
+def test_a_disjunction_that_another_way_still_meets_is_not_disturbed():
+    domain, problem = read(
+        """(define (domain pair) (:requirements :adl :durative-actions) (:predicates (p) (q) (a) (b) (c))
+          (:durative-action take :duration (= ?duration 1) :effect (and (at start (not (p))) (at end (a))))
+          (:durative-action drop :duration (= ?duration 1) :effect (and (at start (not (q))) (at end (b))))
+          (:durative-action look :parameters () :duration (= ?duration 1)
+            :condition (at start (or (p) (q))) :effect (at end (c))))""",
+        "(define (problem p) (:domain pair) (:init (p) (q)) (:goal (c)))",
+    )
+    assert validate(parse_plan(";p\n1:(take)[1]\n1:(look)[1]\n"), domain, problem) == ""
+    assert "disturbs" in validate(parse_plan(";p\n1:(take)[1]\n1:(drop)[1]\n1:(look)[1]\n"), domain, problem)
+
+
 # --- what is left of a plan ----------------------------------------------------------------------
 def after(plan, domain, problem, count):
     """The problem after the first steps of a plan without durations."""
