@@ -72,6 +72,13 @@ def test_sweep_leaves_failed_runs_out_and_needs_one_that_is_not():
     assert sweep_of(1, np.array([0.0]), 0.2, [[failed]], 0.0, 0.0) is None
 
 
+def test_sweep_leaves_out_a_run_that_reached_its_goal_without_an_approach():
+    aborted = replace(DONE, outcomes=("aborted", "done"), foreseen=FORESEEN)
+    done = replace(DONE, foreseen=FORESEEN)
+    sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[aborted], [done]], 0.0, 0.0)
+    assert np.isnan(sweep.simulated_s[:, 0]).all()
+
+
 def test_duration_between_two_angles_wraps_round_the_circle():
     angles = np.linspace(-math.pi, math.pi, 4, endpoint=False)
     runs = [[replace(DONE, duration_s=s, foreseen=FORESEEN)] for s in (8.0, 20.0, 20.0, 10.0)]
