@@ -12,6 +12,7 @@ from executive.refinement.settings import RefinementSettings
 from schemas.messages import RefinementReport
 from tests.synthetic_models import MODELS, approach_dribble
 from tools.evaluations import benefit as judging
+from tools.evaluations import benefit_ceiling
 from tools.evaluations.outcome import Outcome
 from tools.train_benefit import pairs_of
 from tools.viewer.wording import advice
@@ -134,3 +135,13 @@ def test_a_gate_is_judged_by_what_it_did() -> None:
     assert row["perfect_pct"] == pytest.approx(10.0)
     assert (row["slower_pct"], row["gated_slower_pct"]) == (50.0, 25.0)
     assert row["lost_s"] == 1.0
+
+
+def test_foreknowledge_is_of_the_other_runs_and_never_of_the_one_that_is_judged() -> None:
+    greedy_s = np.full((2, 5), 10.0)
+    refined_s = np.array([[11.0, 11, 11, 11, 9], [9.0, 9, 9, 11, 9]])
+    row = benefit_ceiling.judged(greedy_s, refined_s)
+    assert row["foreknown_right_pct"] == 80.0  # the one run of each start that went otherwise is not foreseen
+    assert row["luck_always_right_pct"] == 50.0
+    assert row["foreknown_improvement_pct"] == pytest.approx((4 * 10 - 10) / 10)
+    assert row["mostly_slower_starts_pct"] == 50.0

@@ -17,6 +17,7 @@ from executive.library import BenefitModel
 from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tools import gathering
+from tools.evaluations.benefit_ceiling import foreknown
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.outcome import Outcome, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
@@ -30,6 +31,10 @@ ROBOT, SCENARIO = "agilo", "approach-dribble"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate benefit`."""
     parser.add_argument("--episodes", type=int, default=300, help="fresh starts, each run three ways")
+    parser.add_argument(
+        "--luck", type=int, default=0, metavar="N",
+        help="run N starts five times with other noise, to tell what no gate can beat (default: %(default)s)",
+    )  # fmt: skip
     configure_report(parser)
 
 
@@ -37,6 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Judge and tell; 0 when the tree loses no time and leaves fewer episodes slower."""
     row = evaluate(arguments)
     remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
+    if arguments.luck:
+        remarks.append("foreknown: by one who knows how the same start went four times with other noise")
     tell(Report("benefit", "When not to refine", [row], remarks), arguments.json, arguments.report)
     better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
     return 0 if better else 1
@@ -62,7 +69,10 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "benefit")
     starts = [(found["h1"][seed], found["h2"][seed], found["gated"][seed]) for seed in seeds]
-    return summary(starts, tree)
+    ceiling = {}
+    if arguments.luck:
+        ceiling = foreknown(task, plain, seeds[: arguments.luck], arguments.jobs, arguments.store)
+    return summary(starts, tree) | ceiling
 
 
 def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: BenefitModel) -> dict[str, Any]:
