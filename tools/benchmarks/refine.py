@@ -1,4 +1,4 @@
-"""How fast the solvers come close to the optimum: gap to the best known against milliseconds, on one core.
+"""How fast the solvers come close to the optimum: gap to the best known against milliseconds of CPU time, one core.
 
 Chain solver, the paper's genetic algorithm and our differential evolution beside scipy's and, where installed, CMA-ES;
 all call the same objective: sequences of AGILO with its learned models. Then how long proofs of the optimum take.
@@ -57,7 +57,7 @@ def _at(found: Found, moment_ms: float) -> float:
 
 def run(console: Console, quick: bool) -> None:
     """Print the table."""
-    table = Table("case", "solver", title="refinement: mean gap to the best known value")
+    table = Table("case", "solver", title="refinement: mean gap to the best known value after CPU time")
     for moment in MOMENTS_MS:
         table.add_column(f"{moment} ms", justify="right")
     table.add_column("worst at 60 ms", justify="right")
