@@ -21,6 +21,7 @@ from executive.planning import (
     Result,
     Search,
     Settings,
+    Unsupported,
     completed,
     format_links,
     format_plan,
@@ -143,8 +144,13 @@ class _TimeBudget:
 def run(args: argparse.Namespace) -> int:
     """Plans and prints; 0 with a plan, 1 without."""
     started = time.process_time()
-    domain = parse_domain(_read(args.domain), str(args.domain))
-    problem = parse_problem(_read(args.problem), domain, str(args.problem))
+    try:
+        domain = parse_domain(_read(args.domain), str(args.domain))
+        problem = parse_problem(_read(args.problem), domain, str(args.problem))
+    except Unsupported as feature:
+        if args.json:
+            print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
+        raise
     result = _ask(args, domain, problem) if args.planner else _search(args, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if result.plan is not None:
@@ -216,10 +222,10 @@ def _ask(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
 def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
     plan = result.plan
     if args.json:
-        print(json.dumps(_as_json(result, problem, cpu_ms)))
+        print(json.dumps(_as_json(result, problem.name, cpu_ms)))
     elif plan is None:
-        told = {"unsolvable": "no plan exists", "limit": "no plan found", "unsupported": "cannot plan"}
-        print(f"{problem.name}: {told.get(result.status, result.status)}: {result.reason}", file=sys.stderr)
+        told = "no plan exists" if result.status == "unsolvable" else "no plan found"
+        print(f"{problem.name}: {told}: {result.reason}", file=sys.stderr)
     elif args.links:
         print(format_links(plan), end="")
     elif args.dot:
@@ -230,10 +236,10 @@ def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: f
         print(format_plan(plan), end="")
 
 
-def _as_json(result: Result, problem: Problem, cpu_ms: float) -> dict[str, Any]:
+def _as_json(result: Result, problem: str, cpu_ms: float) -> dict[str, Any]:
     plan = result.plan
     return {
-        "problem": problem.name,
+        "problem": problem,
         "status": result.status,
         "reason": result.reason,
         "steps": [

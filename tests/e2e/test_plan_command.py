@@ -124,6 +124,15 @@ def test_unsolvable_and_limit_are_told_apart(capsys, hopeless):
     assert json.loads(plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "-T", "0", "--json")[1])["status"] == "limit"
 
 
+def test_pddl_outside_the_language_is_told_with_its_place(capsys, tmp_path):
+    path = tmp_path / "goal.pddl"
+    path.write_text("(define (problem p) (:domain kitchen)\n (:goal (preference tidy (hand-empty))))")
+    code, out, err = plan(capsys, DOMAIN, str(path), "--json")
+    assert (code, json.loads(out)["status"]) == (2, "unsupported")
+    assert json.loads(out)["reason"] == f"{path}:2:9: a preference is not supported"
+    assert json.loads(out)["reason"] in err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
