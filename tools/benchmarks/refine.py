@@ -34,7 +34,7 @@ def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
     """By solver, the gap to the best known value at each moment, in percent."""
     limit_ms = MOMENTS_MS[-1]
     found = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
-    long = [ours("chain")(task.objective(models), task.starts, 100 + again, LONG_MS) for again in range(2)]
+    long = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in ("chain", "differential")]
     best = min(_at(one, LONG_MS) for one in [*long, *found.values()])
     return {name: [100 * (_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in found.items()}
 
