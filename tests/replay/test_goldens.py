@@ -88,7 +88,7 @@ def test_core_says_what_it_said_when_the_golden_was_recorded(name):
     except UsageError as error:
         pytest.fail(f"{name}: {error}; {RENEW}")
     assert verdict.difference is None, f"{name}: {told(verdict)}; {RENEW}"
-    assert verdict.ticks > 50
+    assert verdict.ticks > 20
 
 
 def test_there_are_no_other_goldens_and_all_together_they_are_small():
