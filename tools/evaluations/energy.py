@@ -36,9 +36,9 @@ class Cost:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate energy`."""
-    parser.add_argument("--scenario", default="waypoints", help="soccer scenario (default %(default)s)")
+    parser.add_argument("--scenario", default="approach-dribble", help="soccer scenario (default %(default)s)")
     parser.add_argument("--weights", type=float, nargs="+", default=list(WEIGHTS), help="s/J (default %(default)s)")
-    parser.add_argument("--episodes", type=int, default=30, help="episodes a weight (default %(default)s)")
+    parser.add_argument("--episodes", type=int, default=60, help="episodes a weight (default %(default)s)")
     configure_report(parser)
 
 
