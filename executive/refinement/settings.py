@@ -34,7 +34,7 @@ class RefinementSettings:
     p_fail_assert: float = 0.2  # above it an action is predicted to fail and gets a detour; wider, so that a robot
     # that has arrived beside its subgoal is not sent around again
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
-    risk_cost_s: float = 6.0  # seconds that a failure costs; chosen on training seeds: 3 bumps more balls, 10 gains less
+    risk_cost_s: float = 6.0  # seconds that a failure costs; on training seeds 3 bumps more balls and 10 gains less
     gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for
     benefit_gate: bool = True  # keep the greedy choice where the robot's benefit tree says so (paper 6.3.2)
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
