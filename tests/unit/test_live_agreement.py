@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.unit.test_refinement_evaluations import DONE
+from tools.evaluations import live
 from tools.evaluations.agreement import agreement, starts_of
 from tools.evaluations.equivalence import equivalence
 from tools.evaluations.heard import episode_of
@@ -90,6 +91,14 @@ def test_runs_that_failed_are_left_out_of_the_durations():
     put = starts_of({1: failed, 2: DONE, 3: DONE}, {1: [DONE], 2: [failed, DONE], 3: [failed]})
     assert put.seeds == (2,)
     assert [len(some) for some in put.lockstep_s] == [1]
+
+
+def test_a_live_run_that_failed_is_counted_and_says_why():
+    runs = {1: DONE, 2: DONE, 3: replace(DONE, achieved=False, result="failed: the driver is stopped")}
+    row = live._row("live", 2, runs, {seed: [DONE, replace(DONE, duration_s=11.0)] for seed in runs})
+    assert (row["n"], row["achieved_lockstep_pct"]) == (2, 100.0)
+    assert row["achieved_pct"] == pytest.approx(200 / 3)
+    assert row["failures"] == "failed: the driver is stopped"
 
 
 def test_agreement_is_drawn(tmp_path):

@@ -134,6 +134,7 @@ def _messages(recording: Path) -> list[Message]:
 
 def _row(name: str, horizon: int, runs: Runs, repeats: Repeats) -> dict[str, Any]:
     seeds = sorted(runs)
+    failures = sorted({runs[seed].result for seed in seeds if not runs[seed].achieved})
     usual = [{outcome.actions for outcome in repeats[seed]} for seed in seeds]
     return {
         "run": name,
@@ -142,6 +143,7 @@ def _row(name: str, horizon: int, runs: Runs, repeats: Repeats) -> dict[str, Any
         "achieved_pct": _share([runs[seed].achieved for seed in seeds]),
         "achieved_lockstep_pct": _share([outcome.achieved for seed in seeds for outcome in repeats[seed]]),
         "same_actions_pct": _share([runs[seed].actions in some for seed, some in zip(seeds, usual, strict=True)]),
+        "failures": "; ".join(failures),
     }
 
 
