@@ -1,12 +1,15 @@
 """Episodes to a model that is published and loaded again, on a kinematic stand-in."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from models import features, runtime
+from models.amounts import ENERGY
 from models.episodes import DataSet, Episode
 from models.publishing import Publication, publish
-from models.training import Trained, train_duration, train_success
+from models.training import Trained, train_amount, train_duration, train_success
 from schemas.errors import UsageError
 from tests import standin
 
@@ -58,6 +61,29 @@ def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
     observed = np.array([e.success for e in fresh.episodes])
     missed = (probability >= model.threshold) & ~observed
     assert missed.sum() < 0.3 * (~observed).sum()
+
+
+def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
+    ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
+    told = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
+    trained = train_amount(ENERGY, told, features.projective, "linear", seed=3)
+    about = Publication("energy", "linear", features.projective, 3, "tailor train toy")
+    publish(tmp_path, replace(data, episodes=told), trained, about)
+    model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
+    assert model.card["outputs"] == ["mean_j", "std_j"]
+    assert model.card["test"]["mae_j"] < 0.3 * model.card["test"]["mean_energy_j"]
+    arguments = np.stack([e.ticks[0] for e in told[:50]])
+    assert np.abs(model.predict(arguments)[0] - trained.learner.predict(features.projective(arguments))).max() <= 1e-4
+    with pytest.raises(UsageError, match="0 finished episodes, expected at least 40"):
+        train_amount(ENERGY, data.episodes, features.projective, "linear", seed=3)
+
+
+def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data) -> None:
+    chosen = [replace(e, on_policy=e.number % 4 > 0) for e in data.episodes]
+    test = train_duration(chosen, features.projective, "linear", seed=3).test
+    assert test["interval90_on"] == "on-policy"
+    assert test["interval90_n"] >= 30
+    assert test["interval90_random_factor"] > 0
 
 
 def test_too_few_episodes_are_told_not_trained_on(data) -> None:
