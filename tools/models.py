@@ -11,8 +11,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from executive.composition import load_models
 from models.card import Card
-from models.runtime import ZOO, OnnxBenefit, OnnxModel, load_model
+from models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
 from schemas.errors import UsageError
 
 EPILOG = """\
@@ -164,6 +165,8 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
     failed = {}
     for name in names:
         try:
+            if name.endswith(f"/{BENEFIT}"):  # sound only with the action models that it was learned with
+                load_models(name.removesuffix(f"/{BENEFIT}"), str(arguments.zoo), gated=True)
             load_model(name, arguments.zoo)
         except UsageError as error:
             failed[name] = str(error)

@@ -156,6 +156,7 @@ def test_a_tree_that_was_learned_with_other_models_is_refused(zoo: Path) -> None
     with pytest.raises(UsageError, match=r"learned when dribbleBall/duration was 0{12}.*train-benefit.*benefit_gate"):
         load_models("agilo", str(zoo), gated=True)
     assert load_models("agilo", str(zoo), gated=False).benefit is None
+    assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 1
 
 
 @pytest.mark.parametrize("gone", ["benefit.onnx", "benefit.card.json"])
