@@ -25,6 +25,8 @@ from executive.refinement.stage_bounds import NoBound
 
 __all__ = ["Choice", "Refinement", "Report"]
 
+USEFUL_GAP_PCT = 25.0  # a bound that is farther off is no certificate
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
@@ -131,8 +133,13 @@ class Refinement:
             self._choice.total_s if self._choice else np.inf,
             tuple(trace),
             self._verdict,
-            self._certificate.gap_pct if isinstance(self._certificate, Certificate) else None,
+            self._gap_pct(),
         )
+
+    def _gap_pct(self) -> float | None:
+        """The gap that was proven, if it says anything."""
+        gap = self._certificate.gap_pct if isinstance(self._certificate, Certificate) else None
+        return gap if gap is not None and gap <= USEFUL_GAP_PCT else None
 
     def _begin(self) -> None:
         """The first check: the greedy answer, and the solver that goes on from it."""
