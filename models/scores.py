@@ -42,8 +42,12 @@ def confusion(predicted: NDArray[np.bool_], observed: NDArray[np.bool_]) -> Conf
 
 
 def interval_factor(errors: Array, spread: Array, level: float = 0.9) -> float:
-    """Factor on the spread that makes `mean ± factor · spread` hold a share `level` of the errors."""
-    return float(np.quantile(np.abs(errors) / np.maximum(spread, LEAST_SPREAD), level))
+    """Factor on the spread that makes `mean ± factor · spread` hold a share `level` of the errors.
+
+    Of fresh ones, too: the rank is that of split conformal prediction, ceil((n + 1) level), at most n.
+    """
+    ratios = np.sort(np.abs(errors) / np.maximum(spread, LEAST_SPREAD))
+    return float(ratios[min(len(ratios), int(np.ceil((len(ratios) + 1) * level))) - 1])
 
 
 def coverage(errors: Array, spread: Array, factor: float) -> float:

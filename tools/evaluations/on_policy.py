@@ -63,9 +63,10 @@ def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -
     more = [e for e in merge([random, chosen]).episodes if e.number >= len(random.episodes)]
     taught, held = split(np.arange(len(more)), 0.25, np.random.default_rng(arguments.seed))
     both = [*known, *(more[k] for k in taught)]
-    judges = _Judges(unseen, [more[k] for k in held], fresh.episodes)
+    kinds = (("random", known, more), ("random and on-policy", both, [more[k] for k in held]))
     rows = []
-    for name, episodes in (("random", known), ("random and on-policy", both)):
+    for name, episodes, apart_chosen in kinds:
+        judges = _Judges(unseen, apart_chosen, fresh.episodes)
         figures = _judged([e for e in episodes if e.finished], judges, arguments)
         rows.append({"action": action, "learned from": name, "episodes": len(episodes), **figures})
     return rows
@@ -76,7 +77,7 @@ class _Judges:
     """Episodes that no model has learned from."""
 
     random: Sequence[Episode]
-    held: Sequence[Episode]  # of the round that was learned from, kept apart to calibrate on
+    held: Sequence[Episode]  # of the round that was learned from: those that the model has not seen
     fresh: Sequence[Episode]  # of a round of its own
 
 
