@@ -20,8 +20,8 @@ from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from schemas.errors import UsageError
 
-# A missed failure costs so many false alarms. On held-out approaches 4 keeps missed failures below 1 %, as the paper's 5
-# did for its tree; 5 would cost two points of accuracy more.
+# A missed failure costs so many false alarms. On held-out approaches 4 keeps missed failures below 1 %, as the
+# paper's 5 did for its tree; 5 would cost two points of accuracy more.
 COST_RATIO = 4.0
 BOOSTING = {"n_estimators": 300, "max_depth": 4, "learning_rate": 0.05, "subsample": 0.7}
 ROBUST = {"huber": 1.345, "min_rows": 100.0, "ridge": 1e-2}  # chosen on a quarter of the training dribbles

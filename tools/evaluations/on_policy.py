@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from models import scores
+from models.calibration import LEAST_POLICY
 from models.episodes import Episode, merge, read_data_set
 from models.examples import duration_examples, split
 from models.features import SPACES
@@ -92,9 +93,15 @@ def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Na
         mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(arguments.seed))
         figures |= {f"{name}_mae_s": mae, f"{name}_ci95": ci, f"{name}_bias_s": float(off.mean())}
         figures[f"{name}_coverage_pct"] = scores.coverage(off, spread, before)
-    after = scores.interval_factor(*_errors(model, judges.held), LEVEL)
+    enough = len(judges.held) >= LEAST_POLICY  # as in `tailor train`: fewer say little about a tenth of them
+    after = scores.interval_factor(*_errors(model, judges.held), LEVEL) if enough else before
     figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh), after)
-    return {**figures, "factor": before, "factor_recalibrated": after}
+    return {
+        **figures,
+        "factor": before,
+        "factor_recalibrated": after,
+        "calibrated_on": len(judges.held) if enough else 0,
+    }
 
 
 def _errors(model: Any, episodes: Sequence[Episode]) -> tuple[Any, Any]:
