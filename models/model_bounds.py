@@ -89,7 +89,8 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
 def _projected(weights: Floats, off: Floats, k_std: float) -> Floats:
     """The mean product of scores and deviations, with scores that give no tree a weight below zero."""
     kept = np.maximum(weights, 0.0)
-    scores = (kept / kept.mean(axis=0) - 1) / k_std
+    total = kept.mean(axis=0)  # one, but for rounding where the trees agree to the last bit
+    scores = np.where(total > 0.0, kept / np.where(total > 0.0, total, 1.0) - 1, 0.0) / k_std
     scores /= np.maximum(np.sqrt((scores * scores).mean(axis=0)), 1.0)
     product: Floats = (scores * off).mean(axis=0)
     return product

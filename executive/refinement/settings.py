@@ -48,7 +48,7 @@ class RefinementSettings:
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
     weigh_detours: bool = True  # a detour must pay: compare expected costs, failure priced at risk_cost_s
     weighing_checks: int = 40  # batches spent on each side of that comparison
-    certify_checks: int = 300  # of about 1 ms, spent on proving how good a choice is when it is found; 0: none
+    certify_checks: int = 100  # of about 1 ms, spent on proving how good a choice is when it is found; 0: none
     certify_gap_pct: float = 1.0  # above the optimum: near enough to stop
 
     def __post_init__(self) -> None:

@@ -13,6 +13,7 @@ from models.card import card_path
 from models.feature_spans import FEATURE_SPANS
 from models.features import SPACES
 from models.leaf_bounds import LeafBounds
+from models.model_bounds import _projected
 from models.runtime import ZOO
 from models.spans import Span
 from models.tree_boxes import tree_boxes
@@ -128,3 +129,8 @@ def test_leaves_of_all_trees_meet_every_box():
     bounds = LeafBounds(Trees.random(5, trees=4).boxes)
     everywhere = tuple(Span(np.full(SHAPE, -10.0), np.full(SHAPE, 10.0)) for _ in range(5))
     assert bounds.least(everywhere).shape == (4, *SHAPE)
+
+
+def test_trees_that_agree_but_for_rounding_have_a_bound() -> None:
+    off = np.full((12, 1), -1.2e-7, np.float32)
+    assert _projected(np.zeros_like(off), off, 1.0) == pytest.approx(0.0)
