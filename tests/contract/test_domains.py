@@ -150,7 +150,7 @@ def test_scenario_can_be_planned_and_instantiated_from_what_is_believed(name, sc
     sequence = instantiate(plan, domain, belief, drawn)
     assert isinstance(sequence, ActionSequence), sequence
     labels = {v.label for v in sequence.variables if v.value is None}
-    assert labels or any(action.action.detour for action in sequence.actions), "something is left to choose or to assert"
+    assert labels or any(action.action.detour for action in sequence.actions), "something is open, or may get a subgoal"
     assert all(math.isfinite(v.lower) and math.isfinite(v.upper) for v in sequence.variables)
 
 
