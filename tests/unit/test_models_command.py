@@ -100,3 +100,13 @@ def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, caps
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) -> None:
+    """Both predict an amount, and both are loaded together."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tools.evaluations.fresh.noise_floor", lambda *_: {"mae_s": 0.1})  # takes half a minute
+    main(["evaluate", "table1", "--episodes", "12", "--jobs", "1", "--json"])
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert sorted(row["action"] for row in rows) == ["approachBall", "dribbleBall", "goToPose"]
+    assert all(row["relative_pct"] < 25 for row in rows)

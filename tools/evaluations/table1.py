@@ -34,9 +34,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when no action's relative error is worse than the paper's."""
-    durations, _ = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
-    rows = [row(model, arguments) for _, model in sorted(durations.items())]
-    plots = _plots(list(durations.values()), arguments) if arguments.report else {}
+    loaded, _ = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
+    models = [model for _, model in sorted(loaded.items()) if model.card["kind"] == "duration"]  # not energies
+    rows = [row(model, arguments) for model in models]
+    plots = _plots(models, arguments) if arguments.report else {}
     remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs, other noise"]
     tell(Report("table1", "Table 1: duration models", rows, remarks, plots), arguments.json, arguments.report)
     return 0 if all(r["relative_pct"] <= r.get("paper_relative_pct", np.inf) for r in rows) else 1
