@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+from concurrent.futures import Future, ThreadPoolExecutor
+
 from runtime.planner_process import PlannerProcess
 from schemas.errors import UsageError
 from schemas.messages import PlanAnswer, PlanRequest
@@ -10,35 +13,41 @@ MAX_ANSWER_BYTES = 131_072  # read within a tick; a plan of a hundred steps with
 
 
 class ExternalPlanner:
-    """At most one running planner; `command` and `limit_s` as PlannerProcess takes them."""
+    """At most one running planner; `command` and `limit_s` as PlannerProcess takes them.
+
+    Children are started on a thread: on a busy machine it can take long until a child has begun, and a robot whose
+    executive waits for that is stopped by its guard.
+    """
 
     def __init__(self, command: str, limit_s: float) -> None:
-        """Starts nothing."""
+        """Starts no child; the thread is there before the loop becomes real-time."""
         self._command, self._limit_s = command, limit_s
-        self._child: PlannerProcess | None = None
+        self._starter = ThreadPoolExecutor(1, "planner-starter") if command else None
+        if self._starter is not None:
+            self._starter.submit(int).result()
+        self._child: Future[PlannerProcess] | None = None
         self._asked = 0
-        self._missing = ""
 
     def ask(self, request: PlanRequest) -> None:
         """Start a child on a request, in the place of any other; that it cannot be started is an answer, too."""
         self.close()
-        self._asked, self._missing = request.id, ""
-        try:
-            self._child = PlannerProcess(
-                self._command, request.domain, request.problem, self._limit_s, MAX_ANSWER_BYTES
-            )
-        except UsageError as error:
-            self._missing = str(error)
+        self._asked = request.id
+        if self._starter is not None:
+            arguments = (request.domain, request.problem, self._limit_s, MAX_ANSWER_BYTES)
+            self._child = self._starter.submit(PlannerProcess, self._command, *arguments)
 
     def poll(self, awaited: int, stamp_ns: int) -> PlanAnswer | None:
         """The answer to the request `awaited`, once; None while there is none. Kills a child that works on another."""
         if awaited != self._asked:
             self.close()
             return None
-        if self._missing:
-            answer = PlanAnswer(stamp_ns, awaited, "missing", "", self._missing)
+        if self._child is None or not self._child.done():
+            return None
+        try:
+            said = self._child.result().poll()
+        except UsageError as error:
+            answer = PlanAnswer(stamp_ns, awaited, "missing", "", str(error))
         else:
-            said = self._child.poll() if self._child is not None else None
             if said is None:
                 return None
             answer = _believable(PlanAnswer(stamp_ns, awaited, said.outcome, said.output, said.reason))
@@ -48,8 +57,13 @@ class ExternalPlanner:
     def close(self) -> None:
         """Leave no child behind."""
         if self._child is not None:
-            self._child.kill()
-        self._child, self._asked, self._missing = None, 0, ""
+            self._child.add_done_callback(_kill)  # at once, or as soon as it has been started
+        self._child, self._asked = None, 0
+
+
+def _kill(child: Future[PlannerProcess]) -> None:
+    with contextlib.suppress(UsageError):  # it was never started
+        child.result().kill()
 
 
 def _believable(answer: PlanAnswer) -> PlanAnswer:

@@ -27,6 +27,7 @@ MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share 
 _CHUNK = 65536
 _REAP_S = 0.005  # a killed process is gone by then, but for a huge one; nobody waits longer
 _LEASH = str(Path(__file__).with_name("leash.py"))
+vars(subprocess)["_USE_VFORK"] = False  # vfork holds up all threads until the child has begun (see subprocess's notes)
 
 
 Outcome = Literal["answered", "crashed", "timeout", "flood"]

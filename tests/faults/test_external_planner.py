@@ -74,7 +74,7 @@ def test_a_child_whose_answer_nobody_awaits_any_more_is_killed(tmp_path):
     planner = ExternalPlanner(sleeper(tmp_path), 60.0)
     planner.ask(request())
     assert planner.poll(7, 0) is None
-    pid = planner._child.pid
+    pid = planner._child.result().pid
     assert planner.poll(0, 0) is None
     assert gone(pid)
 
@@ -82,10 +82,10 @@ def test_a_child_whose_answer_nobody_awaits_any_more_is_killed(tmp_path):
 def test_a_new_request_takes_the_place_of_the_old_one_and_closing_leaves_nothing(tmp_path):
     planner = ExternalPlanner(sleeper(tmp_path), 60.0)
     planner.ask(request(1))
-    first = planner._child.pid
+    first = planner._child.result().pid
     planner.ask(request(2))
     assert gone(first)
-    second = planner._child.pid
+    second = planner._child.result().pid
     planner.close()
     planner.close()
     assert gone(second)
