@@ -25,8 +25,8 @@ from schemas.messages import (
     Subgoals,
 )
 from tools.lockstep import trials_of
+from tools.trials.soccer import COLLIDED_M
 
-COLLIDED_M = 0.05  # the ball moved by more before the goal state: the approach has failed (domains.md)
 LEAST_TICKS = 3
 
 

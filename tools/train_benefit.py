@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from models.benefit import Pairs
     from tools.evaluations.outcome import Outcome, Task
 
-FIRST_SEED = 700_000
-EVALUATION_SEED = 1_000_000  # from here on seeds are kept for evaluations
+DEFAULT_SEED = 700_000
 PRICE = "of improvement that fewer slower episodes may cost, in percentage points (default: %(default)s)"
 EPILOG = """\
 examples:
@@ -49,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("robot", help="whose models")
     parser.add_argument("--scenario", default="approach-dribble", help="to run (default: %(default)s)")
     parser.add_argument("--episodes", type=int, default=1200, help="pairs to run (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=FIRST_SEED, help="of the first start (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=DEFAULT_SEED, help="of the first start (default: %(default)s)")
     parser.add_argument("--learner", default="forest", help="forest, tree (default: %(default)s)")
     parser.add_argument("--price", type=float, default=0.1, metavar="POINTS", help=PRICE)
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
@@ -121,14 +120,12 @@ def gathered(task: Task, settings: RefinementSettings, arguments: argparse.Names
     Raises:
       UsageError: Seeds that are kept for evaluations.
     """
-    from tools.evaluations.outcome import Variant
+    from tools.evaluations.outcome import FIRST_SEED, Variant
     from tools.evaluations.trials import run_all
 
     end = arguments.seed + arguments.episodes
-    if not 0 <= arguments.seed < end <= EVALUATION_SEED:
-        raise UsageError(
-            f"seeds {arguments.seed} .. {end}, expected some from 0 to {EVALUATION_SEED}: fresh ones judge"
-        )
+    if not 0 <= arguments.seed < end <= FIRST_SEED:
+        raise UsageError(f"seeds {arguments.seed} .. {end}, expected some from 0 to {FIRST_SEED}: fresh ones judge")
     variants = [Variant(f"h{h}", replace(settings, horizon=h)) for h in (1, 2)]
     seeds = range(arguments.seed, end)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "greedy and refined")

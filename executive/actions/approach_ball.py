@@ -8,18 +8,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from executive.actions.go_to_pose import GoToPose
-from executive.actions.planar import PHIG, XG, YG, PlanarBelief
+from executive.actions.planar import PHIG, XG, YG, BallBelief
 from executive.library import Array, Control
-
-
-class BallBelief(PlanarBelief, Protocol):
-    """A belief that also knows a ball."""
-
-    @property
-    def ball_xy(self) -> tuple[float, float] | None: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +21,7 @@ class ApproachBall:
 
     go: GoToPose
     behind_m: float  # from the axle to the ball where an approach ends
-    follow_m: float = 0.25  # a ball farther off has been moved: another task, for which the executive thinks again
+    follow_m: float  # a ball farther off has been moved: another task, for which the executive thinks again
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
         """See executive.library.Controller; the command is (v m/s, omega rad/s)."""

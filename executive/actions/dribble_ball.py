@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from executive.actions.dribble_path import DribblePath
 from executive.actions.fetch_ball import SEEKING, FetchBall, Stage
 from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
-from executive.actions.planar import VG, XG, PlanarBelief
+from executive.actions.planar import VG, XG, BallBelief
 from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
@@ -17,13 +17,6 @@ from executive.library import Array, Control
 
 TICK_S = 0.1  # the controller's period
 SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
-
-
-class BallBelief(PlanarBelief, Protocol):
-    """A planar belief with a ball in the robot's frame."""
-
-    @property
-    def ball(self) -> BallTrack | None: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True)

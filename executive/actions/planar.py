@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 
 # arguments of goToPose and dribbleBall: robot's pose and speed now and at the goal (paper Table 6)
@@ -21,3 +22,13 @@ class PlanarBelief(Protocol):
 
     @property
     def omega(self) -> float: ...  # noqa: D102
+
+
+class BallBelief(PlanarBelief, Protocol):
+    """A belief that also knows a ball: its track in the robot's frame, and its place in the map; None if never seen."""
+
+    @property
+    def ball(self) -> BallTrack | None: ...  # noqa: D102
+
+    @property
+    def ball_xy(self) -> tuple[float, float] | None: ...  # noqa: D102

@@ -1,6 +1,5 @@
 """An approach keeps its goal where the ball is seen, arrives without a swing, and its detours avoid it."""
 
-import dataclasses
 import math
 from dataclasses import replace
 
@@ -12,8 +11,6 @@ from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 from executive.domains.soccer import robot
 from executive.domains.soccer.belief import unknown
-from executive.domains.soccer.bumping import bump_risk
-from executive.library import Models
 from executive.refinement.detour import with_detour
 from executive.refinement.objective import SequenceObjective
 from executive.refinement.settings import RefinementSettings
@@ -21,6 +18,7 @@ from tests.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
 
 SOCCER = domains.load("soccer")
 GO, APPROACHING = SOCCER.actions["goToPose"].controller, SOCCER.actions["approachBall"].controller
+BUMP_RISK = SOCCER.actions["approachBall"].detour_risk
 GOAL = np.array([0.0, 0.0, 0.0, 0.0, 2.0 - robot.BEHIND_BALL_M, 0.0, 0.0, 0.2])  # behind a ball at (2, 0)
 
 
@@ -28,7 +26,7 @@ def believing(ball_xy=None, x=0.0, y=0.0):
     """A robot at (x, y) that looks along x."""
     pose = Pose(x, y, 0.0, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4))
     ball = None if ball_xy is None else BallTrack(ball_xy[0] - x, ball_xy[1] - y, 0.0, 0.0, 1e-4, 0)
-    return dataclasses.replace(unknown(), pose=pose, ball=ball, poses_seen=99)
+    return replace(unknown(), pose=pose, ball=ball, poses_seen=99)
 
 
 def test_goal_follows_the_ball_as_far_as_it_was_seen_elsewhere() -> None:
@@ -60,7 +58,7 @@ def detours(*goals: tuple[float, float, float]) -> np.ndarray:
 
 def test_a_way_through_the_ball_is_a_risk_and_one_round_it_is_none() -> None:
     ball_at = np.array([0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
-    through, beside, round_it = bump_risk(detours((3.0, 0.0, 0.0), (3.0, 0.8, 0.0), (1.5, 1.5, 1.57)), ball_at)
+    through, beside, round_it = BUMP_RISK(detours((3.0, 0.0, 0.0), (3.0, 0.8, 0.0), (1.5, 1.5, 1.57)), ball_at)
     assert through == 1.0
     assert 0.0 < beside < 1.0
     assert round_it == 0.0
@@ -76,9 +74,7 @@ def test_detour_that_may_spoil_its_action_costs_what_a_failure_costs() -> None:
         detoured = with_detour(given, 0)
         objective = SequenceObjective(detoured.actions[:1], detoured.variables, MODELS, settings)
         assert objective.stages[0].predict(np.zeros((1, 4))).failure[0] == 0.0, "alone it spoils nothing"
-        objective = SequenceObjective(
-            detoured.actions[:2], detoured.variables, Models(MODELS.durations, MODELS.successes), settings
-        )
+        objective = SequenceObjective(detoured.actions[:2], detoured.variables, MODELS, settings)
         costs.append(objective.stages[0].cost(np.zeros((1, 4)))[0])
     assert costs[1] - costs[0] == pytest.approx(0.25 * 1.0 * settings.risk_cost_s)
     assert math.isfinite(costs[0])

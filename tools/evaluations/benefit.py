@@ -19,9 +19,8 @@ from schemas.errors import UsageError
 from tools import gathering
 from tools.evaluations.benefit_ceiling import foreknown
 from tools.evaluations.comparison import compare, share_interval
-from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.table3 import FIRST_SEED
 from tools.evaluations.trials import run_all
 
 PAPER = "paper: 87 % right, improvement 6.6 % without and 8.6 % with the tree"

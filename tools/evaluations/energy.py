@@ -16,9 +16,8 @@ from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tools.episodes import Episode
 from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.table3 import FIRST_SEED
 from tools.evaluations.trials import run_episode_of
 from tools.lockstep import trials_of
 

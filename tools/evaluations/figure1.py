@@ -15,9 +15,9 @@ import numpy as np
 
 from executive.refinement.settings import RefinementSettings
 from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.watched import FIRST_SEED, Watched, watch_all
+from tools.evaluations.watched import Watched, watch_all
 from tools.figures.paths import draw_paths
 from tools.figures.track import Track
 

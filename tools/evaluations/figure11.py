@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from executive.refinement.settings import RefinementSettings
-from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.sweep import Sweep, sweep_of
 from tools.evaluations.trials import run_all
-from tools.evaluations.watched import FIRST_SEED, watch
+from tools.evaluations.watched import watch
 from tools.figures.sweep import draw_sweep
 
 PLACE = "pos2"  # where the ball is

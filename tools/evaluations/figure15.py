@@ -17,10 +17,10 @@ from schemas.errors import UsageError
 from tools.evaluations.comparison import share_interval
 from tools.evaluations.figure16 import approached_s, assertion_task, succeeded, variants
 from tools.evaluations.ground import Ground, ground_of
-from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.trials import run_all
-from tools.evaluations.watched import FIRST_SEED, watch
+from tools.evaluations.watched import watch
 from tools.figures.ground import draw_ground
 
 REMARKS = (

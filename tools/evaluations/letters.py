@@ -18,6 +18,7 @@ from executive.library import Models
 from executive.refinement.settings import RefinementSettings
 from models.runtime import load_robot
 from tools.evaluations.comparison import compare
+from tools.evaluations.outcome import FIRST_SEED
 from tools.evaluations.perfect_reach import PerfectReach
 from tools.evaluations.report import Report, configure_report, tell
 from tools.figures.letters import draw_letters
@@ -26,7 +27,6 @@ from tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
 from tools.writing.track import Written
 
 DOMAINS = ("arm",)
-FIRST_SEED = 1_000_000  # as in table3: never trained on
 ALL_AHEAD = 9  # more actions than a letter has
 BASE = RefinementSettings()
 GREEDY = replace(BASE, horizon=1)

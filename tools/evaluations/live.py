@@ -27,10 +27,9 @@ from tools.evaluations.agreement import agreement, starts_of
 from tools.evaluations.heard import Unseen, episode_of
 from tools.evaluations.journal import Journal
 from tools.evaluations.live_plot import draw_agreement
-from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.trials import made_of, run_all
-from tools.evaluations.watched import FIRST_SEED
 from tools.system import Plan, free_endpoint, run_system
 
 OTHER_NOISE = 500_000  # from one lock-step run of a start to the next

@@ -9,6 +9,8 @@ from executive.refinement.settings import RefinementSettings
 from schemas.messages import RefinementReport, SimTruth, Subgoals
 from tools.episodes import Episode
 
+FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
+
 
 @dataclass(frozen=True, slots=True)
 class Variant:

@@ -13,7 +13,7 @@ from tools.evaluations import letters
 from tools.evaluations.baselines import against_oracle, bias_s
 from tools.evaluations.comparison import compare
 from tools.evaluations.oracle import consult, subgoal_parameters
-from tools.evaluations.outcome import Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tools.evaluations.plots import draw_pairs
 from tools.evaluations.replicas import Recipe, configure_replicas, over_models, replica
 from tools.evaluations.report import Report, configure_report, tell
@@ -31,7 +31,6 @@ REMARKS = [
     "parameters zero; oracle: the best of all simulated choices, the ceiling; oracle_again: its choices executed again "
     "with other noise; share_of_oracle: of the ceiling's gain; bias: predicted minus actual duration of an action",
 ]
-FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

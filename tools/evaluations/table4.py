@@ -11,10 +11,9 @@ from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tools.evaluations.baselines import bias_s
 from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import Outcome, Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.plots import draw_horizons
 from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.table3 import FIRST_SEED
 from tools.evaluations.trials import paired, run_all
 
 # word on the command line -> domain, scenario, horizons, the paper's improvements of each over the one before

@@ -14,8 +14,6 @@ from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tools.evaluations.trials import run_episode_of
 from tools.figures.track import Track, track_of
 
-FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
-
 
 @dataclass(frozen=True, slots=True)
 class Watched:

@@ -18,7 +18,7 @@ from executive.library import Action, Array
 from schemas.messages import Message, SimTruth
 from tools.trials.drive_work import wheel_work_j
 
-COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
+COLLIDED_M = 0.05  # an approach that displaces the ball by more before the goal state has failed
 ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would be inside the robot
 BELIEF_SIGMA_M = 0.02  # of a pose that has been tracked for a while
 BELIEF_SIGMA_RAD = 0.015

@@ -14,7 +14,7 @@ from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
 from executive.domains.soccer import robot
 from executive.domains.soccer.behind import Behind
-from executive.domains.soccer.bumping import bump_risk
+from executive.domains.soccer.bumping import BumpRisk
 from executive.library import Action, Parameter
 
 FIELD_X_M = 3.5
@@ -54,7 +54,7 @@ APPROACH_BALL = Action(
     "approachBall/duration",
     "approachBall/success",
     detour="goToPose",
-    detour_risk=bump_risk,
+    detour_risk=BumpRisk(_go.lead),
     arguments=behind_goal,
     spans=behind_goal.spans,
 )
