@@ -12,7 +12,6 @@ import shlex
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -20,13 +19,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from runtime.processes import leashed
 from schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
 MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share the machine with it
 _CHUNK = 65536
 _REAP_S = 0.005  # a killed process is gone by then, but for a huge one; nobody waits longer
-_LEASH = str(Path(__file__).with_name("leash.py"))
 vars(subprocess)["_USE_VFORK"] = False  # vfork holds up all threads until the child has begun (see subprocess's notes)
 
 
@@ -83,7 +82,7 @@ class PlannerProcess:
         try:
             words = words_of(command)
             child = subprocess.Popen(
-                [sys.executable, "-I", "-S", _LEASH, str(os.getpid()), *words, *map(str, paths)],
+                leashed([*words, *map(str, paths)]),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,

@@ -16,6 +16,11 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # idle BLAS 
 _LEASH = str(Path(__file__).with_name("leash.py"))
 
 
+def leashed(argv: Sequence[str]) -> list[str]:
+    """The command that runs `argv` and ends it when this process is gone."""
+    return [sys.executable, "-I", "-S", _LEASH, str(os.getpid()), *argv]
+
+
 class Child:
     """One running child process."""
 
@@ -28,11 +33,15 @@ class Child:
           output: Where its stdout and stderr go; None: where ours go.
         """
         self.name = name
-        command = [sys.executable, "-I", "-S", _LEASH, str(os.getpid()), *argv]
         environment = {**os.environ, **ONE_THREAD}
         # A session of its own: Ctrl-C in the terminal reaches the launcher alone, which then stops in order.
         self._process = subprocess.Popen(
-            command, env=environment, stdout=output, stderr=output, stdin=subprocess.DEVNULL, start_new_session=True
+            leashed(argv),
+            env=environment,
+            stdout=output,
+            stderr=output,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
         )
 
     @property
