@@ -18,6 +18,7 @@ from executive.refinement.boxes import NOWHERE, Boxes, joined
 from executive.refinement.chain import forward_costs, through_costs, traced
 
 Places = NDArray[np.intp]
+PIECES = 16  # that the boxes chosen are cut into at a time, at least
 
 
 class PairBound(Protocol):
@@ -79,12 +80,14 @@ class BoxChain:
     def cut(
         self, index: int, kept: Places, chosen: Places, weight: Array, costs: Costs, limit: float
     ) -> Iterator[None]:
-        """Halve the chosen boxes of a subgoal and forget all but them and the kept ones, in steps.
+        """Cut the chosen boxes of a subgoal and forget all but them and the kept ones, in steps.
 
-        Halves inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
+        Pieces inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
         """
-        children = self.boxes[index].part(chosen).halves(weight)
-        parents = np.concatenate([kept, chosen, chosen])
+        children, parents = self.boxes[index].part(chosen), chosen
+        while len(parents) < PIECES:
+            children, parents = children.halves(weight), np.tile(parents, 2)
+        parents = np.concatenate([kept, parents])
         new = np.arange(len(kept), len(parents))
         before = costs.forward[index - 1] if index else np.zeros(1)
         last = index + 1 == len(self.boxes)
