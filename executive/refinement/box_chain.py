@@ -62,6 +62,12 @@ class BoxChain:
         self._effort = effort
         self._tables = [np.full((len(a), len(b)), -np.inf) for a, b in zip([NOWHERE, *boxes], boxes, strict=False)]
 
+    @property
+    def steps(self) -> float:
+        """How many steps it takes to begin, roughly."""
+        efforts = (bound.effort * table.size for bound, table in zip(self._bounds, self._tables, strict=True))
+        return sum(efforts) / self._effort
+
     def begin(self) -> Iterator[None]:
         """Bound all pairs, in steps."""
         for index, table in enumerate(self._tables):
