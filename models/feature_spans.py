@@ -68,6 +68,12 @@ def _joints(columns: Spans) -> tuple[Case, ...]:
     return tuple(Case((*known, to, at), first & second) for to, first in leaving for at, second in arriving)
 
 
+def _joints_relative(columns: Spans) -> tuple[Case, ...]:
+    a, wa, b, wb, ag, wag, bg, wbg = columns
+    da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
+    return (Case((a, b, da, db, wa, wb, wag, wbg)),)
+
+
 def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
     """The direction from one place to another; between known places exactly what features.py makes of it."""
     around = direction(xg - x, yg - y)
@@ -119,4 +125,5 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "projective": _projective,
     "projective-turn": _projective_turn,
     "joints": _joints,
+    "joints-relative": _joints_relative,
 }
