@@ -69,6 +69,12 @@ def _joints(columns: Spans) -> tuple[Case, ...]:
     return tuple(Case((*known, to, at), first & second) for to, first in leaving for at, second in arriving)
 
 
+def _joints_relative(columns: Spans) -> tuple[Case, ...]:
+    a, wa, b, wb, ag, wag, bg, wbg = columns
+    da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
+    return (Case((a, b, da, db, wa, wb, wag, wbg)),)
+
+
 def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
     """The direction from one place to another; between known places exactly what features.py makes of it."""
     known = x.known & y.known & xg.known & yg.known
@@ -123,4 +129,5 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "projective": _projective,
     "projective-turn": _projective_turn,
     "joints": _joints,
+    "joints-relative": _joints_relative,
 }

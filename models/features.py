@@ -155,6 +155,11 @@ def _joints(columns: tuple[Column, ...], ops: Operations) -> tuple[Column, ...]:
     return v, vg, dist, wrap(sight - leave, ops), wrap(arrive - sight, ops)
 
 
+def _joints_relative(columns: tuple[Column, ...], ops: Operations) -> tuple[Column, ...]:
+    a, wa, b, wb, ag, wag, bg, wbg = columns
+    return a, b, ag - a, bg - b, wa, wb, wag, wbg
+
+
 def _quantities(text: str) -> tuple[Quantity, ...]:
     return tuple(Quantity(*item.split(":")) for item in text.split())
 
@@ -171,6 +176,12 @@ SPACES: dict[str, FeatureSpace] = {
         FeatureSpace("projective", POSE, TOWARD, _projective),
         FeatureSpace("projective-turn", POSE, (*TOWARD, Quantity("turn", "rad")), _projective_turn),
         FeatureSpace("joints", JOINTS, _quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints),
+        FeatureSpace(  # for what depends on where the joints are, as gravity does
+            "joints-relative",
+            JOINTS,
+            _quantities("a:rad b:rad da:rad db:rad wa:rad/s wb:rad/s wag:rad/s wbg:rad/s"),
+            _joints_relative,
+        ),
     )
 }
-direct, relative, projective, projective_turn, joints = SPACES.values()
+direct, relative, projective, projective_turn, joints, joints_relative = SPACES.values()

@@ -31,6 +31,11 @@ class Ring:
         while self._messages[0][1] < wall_ns - self._span_ns or self._bytes > self._most_bytes:
             self._bytes -= len(self._messages.popleft()[0].payload)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to write."""
+        return not self._messages
+
     def write(self, path: Path, facts: Mapping[str, Mapping[str, str]]) -> int:
         """Write everything into a new file; how many messages."""
         tape = Tape(path, facts)

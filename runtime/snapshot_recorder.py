@@ -33,10 +33,13 @@ class SnapshotRecorder:
         if self._reason and now_ns >= self._write_at_ns:
             self._write()
 
-    def ask(self, reason: str, now_ns: int) -> None:
-        """Have what is in memory written at the next turn."""
+    def ask(self, reason: str, now_ns: int) -> bool:
+        """Have what is in memory written at the next turn; False if nothing is there yet."""
+        if self._ring.is_empty:
+            return False
         if not self._reason:
             self._reason, self._write_at_ns = reason, now_ns
+        return True
 
     def close(self) -> Health:
         """Write what a failure left due; nothing else."""

@@ -13,6 +13,7 @@ from runtime.bus_config import DEFAULT_ENDPOINT
 from runtime.planner_process import words_of
 from schemas.errors import UsageError
 from schemas.settings import from_table
+from tools.asked import checked
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +63,9 @@ def deployment(arguments: argparse.Namespace) -> Deployment:
     given = vars(arguments)
     settings = read.executive
     if given.get("seed") is not None:
-        settings = replace(settings, seed=_at_least(given["seed"], 0, "--seed"))
+        settings = replace(settings, seed=checked(given["seed"], 0, "--seed"))
     if given.get("horizon") is not None:
-        horizon = _at_least(given["horizon"], 1, "--horizon")
+        horizon = checked(given["horizon"], 1, "--horizon")
         settings = replace(settings, refinement=replace(settings.refinement, horizon=horizon))
     if given.get("planner") is not None:
         read = replace(read, planner=replace(read.planner, command=given["planner"]))
@@ -90,12 +91,6 @@ def order_of(domain: str, read: Deployment) -> Order:
         words_of(read.planner.command)
         settings = replace(settings, external=read.planner)
     return Order(domain, scenario, settings, read.zoo)
-
-
-def _at_least(value: int, least: int, flag: str) -> int:
-    if value < least:
-        raise UsageError(f"{flag} is {value}, expected at least {least}")
-    return value
 
 
 def _read(path: str) -> Deployment:

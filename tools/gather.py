@@ -6,6 +6,7 @@ import argparse
 import json
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
@@ -14,7 +15,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from executive import domains
 from schemas.errors import UsageError
 from tools import gathering
+from tools.asked import at_least, processes
 from tools.gathering import Work
+
+if TYPE_CHECKING:
+    from tools.run_gathering import Policy
 
 EPILOG = """\
 examples:
@@ -31,11 +36,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    parser.add_argument("robot", help="whose actions: agilo")
+    parser.add_argument("robot", help="whose actions, e.g. agilo")
     parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all that have a model)")
-    parser.add_argument("--episodes", type=int, default=1000, help="how many of each (default: %(default)s)")
-    parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=7, help="draws arguments and noise (default: %(default)s)")
+    count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
+    parser.add_argument("--episodes", type=count, default=1000, help="how many of each (default: %(default)s)")
+    parser.add_argument("--jobs", type=processes, default=2, help="processes (default: %(default)s)")
+    parser.add_argument("--seed", type=seed, default=7, help="draws arguments and noise (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
     other = parser.add_mutually_exclusive_group()
     other.add_argument("--on-policy", nargs="+", metavar="SCENARIO", help="whole runs that refine with current models")
@@ -55,8 +61,6 @@ def run(arguments: argparse.Namespace) -> int:
         Work(name, action, arguments.episodes, arguments.seed, out / action)
         for action in actions_of(name, arguments.actions)
     ]
-    if arguments.episodes < 1:
-        raise UsageError(f"--episodes {arguments.episodes}: expected at least 1")
     for work in works:
         gathering.prepare(work, arguments.resume)
     figures = []
@@ -86,12 +90,26 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         return 0
     for scenario in arguments.on_policy:
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
-    scenarios = tuple(arguments.on_policy)
+    scenarios = tuple(dict.fromkeys(arguments.on_policy))
     policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
-    with Progress(console=Console(stderr=True), disable=arguments.json) as progress:
-        task = progress.add_task("runs", total=len(policy.jobs))
-        for count in run_gathering.run_policy(policy, arguments.jobs):
-            progress.update(task, advance=count)
+    return _run_policy(policy, arguments)
+
+
+def _run_policy(policy: Policy, arguments: argparse.Namespace) -> int:
+    from tools.run_gathering import run_policy
+
+    done, console = 0, Console(stderr=True)
+    try:
+        with Progress(console=console, disable=arguments.json) as progress:
+            task = progress.add_task("runs", total=len(policy.jobs))
+            for count in run_policy(policy, arguments.jobs, arguments.resume):
+                done += count
+                progress.update(task, advance=count)
+    except KeyboardInterrupt:
+        console.print(f"{policy.folder}: kept {done} runs more; --resume goes on")
+        return 130
+    if arguments.json:
+        print(json.dumps({"folder": str(policy.folder), "runs": len(policy.jobs), "run_now": done}))
     return 0
 
 
@@ -105,7 +123,7 @@ def actions_of(domain: str, asked: list[str]) -> list[str]:
     for action in asked:
         if action not in known:
             raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
-    return asked or sorted({action.duration_model.split("/")[0] for action in known.values()})
+    return list(dict.fromkeys(asked)) or sorted({action.duration_model.split("/")[0] for action in known.values()})
 
 
 def _gather(work: Work, jobs: int, quiet: bool) -> dict[str, object]:

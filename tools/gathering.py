@@ -19,13 +19,14 @@ import numpy as np
 
 from executive import domains
 from executive.library import Domain
-from models.episodes import Episode, read_manifest, write_manifest, write_part
+from models.episodes import MANIFEST, Episode, read_manifest, write_manifest, write_part
 from schemas.errors import UsageError
 from tools import lockstep
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
 PART = 20  # episodes in a part: what a kill -9 loses at most, per process
 RANGE_DRAWS = 4096  # to learn the ranges of the arguments as the controller gets them
+COUNTS = ("episodes", "runs", "software")  # of a manifest: may differ when a data set is gone on with
 RANGE_STEP = 0.05  # to which they are rounded outwards
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -90,13 +91,10 @@ def prepare(work: Work, resume: bool) -> None:
     """Make the folder with its manifest, or check that it is the one to go on with.
 
     Raises:
-      UsageError: The folder holds another data set, or the same one without `resume`.
+      UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
     """
     manifest = _manifest(work)
-    if (work.folder / "manifest.json").exists():
-        if not resume:
-            raise UsageError(f"{work.folder}: holds episodes already (expected another --out, or --resume to go on)")
-        _check_same(read_manifest(work.folder), manifest, work.folder)
+    check_resumable(work.folder, manifest, resume)
     work.folder.mkdir(parents=True, exist_ok=True)
     expected = {part_path(work, first).name for first in range(0, work.episodes, PART)}
     for path in (*work.folder.glob("*.tmp"), *work.folder.glob("part-*.parquet")):
@@ -105,10 +103,25 @@ def prepare(work: Work, resume: bool) -> None:
     write_manifest(work.folder, manifest)
 
 
-def _check_same(found: dict[str, Any], expected: dict[str, Any], folder: Path) -> None:
-    for key, value in expected.items():
-        if key not in ("episodes", "software") and found.get(key) != value:
+def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> None:
+    """Whether the data set that `manifest` describes may be made in a folder, or gone on with there.
+
+    Raises:
+      UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
+    """
+    if not (folder / MANIFEST).exists():
+        return
+    if not resume:
+        raise UsageError(f"{folder}: holds episodes already (expected another --out, or --resume to go on)")
+    found = read_manifest(folder)
+    for key, value in manifest.items():
+        if key not in COUNTS and found.get(key) != value:
             raise UsageError(f"{folder}: was gathered with {key} = {found.get(key)!r}, expected {value!r} to resume")
+    if manifest["episodes"] < found.get("episodes", 0):  # to go on must not throw finished ones away
+        raise UsageError(
+            f"{folder}: --episodes is {manifest['episodes']}, expected at least {found['episodes']} "
+            "as the folder was made for, to resume"
+        )
 
 
 def _manifest(work: Work) -> dict[str, Any]:

@@ -89,14 +89,22 @@ def _record(recorder: Recorder | SnapshotRecorder, questions: Questions | None, 
     shown = Live(console=Console(stderr=True), refresh_per_second=4, transient=True)
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
         while not stop.requested:
-            question = questions.poll() if questions is not None else None
-            if question is not None and isinstance(recorder, SnapshotRecorder):
-                recorder.ask(question.text, time.monotonic_ns())
-                question.accept("the snapshot will be written")
             recorder.turn(time.monotonic_ns())
+            if questions is not None and isinstance(recorder, SnapshotRecorder):
+                _answer(recorder, questions)
             if live is not None:
                 live.update(_line(recorder.health))
             time.sleep(TURN_S)
+
+
+def _answer(recorder: SnapshotRecorder, questions: Questions) -> None:
+    question = questions.poll()
+    if question is None:
+        return
+    if recorder.ask(question.text, time.monotonic_ns()):
+        question.accept("the snapshot will be written")
+    else:
+        question.refuse("nothing has been heard on the bus yet, so there is nothing to write")
 
 
 def _line(health: Health) -> str:

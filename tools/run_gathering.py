@@ -5,6 +5,8 @@ A model is wrong where it has not looked, and refinement goes exactly there; the
 
 from __future__ import annotations
 
+import hashlib
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -47,21 +49,42 @@ class Policy:
         return [(scenario, first + k) for k in range(self.runs) for scenario in self.scenarios]
 
 
-def run_policy(policy: Policy, jobs: int) -> Iterator[int]:
-    """Run what has not been run yet, in parallel; yields runs finished."""
+def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
+    """Run what has not been run yet, in parallel; yields runs finished.
+
+    Raises:
+      UsageError: The folder holds other episodes, or the same ones without `resume`; models that cannot be trusted.
+    """
     from joblib import Parallel, delayed
 
-    about = {"source": "lock-step, refined choices", "seed": policy.seed, "scenarios": list(policy.scenarios)}
-    prepare(policy.domain, policy.folder, {**about, "episodes": policy.runs}, policy.jobs)
+    about = {
+        "source": "lock-step, refined choices",
+        "seed": policy.seed,
+        "scenarios": list(policy.scenarios),
+        "models_sha256": models_hash(domains.load(policy.domain).robot, policy.zoo),
+    }
+    prepare(policy.domain, policy.folder, {**about, "episodes": policy.runs}, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 
 
-def prepare(domain: str, folder: Path, about: dict[str, Any], runs: Sequence[Any]) -> None:
-    """Make a data set folder, with its manifest, for every action that has a duration model."""
+def models_hash(robot: str, zoo: str) -> str:
+    """SHA-256 over the models whose choices are run: other models, other episodes."""
+    loaded: Any = _models(robot, zoo)
+    models = {**loaded.durations, **loaded.successes}
+    said = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
+    return hashlib.sha256("\n".join(said).encode()).hexdigest()
+
+
+def prepare(domain: str, folder: Path, about: dict[str, Any], runs: Sequence[Any], resume: bool) -> None:
+    """Make a data set folder, with its manifest, for every action that has a duration model.
+
+    Raises:
+      UsageError: One of them holds other episodes, or the same ones without `resume`; nothing is written then.
+    """
     loaded = domains.load(domain)
-    for action in actions(domain):
-        manifest = {
+    manifests = {
+        folder / action: {
             "robot": loaded.robot,
             "domain": domain,
             "action": action,
@@ -71,8 +94,13 @@ def prepare(domain: str, folder: Path, about: dict[str, Any], runs: Sequence[Any
             "on_policy": True,
             **about,
         }
-        (folder / action).mkdir(parents=True, exist_ok=True)
-        write_manifest(folder / action, manifest)
+        for action in actions(domain)
+    }
+    for place, manifest in manifests.items():
+        gathering.check_resumable(place, manifest, resume)
+    for place, manifest in manifests.items():
+        place.mkdir(parents=True, exist_ok=True)
+        write_manifest(place, manifest)
 
 
 def actions(domain: str) -> list[str]:
@@ -94,21 +122,21 @@ def cut_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dic
     """Cut recordings into data sets; returns the number of episodes by action.
 
     Raises:
-      UsageError: A file is no recording of an executive's run, or none holds a finished action.
+      UsageError: A file is no recording of an executive's run, none holds a finished action, or the folder holds
+        episodes already; nothing is written then.
     """
-    prepare(domain, folder, {"source": "recordings", "recordings": [path.name for path in recordings]}, recordings)
-    counts = dict.fromkeys(actions(domain), 0)
-    number = 0
-    for path in recordings:
-        cut = Cutter(domains.load(domain)).read(_messages(path))
-        numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(cut)]
-        write(domain, folder, f"{number:06d}", numbered)
-        number += len(cut)
-        for action, _ in cut:
-            counts[action] += 1
-    if not number:
+    cut = [Cutter(domains.load(domain)).read(_messages(path)) for path in recordings]
+    if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
-    return counts
+    about = {"source": "recordings", "recordings": [path.name for path in recordings]}
+    prepare(domain, folder, about, recordings, resume=False)
+    number = 0
+    for one in cut:
+        numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
+        write(domain, folder, f"{number:06d}", numbered)
+        number += len(one)
+    found = Counter(action for one in cut for action, _ in one)
+    return {action: found[action] for action in actions(domain)}
 
 
 def _messages(path: Path) -> Iterator[Message]:
@@ -127,7 +155,8 @@ def _messages(path: Path) -> Iterator[Message]:
 
 
 def _mark(policy: Policy, first: int) -> Path:
-    return policy.folder / f"runs-{first:06d}.done"
+    """Says that some runs are done; its name says how many, for a last chunk that was shorter may grow."""
+    return policy.folder / f"runs-{first:06d}-{min(first + CHUNK, len(policy.jobs)):06d}.done"
 
 
 def _chunk(policy: Policy, first: int) -> int:

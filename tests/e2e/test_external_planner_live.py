@@ -47,6 +47,7 @@ def run_with(tmp_path, planner, before_percepts=lambda: None):
         assert executive.wait(60) == 0
         recorder.stop()
     verify = subprocess.run(tailor("verify", str(path), "--json"), capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert verify.stdout, verify.stderr
     (verdict,) = json.loads(verify.stdout)
     assert verdict["difference"] is None
     found = {}

@@ -1,5 +1,7 @@
 """Gathering: same seed, same bits, however it is spread, interrupted or resumed."""
 
+import json
+import shutil
 from pathlib import Path
 
 import joblib
@@ -72,9 +74,55 @@ def test_gathering_over_other_episodes_is_refused(gathered: Path, capsys: pytest
     assert "seed = 7, expected 8" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("wrong", [["r2d2"], ["agilo", "fly"], ["agilo", "--episodes", "0"]])
-def test_bad_input_is_told_before_anything_starts(wrong: list[str], tmp_path: Path) -> None:
+def test_going_on_with_fewer_episodes_throws_none_away(gathered: Path, tmp_path: Path, capsys) -> None:
+    """The default of --episodes is small, and easily left out."""
+    folder = shutil.copytree(gathered, tmp_path / "goToPose")
+    assert gather(tmp_path, "--resume", "--episodes", "3") == 2
+    assert f"--episodes is 3, expected at least {COUNT}" in capsys.readouterr().err
+    assert parts(folder) == parts(gathered)
+
+
+def test_whole_runs_do_not_overwrite_random_episodes(gathered: Path, capsys) -> None:
+    before = (gathered / "manifest.json").read_text()
+    into = ["--out", str(gathered.parent), "--episodes", "1", "--jobs", "1", "--json"]
+    assert main(["gather", "agilo", "--on-policy", "approach", *into]) == 2
+    assert "goToPose: holds episodes already" in capsys.readouterr().err
+    assert (gathered / "manifest.json").read_text() == before
+    assert not (gathered.parent / "approachBall").exists()
+
+
+def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Path, capsys) -> None:
+    def runs(*more: str) -> int:
+        words = ["gather", "agilo", "--on-policy", "approach", "--out", str(tmp_path), "--jobs", "1", "--json", *more]
+        return main(words)
+
+    assert runs("--episodes", "1") == 0
+    assert json.loads(capsys.readouterr().out) == {"folder": str(tmp_path), "runs": 1, "run_now": 1}
+    assert runs("--episodes", "2", "--resume") == 0  # a chunk that was shorter grows
+    assert len(read_data_set(tmp_path / "approachBall").episodes) == 2
+    capsys.readouterr()
+    assert runs("--episodes", "2", "--resume") == 0
+    assert json.loads(capsys.readouterr().out)["run_now"] == 0
+    assert runs("--episodes", "2", "--resume", "--seed", "8") == 2
+    assert "with seed = 7, expected 8" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["r2d2"], "no robot 'r2d2'"),
+        (["agilo", "fly"], "no action 'fly'"),
+        (["agilo", "--episodes", "0"], "--episodes is 0, expected at least 1"),
+        (["agilo", "--episodes", "many"], "--episodes is 'many', expected a whole number"),
+        (["agilo", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
+        (["agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
+        (["agilo", "--on-policy", "approach", "--zoo", "nowhere"], "no action models for robot 'agilo' in nowhere"),
+        (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
+    ],
+)
+def test_bad_input_is_told_before_anything_starts(wrong: list[str], said: str, tmp_path: Path, capsys) -> None:
     assert main(["gather", *wrong, "--out", str(tmp_path / "x")]) == 2
+    assert said in capsys.readouterr().err.splitlines()[-1]
     assert not (tmp_path / "x").exists()
 
 

@@ -87,6 +87,13 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         (["models", "show", "agilo/fly"], "no such file"),
         (["models", "list", "--zoo", "nowhere"], "no action models"),
         (["train", "agilo", "--data", "nowhere"], "no data sets"),
+        (["train", "agilo", "--failure-learner", "magic"], "learner 'magic' is unknown for success"),
+        (["train", "agilo", "--energy-features", "magic"], "no feature space 'magic'"),
+        (["train", "agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
+        (
+            ["gather", "agilo", "goToPose", "--episodes", "1", "--out", "/dev/null"],
+            "/dev/null/goToPose: Not a directory",
+        ),
         (["evaluate", "table9"], "evaluation 'table9' is unknown"),
         (["evaluate"], "no evaluation named"),
         (["evaluate", "table1", "--robot", "r2d2"], "no action models for robot 'r2d2'"),

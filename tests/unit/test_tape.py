@@ -327,6 +327,19 @@ def test_a_ring_is_bounded_in_bytes_too(tmp_path):
     assert ring.write(tmp_path / "ring.mcap", {}) == 10
 
 
+def test_a_snapshot_of_nothing_is_refused(tmp_path):
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    assert not recorder.ask("by hand", 0)
+    recorder.turn(0)
+    intake.put(odometry(1))
+    recorder.turn(1)
+    assert list(tmp_path.iterdir()) == []
+    assert recorder.ask("by hand", 2)
+    recorder.turn(2)
+    assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
+
+
 def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
     intake = Intake()
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))

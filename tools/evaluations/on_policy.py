@@ -19,7 +19,7 @@ from models.training import fit
 from tools import gathering
 from tools.evaluations.learned import configure_learned
 from tools.evaluations.report import Report, tell
-from tools.run_gathering import Policy, actions, run_policy
+from tools.run_gathering import Policy, actions, models_hash, run_policy
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]
@@ -48,7 +48,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _gathered(domain: str, seed: int, arguments: argparse.Namespace) -> Path:
-    folder = arguments.store / "policy" / f"{gathering.source_hash(arguments.robot, domain)[:12]}-{seed}"
+    chooses = models_hash(arguments.robot, arguments.zoo)[:12]
+    made_by = gathering.source_hash(arguments.robot, domain)[:12]
+    folder = (
+        arguments.store
+        / "policy"
+        / "-".join([made_by, chooses, *arguments.scenarios, str(arguments.episodes), str(seed)])
+    )
     policy = Policy(domain, tuple(arguments.scenarios), arguments.episodes, seed, arguments.zoo, folder)
     for _ in run_policy(policy, arguments.jobs):
         pass
