@@ -95,7 +95,7 @@ class Certificate:
             costs = chain.costs()
             if self._note(costs) or stalling.stalls(self.bound, self.value):
                 return
-            if turn % LOOK_EVERY == 0:
+            if turn % LOOK_EVERY == LOOK_EVERY - 1:
                 self._look(chain, costs)
             kept, chosen = self._chosen(chain, costs, index)
             if len(chosen):
