@@ -28,7 +28,7 @@ HOPELESS = 0.3  # of the checks just to begin: what is left will not get far
 LOOK_EVERY = 4  # turns of cutting
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
-FIRST_CUTS = 4  # before anything is bounded
+FIRST_CUTS = 6, 4  # before anything is bounded: of the only subgoal that has free parameters, of each of several
 
 
 class Certificate:
@@ -108,9 +108,9 @@ class Certificate:
         for bound, *ends in zip(self._bounds, [NOWHERE, *boxes], boxes, strict=False):
             bounds.append(bound.within(*ends))
             yield
-        for i, block in enumerate(self._blocks):
-            for _ in range(FIRST_CUTS if len(block) else 0):
-                boxes[i] = boxes[i].halves(weight[block])
+        free = [i for i, block in enumerate(self._blocks) if len(block)]
+        for i in free * FIRST_CUTS[len(free) > 1]:
+            boxes[i] = boxes[i].halves(weight[self._blocks[i]])
         return BoxChain(bounds, boxes, EFFORT)
 
     def _note(self, costs: Costs) -> bool:
