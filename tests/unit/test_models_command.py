@@ -52,6 +52,20 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert json.loads(capsys.readouterr().out)["kind"] == "duration"
 
 
+def test_a_robot_s_name_stands_for_all_its_models(capsys) -> None:
+    assert main(["models", "list", "powercube", "--json"]) == 0
+    said = [row["model"] for row in json.loads(capsys.readouterr().out)]
+    assert "powercube/reach/duration" in said
+    assert all(name.startswith("powercube/") for name in said)
+    assert main(["models", "list", "r2d2"]) == 2
+    assert "'r2d2' has no models" in capsys.readouterr().err
+
+
+def test_tables_in_a_pipe_tell_names_whole(capsys) -> None:
+    assert main(["models", "list"]) == 0
+    assert "agilo/approachBall/duration" in capsys.readouterr().out
+
+
 def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert main(["models", "rules", "agilo/goToPose"]) == 0
     first, _, rule, *_ = capsys.readouterr().out.splitlines()
