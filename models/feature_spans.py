@@ -46,8 +46,7 @@ def _projective(columns: Spans) -> tuple[Case, ...]:
     sight = _sight(x, y, xg, yg)
     to = sight - phi
     known = v, vg, length(dx, dy), unsigned(to)
-    ahead = _wrapped(to)
-    left, right = _may_be_left(ahead), _may_be_right(ahead)
+    left, right = _may_lie_in_half(to, 0.0), _may_lie_in_half(to, -np.pi)
     cases = []
     for at, beyond in _wrapped(phig - sight):
         cases += [Case((*known, at), left & beyond), Case((*known, -at), right & beyond)]
@@ -111,16 +110,10 @@ def _wrapped(angle: Span) -> Wrapped:
     return (first, np.ones_like(beyond)), (second, beyond)
 
 
-def _may_be_left(ahead: Wrapped) -> Bools:
-    """Whether a wrapped angle may be zero or above."""
-    (first, always), (second, beyond) = ahead
-    return always & (first.upper >= 0) | beyond & (second.upper >= 0)
-
-
-def _may_be_right(ahead: Wrapped) -> Bools:
-    """Whether a wrapped angle may be below zero."""
-    (first, always), (second, beyond) = ahead
-    return always & (first.lower < 0) | beyond & (second.lower < 0)
+def _may_lie_in_half(angle: Span, begin: float) -> Bools:
+    """Whether an angle may lie, but for whole turns, in the half turn that begins there."""
+    wide = angle.wider(ANGLE_ERROR)
+    return np.asarray(np.floor((wide.upper - begin) / TURN) >= np.ceil((wide.lower - begin - np.pi) / TURN))
 
 
 FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {

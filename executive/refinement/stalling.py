@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 WORTH = 5e-4  # of the value that is to be proven: a rise
-PATIENCE = 8  # turns without one; proofs that got there had no two in a row
+PATIENCE = 4  # turns without one; proofs that got there had no two in a row
 
 
 class Stalling:
