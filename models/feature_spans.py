@@ -75,7 +75,8 @@ def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
     if not known.any():
         return around
     dx, dy = (np.float32(there.lower) - np.float32(here.lower) for here, there in ((x, xg), (y, yg)))
-    exact = features.direction(dx, dy, features.length(dx, dy, NUMPY), 0.0, NUMPY)
+    with np.errstate(invalid="ignore", divide="ignore"):  # the same place is not known, below
+        exact = features.direction(dx, dy, features.length(dx, dy, NUMPY), 0.0, NUMPY)
     known = known & (around.upper - around.lower < np.pi)  # else the places are too near each other
     return Span(np.where(known, exact, around.lower), np.where(known, exact, around.upper))
 
