@@ -59,7 +59,7 @@ def withdraw_benefit(zoo: Path, robot: str) -> bool:
 def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> bytes:
     """Double `arguments` (n, k) to float `slower` (n,)."""
     graph, columns = Graph(), space(names)
-    features = as_columns(graph, add_features(graph, columns, "arguments"), len(columns.features))
+    features = as_columns(graph, add_features(graph, columns, "arguments"))
     slower = add_probability(graph, features, trained.trees.steps)
     return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
 

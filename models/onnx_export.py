@@ -34,7 +34,7 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
         case BorrowedRegressor():
             from models.onnx_borrowed import add_regressor
 
-            columns = as_columns(graph, features, len(space.features))
+            columns = as_columns(graph, features)
             mean, spread = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.spread_)
         case _:
             raise TypeError(f"no export for {type(learner).__name__}")
@@ -48,7 +48,7 @@ def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) 
       TypeError: The learner is none of ours.
     """
     graph = Graph()
-    features = as_columns(graph, add_features(graph, space, "arguments"), len(space.features))
+    features = as_columns(graph, add_features(graph, space, "arguments"))
     match learner:
         case FailureModel():
             success = add_probability(graph, features, learner.steps_)

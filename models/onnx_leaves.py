@@ -39,17 +39,17 @@ def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArra
 
 def add_leaves(sink: Sink, features: str, trees: Sequence[SplitTree], width: int) -> str:
     """Leaf numbers (k, n) of k trees over `width` features, each counted from 0; rows with a one: (width + 1, n)."""
-    cells = cells_of(trees, width)
-    leaf = _walked(sink, features, trees, width) if cells is None else _looked_up(sink, features, cells, width)
+    cells = cells_of(trees, width) if len(trees) > 1 else None  # a single tree is walked down as quickly
+    leaf = _walked(sink, features, trees) if cells is None else _looked_up(sink, features, cells, width)
     shape = sink.constant(np.array([len(trees), -1]))
     return str(sink.add("Cast", sink.add("Reshape", leaf, shape), to=TensorProto.INT32))
 
 
-def _walked(sink: Sink, features: str, trees: Sequence[SplitTree], width: int) -> str:
+def _walked(sink: Sink, features: str, trees: Sequence[SplitTree]) -> str:
     """One ensemble for each tree, (k·n, 1): one ensemble with several targets costs eight times as much."""
-    columns = as_columns(sink, features, width + 1)
+    columns = as_columns(sink, features)
     each = [add_steps(sink, columns, [(tree, np.arange(tree.leaves, dtype=np.float32))]) for tree in trees]
-    return str(sink.add("Concat", *each, axis=0))
+    return str(sink.add("Concat", *each, axis=0) if len(each) > 1 else each[0])
 
 
 def _looked_up(sink: Sink, features: str, cells: Cells, width: int) -> str:
