@@ -16,6 +16,8 @@ from models.runtime import BENEFIT, load_benefit, load_robot
 from schemas.errors import UsageError
 from schemas.settings import from_table
 
+PLACE_UNIT = "m"
+
 
 @dataclass(frozen=True, slots=True)
 class Order:
@@ -43,12 +45,29 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
     """A robot's models, with its benefit tree if that is asked for and there is one.
 
     Raises:
-      UsageError: A missing or altered model, or a benefit tree that was learned with others.
+      UsageError: A missing or altered model, one that has not seen what its action asks for, or a benefit tree that
+        was learned with others.
     """
     folder = Path(zoo) if zoo else None
-    durations, successes = load_robot(robot, folder)
+    durations, successes = load_robot(robot, folder, asked_ranges(robot))
     benefit = load_benefit(robot, folder, {**durations, **successes}) if gated else None
     return Models(durations, successes, None if benefit is None else check_benefit(benefit))
+
+
+def asked_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
+    """Ranges that a robot's actions declare, by the folder of their models and argument.
+
+    Places are left out: models know them by distance and direction, and how far apart two may be the arguments do not
+    say one by one.
+    """
+    ranges: dict[str, dict[str, tuple[float, float]]] = {}
+    for domain in filter(lambda domain: domain.robot == robot, map(domains.load, domains.DOMAINS)):
+        for action in domain.actions.values():
+            known = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
+            for asked in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
+                lower, upper = known.get(asked.name, (asked.lower, asked.upper))
+                known[asked.name] = min(lower, asked.lower), max(upper, asked.upper)
+    return ranges
 
 
 def provenance(order: Order, context: Context) -> dict[str, Any]:

@@ -239,6 +239,10 @@ class ModelBounds(Protocol):
         """The largest mean."""
         ...
 
+    def within(self, lower: Columns, upper: Columns) -> ModelBounds:
+        """The same for arguments that lie between these: quicker to compute."""
+        ...
+
     @property
     def effort(self) -> int:
         """Elementary comparisons that one bound takes, roughly."""

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from models.card_shape import card_error
 from schemas.errors import UsageError
 
 FORMAT = 1
@@ -61,7 +62,7 @@ def read_card(path: Path) -> dict[str, Any]:
     """Read a card and check that it says all that a card says.
 
     Raises:
-      UsageError: The file is missing, not JSON, of another format or incomplete.
+      UsageError: The file is missing, not JSON, of another format, incomplete, or something in it of another shape.
     """
     try:
         card = json.loads(read_bytes(path, MAX_CARD_BYTES))
@@ -73,6 +74,9 @@ def read_card(path: Path) -> dict[str, Any]:
     missing = [name for name in FIELDS if name not in card]
     if missing:
         raise UsageError(f"{path}: card lacks {', '.join(missing)}, expected {', '.join(FIELDS)}")
+    wrong = card_error(card)
+    if wrong:
+        raise UsageError(f"{path}: card's {wrong}")
     return card
 
 

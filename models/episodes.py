@@ -6,8 +6,10 @@ A part appears whole or not at all, so that gathering may be killed at any time 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import os
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,6 +25,7 @@ from schemas.errors import UsageError
 Array = NDArray[np.float64]
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
 MANIFEST = "manifest.json"
+WHOLE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
 UNOBSERVED = "unobserved"  # "failure" of an episode that says nothing about success
 
 
@@ -48,7 +51,7 @@ def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) ->
     try:
         for episode in episodes:
             table = _table(episode, names)
-            writer = writer or pq.ParquetWriter(temporary, table.schema, compression="zstd")
+            writer = writer or pq.ParquetWriter(temporary, table.schema, compression="zstd", write_page_checksum=True)
             writer.write_table(table)
     finally:
         if writer is not None:
@@ -88,12 +91,31 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """
     try:
         manifest = json.loads((folder / MANIFEST).read_text())
-        manifest["arguments"], manifest["action"], manifest["robot"]
     except OSError:
         raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` makes them)") from None
-    except (ValueError, KeyError, TypeError) as error:
+    except ValueError as error:
         raise UsageError(f"{folder / MANIFEST}: not a manifest ({error}), `tailor gather` writes them") from None
+    wrong = _manifest_error(manifest)
+    if wrong:
+        raise UsageError(f"{folder / MANIFEST}: not a manifest ({wrong}), `tailor gather` writes them")
     return dict(manifest)
+
+
+def _manifest_error(manifest: Any) -> str:
+    """What is wrong with it; empty if nothing that training needs."""
+    if not isinstance(manifest, dict):
+        return f"a {type(manifest).__name__}, expected an object"
+    for key in ("robot", "action"):
+        if not isinstance(manifest.get(key), str):
+            return f"{key} is {manifest.get(key)!r}, expected a name"
+    said = manifest.get("arguments")
+    parts = {"name": str, "unit": str, "lower": (int, float), "upper": (int, float)}
+    if not isinstance(said, list) or not said:
+        return f"arguments is {said!r}, expected a list of {', '.join(parts)}"
+    for each in said:
+        if not isinstance(each, dict) or not all(isinstance(each.get(key), kind) for key, kind in parts.items()):
+            return f"argument {each!r}, expected {', '.join(parts)}"
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,21 +144,45 @@ def read_data_set(folder: Path) -> DataSet:
     digest = hashlib.sha256()
     for path in sorted(folder.glob("part-*.parquet")):
         digest.update(path.read_bytes())
-        try:
-            table = pq.read_table(path)
-        except (pa.ArrowException, OSError) as error:
-            raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
-        episodes.extend(_episodes(table, names, bool(manifest.get("on_policy"))))
+        episodes.extend(_episodes(_read_part(path, names), names, bool(manifest.get("on_policy"))))
+    numbers = [episode.number for episode in episodes]
+    if len(set(numbers)) < len(numbers):
+        twice = next(number for number, count in Counter(numbers).items() if count > 1)
+        raise UsageError(f"{folder}: holds episode {twice} twice, expected each once: tests must be of unseen ones")
     return DataSet(manifest, tuple(episodes), digest.hexdigest())
+
+
+def _read_part(path: Path, names: Sequence[str]) -> pa.Table:
+    """A part with all that it must hold.
+
+    Raises:
+      UsageError: It cannot be read, is damaged, lacks a column, or holds what is no number.
+    """
+    try:
+        table = pq.read_table(path, page_checksum_verification=True)
+    except (pa.ArrowException, OSError) as error:
+        raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
+    numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
+    missing = [name for name in (*WHOLE, *numbers) if name not in table.column_names]
+    if missing or not table.num_rows:
+        raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
+    for name in numbers:
+        if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
+            raise UsageError(f"{path}: column {name} holds what is no finite number, expected some everywhere")
+    return table
 
 
 def merge(sets: Sequence[DataSet]) -> DataSet:
     """Several data sets of one action as one; the first one's manifest speaks, its ranges stand.
 
     Raises:
-      UsageError: They are of different robots, actions or arguments.
+      UsageError: They are of different robots, actions or arguments, or two hold the same episodes.
     """
     first, *others = sets
+    for one, other in itertools.combinations(sets, 2):
+        if one.sha256 == other.sha256 or _drawn(one.manifest) == _drawn(other.manifest) is not None:
+            action, seed = one.manifest["action"], one.manifest.get("seed")
+            raise UsageError(f"two data sets hold the same episodes of {action} (seed {seed}), expected each once")
     for other in others:
         for key in ("robot", "action"):
             if other.manifest[key] != first.manifest[key]:
@@ -147,6 +193,13 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     policy = sum(len(each.episodes) for each in sets if each.manifest.get("on_policy"))
     digest = hashlib.sha256("".join(each.sha256 for each in sets).encode()).hexdigest() if others else first.sha256
     return DataSet({**first.manifest, "on_policy": policy}, tuple(episodes), digest)
+
+
+def _drawn(manifest: Mapping[str, Any]) -> list[Any] | None:
+    """What decided which episodes a data set holds; None where no seed did."""
+    if manifest.get("seed") is None:
+        return None
+    return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256")]
 
 
 def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Episode]:

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from models import features
 from models.features import NUMPY
-from models.spans import ANGLE_ERROR, ARGUMENT_ERROR, TURN, Span, direction, length, magnitude, unsigned
+from models.spans import ANGLE_ERROR, ARGUMENT_ERROR, NEAR, TURN, Span, direction, length, magnitude, unsigned
 
 Bools = NDArray[np.bool_]
 Spans = tuple[Span, ...]
 Wrapped = tuple[tuple[Span, Bools], tuple[Span, Bools]]  # stretches of an angle, and where there is each
+FAR = 2 * NEAR  # m: between places so far apart there is one line of sight
 AT_REST = 1e-7  # well below what features.py calls the same place
 
 
@@ -68,16 +69,25 @@ def _joints(columns: Spans) -> tuple[Case, ...]:
     return tuple(Case((*known, to, at), first & second) for to, first in leaving for at, second in arriving)
 
 
+def _joints_relative(columns: Spans) -> tuple[Case, ...]:
+    a, wa, b, wb, ag, wag, bg, wbg = columns
+    da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
+    return (Case((a, b, da, db, wa, wb, wag, wbg)),)
+
+
 def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
     """The direction from one place to another; between known places exactly what features.py makes of it."""
-    around = direction(xg - x, yg - y)
     known = x.known & y.known & xg.known & yg.known
     if not known.any():
-        return around
+        return direction(xg - x, yg - y)
     dx, dy = (np.float32(there.lower) - np.float32(here.lower) for here, there in ((x, xg), (y, yg)))
-    with np.errstate(invalid="ignore", divide="ignore"):  # the same place is not known, below
-        exact = features.direction(dx, dy, features.length(dx, dy, NUMPY), 0.0, NUMPY)
-    known = known & (around.upper - around.lower < np.pi)  # else the places are too near each other
+    with np.errstate(invalid="ignore", divide="ignore"):  # the same place has no direction, and is not known, below
+        length = features.length(dx, dy, NUMPY)
+        exact = features.direction(dx, dy, length, 0.0, NUMPY)
+    known = known & (length > FAR)
+    if known.all():
+        return Span(exact, exact)
+    around = direction(xg - x, yg - y)
     return Span(np.where(known, exact, around.lower), np.where(known, exact, around.upper))
 
 
@@ -120,4 +130,5 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "projective": _projective,
     "projective-turn": _projective_turn,
     "joints": _joints,
+    "joints-relative": _joints_relative,
 }

@@ -156,6 +156,11 @@ def _joints(rows: Rows, ops: Operations) -> Rows:
     return ops.stack(v, vg, dist, wrap(ops.stack(sight - leave, arrive - sight), ops))
 
 
+def _joints_relative(rows: Rows, ops: Operations) -> Rows:
+    places = rows[[0, 2]]
+    return ops.stack(places, rows[[4, 6]] - places, rows[[1, 3, 5, 7]])
+
+
 def _quantities(text: str) -> tuple[Quantity, ...]:
     return tuple(Quantity(*item.split(":")) for item in text.split())
 
@@ -172,6 +177,12 @@ SPACES: dict[str, FeatureSpace] = {
         FeatureSpace("projective", POSE, TOWARD, _projective),
         FeatureSpace("projective-turn", POSE, (*TOWARD, Quantity("turn", "rad")), _projective_turn),
         FeatureSpace("joints", JOINTS, _quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints),
+        FeatureSpace(  # for what depends on where the joints are, as gravity does
+            "joints-relative",
+            JOINTS,
+            _quantities("a:rad b:rad da:rad db:rad wa:rad/s wb:rad/s wag:rad/s wbg:rad/s"),
+            _joints_relative,
+        ),
     )
 }
-direct, relative, projective, projective_turn, joints = SPACES.values()
+direct, relative, projective, projective_turn, joints, joints_relative = SPACES.values()

@@ -1,12 +1,14 @@
-"""The least that each tree of a model can say for boxes of features: the least over the leaves that a box meets.
+"""The least and the most that each tree of a model can say for boxes of features, over the leaves that a box meets.
 
 A leaf's formula is a sum over features, so that what depends on one side of a pair is computed for that side alone.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from enum import Enum
 from functools import reduce
-from typing import Any
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,88 +20,120 @@ Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Places = NDArray[np.intp]
 Spans = tuple[Span, ...]
+Ends = tuple[Floats, Floats]
 
 ROUNDING = 2.0**-21  # of the terms of a sum: eight units in the last place
 FARTHEST = 10.0  # no feature is larger, in metres or radians
+WORTH_LEAVING_OUT = 10_000  # boxes and leaves: fewer are compared sooner than the leaves that none meets are left out
+
+
+class Side(Enum):
+    """What is asked of trees: the least that they say, the least of the opposite (minus the most), or both."""
+
+    LEAST = slice(0, 1)
+    OPPOSITE = slice(1, 2)
+    BOTH = slice(0, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Boxes of features, and the leaves that any of them meets."""
+
+    ends: tuple[Ends, ...]  # of each feature, in single precision, which arguments are rounded to
+    leaves: Places | slice
+    met: Bools  # (leaves, ...) which boxes meet each
+    starts: Places  # first of each tree's leaves
+    empty: bool  # a tree has no leaf that any box meets: there are no such features
 
 
 class LeafBounds:
-    """Least values of the trees of one model.
+    """Least and largest values of the trees of one model.
 
     `slack` is how far single precision may be off, here and in the model itself.
 
     Args:
       boxes: Its trees.
+      slack: If it is known already.
     """
 
-    def __init__(self, boxes: TreeBoxes) -> None:
+    def __init__(self, boxes: TreeBoxes, slack: float | None = None) -> None:
         self.boxes = boxes
-        self._tree = np.repeat(np.arange(len(boxes.first)), np.diff([*boxes.first, len(boxes.low)]))
-        self._rises = boxes.slopes >= 0
-        self._flat = not boxes.slopes.any()
-        ends = np.maximum(*(np.abs(np.clip(side, -FARTHEST, FARTHEST)) for side in (boxes.lower, boxes.upper)))
-        self.slack = ROUNDING * float((np.abs(boxes.intercept) + (np.abs(boxes.slopes) * ends).sum(axis=1)).max())
+        self.trees = len(boxes.first)
+        self.leaves = len(boxes.low)
+        self.slack = _slack(boxes) if slack is None else slack
+        bounded = np.isfinite(boxes.lower) | np.isfinite(boxes.upper)
+        self._decide, self._count = (np.flatnonzero(some.any(axis=0)) for some in (bounded, boxes.slopes))
+        self._slopes, self._intercept = (np.stack([one, -one]) for one in (boxes.slopes, boxes.intercept))
+        self._low, self._high = np.stack([boxes.low, -boxes.high]), np.stack([boxes.high, -boxes.low])
 
-    @property
-    def leaves(self) -> int:
-        """Of all trees."""
-        return len(self._tree)
+    def within(self, features: Spans, margin: float) -> LeafBounds:
+        """The same trees for features that lie within these, or `margin` beside them.
 
-    def least(self, features: Spans, k_std: float = 0.0, trees: Bools | None = None) -> Floats:
-        """The least of each tree, shape (trees, ...), for features whose spans broadcast to (...).
-
-        Where leaves have a spread of their own, `k_std` times that is added. Only `trees` are asked, where given.
+        Leaves that are out of reach are left out, and of the others the sides that no such features are beyond.
         """
-        leaves = np.arange(self.leaves) if trees is None else np.flatnonzero(trees[self._tree])
-        leaves, met = self._met(features, leaves)
-        said = self._formulas(features, leaves)
-        if self.boxes.spread is not None:
-            said = said + _along(np.float32(k_std) * self.boxes.spread[leaves], features)
-        total = np.where(met, said, np.float32(np.inf))
-        starts = np.flatnonzero(np.diff(self._tree[leaves], prepend=-1))
-        least: Floats = np.minimum.reduceat(total, starts, axis=0)
-        return least
+        wide = tuple(span.wider(margin) for span in features)
+        meeting = self.meeting(wide)
+        reached = np.zeros(self.leaves, bool)
+        reached[meeting.leaves] = meeting.met.reshape(len(meeting.met), -1).any(axis=1)
+        lowest, highest = np.array([(span.lower.min(), span.upper.max()) for span in wide]).T
+        return LeafBounds(self.boxes.part(reached).inside(lowest, highest), self.slack)
 
-    def _met(self, features: Spans, leaves: Places) -> tuple[Places, Bools]:
-        """The leaves that any box meets, and which boxes meet each, (leaves, ...): the quick questions come first."""
+    def meeting(self, features: Spans) -> Meeting:
+        """Which leaves are met by features whose spans broadcast to (...)."""
+        boxes, axes = self.boxes, features[0].lower.ndim
+        ends = tuple((span.lower.astype(np.float32), span.upper.astype(np.float32)) for span in features)
         masks: dict[tuple[int, ...], Bools] = {}
-        for j in sorted(range(len(features)), key=lambda j: features[j].lower.size):
-            lower, upper = _single(features[j])
-            beyond = lower > _along(self.boxes.upper[leaves, j], features)
-            met = ~(beyond | (upper <= _along(self.boxes.lower[leaves, j], features)))
-            kept = met.reshape(len(leaves), -1).any(axis=1)
-            if not kept.all():
-                leaves, met = leaves[kept], met[kept]
-                masks = {shape: mask[kept] for shape, mask in masks.items()}
+        for j in self._decide:
+            lower, upper = ends[j]
+            met = (lower <= _along(boxes.upper[:, j], axes)) & (upper > _along(boxes.lower[:, j], axes))
             shape = met.shape[1:]
             masks[shape] = masks[shape] & met if shape in masks else met
-        return leaves, reduce(np.logical_and, sorted(masks.values(), key=np.size))
+        sides = sorted(masks.values(), key=np.size) or [np.ones((self.leaves, *(1,) * axes), bool)]
+        leaves, starts = self._worth(sides)
+        met = reduce(np.logical_and, (side[leaves] for side in sides))
+        empty = bool((starts == np.append(starts[1:], len(met))).any())
+        return Meeting(ends, leaves, met, starts, empty)
 
-    def _formulas(self, features: Spans, leaves: Places) -> Floats:
-        """The least of each leaf's formula where a box meets it, (leaves, ...); a sum over features, by their shape."""
-        boxes = self.boxes
-        low = _along(boxes.low[leaves], features)
-        if self._flat:
+    def _worth(self, sides: list[Bools]) -> tuple[Places | slice, Places]:
+        """The leaves to go on with, as each side meets them, and where each tree begins among them."""
+        if self.leaves * prod(np.broadcast_shapes(*(side.shape[1:] for side in sides))) < WORTH_LEAVING_OUT:
+            return slice(None), self.boxes.first
+        leaves = np.flatnonzero(reduce(np.logical_and, (side.reshape(self.leaves, -1).any(axis=1) for side in sides)))
+        return leaves, np.searchsorted(leaves, self.boxes.first)
+
+    def least(self, meeting: Meeting, side: Side, k_std: float = 0.0) -> Floats:
+        """The least of each tree, shape (sides, trees, ...); where leaves have a spread, with `k_std` times that."""
+        said = self._formulas(meeting, side)
+        if k_std and self.boxes.spread is not None:
+            said = said + _along(np.float32(k_std) * self.boxes.spread[meeting.leaves], said.ndim - 2)
+        total = np.where(meeting.met, said, np.float32(np.inf))
+        least: Floats = np.minimum.reduceat(total, meeting.starts, axis=1)
+        return least
+
+    def _formulas(self, meeting: Meeting, side: Side) -> Floats:
+        """The least of each leaf's formula where a box meets it, (sides, leaves, ...): a sum over features."""
+        boxes, leaves, axes = self.boxes, meeting.leaves, meeting.met.ndim - 1
+        low, high, total = (_along(each[side.value, leaves], axes) for each in (self._low, self._high, self._intercept))
+        if not len(self._count):
             return low
         sums: dict[tuple[int, ...], Floats] = {}
-        for j, span in enumerate(features):
-            lower, upper = _single(span)
-            least = np.maximum(lower, _along(boxes.lower[leaves, j], features))
-            most = np.minimum(upper, _along(boxes.upper[leaves, j], features))
-            rises = _along(self._rises[leaves, j], features)
-            part = np.where(rises, least, most) * _along(boxes.slopes[leaves, j], features)
-            shape = part.shape[1:]
+        for j in self._count:
+            lower, upper = meeting.ends[j]
+            slopes = _along(self._slopes[side.value, leaves, j], axes)
+            at_least = np.maximum(lower, _along(boxes.lower[leaves, j], axes)) * slopes
+            part = np.minimum(at_least, np.minimum(upper, _along(boxes.upper[leaves, j], axes)) * slopes)
+            shape = part.shape[2:]
             sums[shape] = sums[shape] + part if shape in sums else part
-        total = reduce(np.add, sorted(sums.values(), key=np.size), _along(boxes.intercept[leaves], features))
-        clipped: Floats = np.minimum(np.maximum(total, low), _along(boxes.high[leaves], features))
+        total = reduce(np.add, sorted(sums.values(), key=np.size), total)
+        clipped: Floats = np.minimum(np.maximum(total, low), high)
         return clipped
 
 
-def _along(values: NDArray[Any], features: Spans) -> NDArray[Any]:
-    """One value a leaf, (leaves,), with axes for the boxes."""
-    return values[(slice(None), *(None,) * features[0].lower.ndim)]
+def _slack(boxes: TreeBoxes) -> float:
+    ends = np.maximum(*(np.abs(np.clip(side, -FARTHEST, FARTHEST)) for side in (boxes.lower, boxes.upper)))
+    return ROUNDING * float((np.abs(boxes.intercept) + (np.abs(boxes.slopes) * ends).sum(axis=1)).max())
 
 
-def _single(span: Span) -> tuple[Floats, Floats]:
-    """Both ends in single precision, rounded as arguments are."""
-    return span.lower.astype(np.float32), span.upper.astype(np.float32)
+def _along(values: Floats, axes: int) -> Floats:
+    """One value a leaf, (..., leaves), with so many axes for boxes."""
+    return values.reshape(*values.shape, *(1,) * axes)

@@ -37,6 +37,12 @@ class Span:
     def __neg__(self) -> Span:
         return Span(-self.upper, -self.lower)
 
+    def hull(self, other: Span) -> Span:
+        """The numbers of both, and those between them."""
+        if other is self:
+            return self
+        return Span(np.minimum(self.lower, other.lower), np.maximum(self.upper, other.upper))
+
     def wider(self, by: Array | float) -> Span:
         """With a margin on both sides."""
         return Span(self.lower - by, self.upper + by)

@@ -5,7 +5,7 @@ Read from the very bytes that the runtime computes, so that the two cannot diffe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,10 +36,17 @@ class TreeBoxes:
     high: Floats  # (l,)
     spread: Floats | None = None  # (l,) standard deviation by leaf; None: that of the trees among each other
 
-    def negated(self) -> TreeBoxes:
-        """Trees that say minus what these say."""
-        ends = -self.slopes, -self.intercept, -self.high, -self.low
-        return TreeBoxes(self.first, self.lower, self.upper, *ends, self.spread)
+    def part(self, leaves: NDArray[np.bool_]) -> TreeBoxes:
+        """The same trees with some of their leaves only, (l,): at least one of each."""
+        counts = np.add.reduceat(leaves, self.first, dtype=np.int64)
+        ends = (side[leaves] for side in (self.lower, self.upper, self.slopes, self.intercept, self.low, self.high))
+        return TreeBoxes(np.cumsum(counts) - counts, *ends, None if self.spread is None else self.spread[leaves])
+
+    def inside(self, lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> TreeBoxes:
+        """The same for features between these, (f,): sides beyond them become infinite, for they decide nothing."""
+        lower = np.where(self.lower < lowest, np.float32(-np.inf), self.lower)
+        upper = np.where(self.upper > highest, np.float32(np.inf), self.upper)
+        return replace(self, lower=lower, upper=upper)
 
 
 def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:

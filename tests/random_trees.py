@@ -45,7 +45,7 @@ class Trees:
 
     @property
     def bounds(self) -> ModelBounds:
-        return ModelBounds(self.space, LeafBounds(self.boxes), LeafBounds(self.boxes.negated()))
+        return ModelBounds(self.space, LeafBounds(self.boxes))
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
         boxes, features = self.boxes, SPACES[self.space](arguments)

@@ -62,6 +62,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 1
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(f"tailor {name}: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
 
 
 def _overview() -> str:

@@ -9,12 +9,14 @@ from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
-from executive.composition import load_models
+from executive.composition import asked_ranges, load_models
 from models.card import Card
+from models.card_checks import check_ranges
 from models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
 from schemas.errors import UsageError
+from tools.terminal import table_console
 
 EPILOG = """\
 examples:
@@ -25,8 +27,8 @@ examples:
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
 
-MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration, and everything for all
-models."""
+MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration; ROBOT alone means all of
+its models, nothing all that there are."""
 VERBS = ("list", "show", "rules", "plot", "check")
 
 
@@ -34,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    parser.add_argument("verb", choices=VERBS, help="what to do")
+    said = "one line each; the card; rules in words; pictures; whether they can be trusted (exit code 1 if not)"
+    parser.add_argument("verb", choices=VERBS, help=said)
     parser.add_argument("models", nargs="*", metavar="MODEL", help="which models (default: all)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
     parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
@@ -47,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it; exit code 0, or 1 when a check fails."""
-    names = [_full(name) for name in arguments.models] or _all(arguments.zoo)
+    names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
         return _check(names, arguments)
     loaded = [load_model(name, arguments.zoo) for name in names]
@@ -85,10 +88,17 @@ def _benefit_rules(card: Card) -> str:
     return "\n\n".join([f"{head}; {kept}", *card["rules"]])
 
 
-def _full(name: str) -> str:
+def _full(name: str, zoo: Path) -> list[str]:
+    """What a name stands for: a robot for all its models, an action for how long it takes."""
+    if "/" not in name:
+        mine = [each for each in _all(zoo) if each.startswith(f"{name}/")]
+        if not mine:
+            robots = ", ".join(sorted({each.split("/")[0] for each in _all(zoo)}))
+            raise UsageError(f"'{name}' has no models in {zoo} (expected ROBOT/ACTION/KIND, or one of: {robots})")
+        return mine
     if name.endswith("/refinement"):
-        return f"{name}/benefit"
-    return name if name.count("/") != 1 else f"{name}/duration"
+        return [f"{name}/benefit"]
+    return [name if name.count("/") != 1 else f"{name}/duration"]
 
 
 def _all(zoo: Path) -> list[str]:
@@ -127,10 +137,10 @@ def _list(cards: list[Card], as_json: bool) -> None:
     if as_json:
         print(json.dumps(rows))
         return
-    table = Table(*rows[0])
+    table = Table(Column("model", no_wrap=True), *list(rows[0])[1:])
     for row in rows:
         table.add_row(*map(str, row.values()))
-    Console().print(table)
+    table_console().print(table)
 
 
 def _show(card: Card, as_json: bool) -> None:
@@ -167,7 +177,8 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
         try:
             if name.endswith(f"/{BENEFIT}"):  # sound only with the action models that it was learned with
                 load_models(name.removesuffix(f"/{BENEFIT}"), str(arguments.zoo), gated=True)
-            load_model(name, arguments.zoo)
+            model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
+            check_ranges(model.card, asked_ranges(robot).get(action, {}), arguments.zoo / name)
         except UsageError as error:
             failed[name] = str(error)
         if not arguments.json:

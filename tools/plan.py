@@ -169,7 +169,7 @@ def _read(path: Path) -> str:
             content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size to look at
         if len(content) > MAX_BYTES:
             raise UsageError(f"{path}: more than the {MAX_BYTES} bytes that a PDDL file may have")
-        return content.decode()
+        return content.decode("utf-8-sig")  # some editors begin a file with a byte order mark
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
 

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from executive import domains
+from executive.composition import load_models
 from executive.core.context import Settings, make_context
 from executive.library import Models
 from executive.refinement.settings import RefinementSettings
 from models.episodes import Episode, write_manifest, write_part
-from models.runtime import load_robot
 from schemas.errors import Rejected, UsageError
 from schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
 from tools import gathering, lockstep
@@ -183,4 +183,4 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
 @lru_cache(maxsize=2)
 def _models(robot: str, zoo: str) -> Models:
     """Loaded once a process."""
-    return Models(*load_robot(robot, Path(zoo) if zoo else None))
+    return load_models(robot, zoo)

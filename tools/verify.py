@@ -38,7 +38,7 @@ class Verdict:
     rounded: int  # of them, equal but for rounding; 0 unless the machine that recorded is of another kind
     difference: Difference | None
     machines: str  # what differs between the recording machine and this one
-    took_s: float
+    took_s: float  # without what comes once a process: the file read, models loaded, readers of messages compiled
 
     @property
     def times_real_time(self) -> float:

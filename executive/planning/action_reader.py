@@ -22,6 +22,8 @@ from executive.planning.s_expressions import Form, Node, Word, form_of, word_of
 from executive.planning.typed_lists import variables_of
 
 NUMERIC_EFFECTS = frozenset({"assign", "increase", "decrease", "scale-up", "scale-down"})
+MAX_NUMBERS = 100  # of a duration, which is worked out anew for every ground action; those at hand have 3 at most
+MAX_PARAMETERS = 100  # binding them is recursive; the competition problems at hand have 9 at most
 _PARTS = {
     ":action": (":parameters", ":precondition", ":effect"),
     ":durative-action": (":parameters", ":duration", ":condition", ":effect"),
@@ -39,12 +41,14 @@ def read_action(form: Form, domain: Domain) -> Action:
     name = word_of(form.items[1], "the action's name")
     parts = _parts(form)
     variables = variables_of(form_of(parts.get(":parameters", Form(form.place)), "parameters"), domain.types)
+    if len(variables) > MAX_PARAMETERS:
+        raise form.place.error(f"action '{name}' has {len(variables)} parameters, more than {MAX_PARAMETERS}")
     scope = Scope.of(domain, ()).extended(variables)
     durative = form.head == ":durative-action"
     empty = Form(form.place)
     if durative:
         conditions = read_timed(parts.get(":condition", empty), scope)
-        bounds: tuple[DurationBound, ...] | None = _duration(parts.get(":duration", empty), scope)
+        bounds: tuple[DurationBound, ...] | None = _bounds(form, parts.get(":duration", empty), scope)
     else:
         conditions = (Condition(read_formula(parts.get(":precondition", empty), scope)),)
         bounds = None
@@ -115,6 +119,13 @@ def _literal(form: Form, scope: Scope) -> Effect:
 
 
 # --- durations -----------------------------------------------------------------------------------
+def _bounds(action: Form, node: Node, scope: Scope) -> tuple[DurationBound, ...]:
+    bounds = _duration(node, scope)
+    if sum(_size(bound.value) for bound in bounds) > MAX_NUMBERS:
+        raise action.place.error(f"the action's duration is made of more than {MAX_NUMBERS} numbers")
+    return bounds
+
+
 def _duration(node: Node, scope: Scope) -> tuple[DurationBound, ...]:
     form = form_of(node, "a duration such as (= ?duration 5)")
     if not form.items:
@@ -147,13 +158,15 @@ def _operation(form: Form, scope: Scope) -> Numeric:
     operator = cast(OneOf["+", "-", "*", "/"], form.head)
     numbers = [_numeric(item, scope) for item in form.items[1:]]
     if operator == "-" and len(numbers) == 1:
-        return Operation("-", Number(0.0), numbers[0])
+        return Operation("-", (Number(0.0), numbers[0]))
     if len(numbers) < 2:
         raise form.place.error(f"'{operator}' expects two numbers")
-    result = numbers[0]
-    for number in numbers[1:]:
-        result = Operation(operator, result, number)
-    return result
+    return Operation(operator, tuple(numbers))
+
+
+def _size(number: Numeric) -> int:
+    """How many numbers are needed to work it out."""
+    return sum(map(_size, number.operands)) if isinstance(number, Operation) else 1
 
 
 def number_of(node: Node) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial, reduce
 
 from executive.library import Fact
 from executive.planning.ground_formula import Binding, World
@@ -17,12 +18,14 @@ def evaluate(number: Numeric, binding: Binding, world: World) -> float | None:
         case Function(name, terms):
             fact: Fact = (name, *(binding.get(term, term) for term in terms))
             return world.values.get(fact)
-        case Operation(operator, left, right):
-            a, b = evaluate(left, binding, world), evaluate(right, binding, world)
-            return None if a is None or b is None else _operate(operator, a, b)
+        case Operation(operator, operands):
+            values = (evaluate(operand, binding, world) for operand in operands)
+            return reduce(partial(_operate, operator), values)
 
 
-def _operate(operator: str, a: float, b: float) -> float | None:
+def _operate(operator: str, a: float | None, b: float | None) -> float | None:
+    if a is None or b is None:
+        return None
     match operator:
         case "+":
             return a + b

@@ -80,6 +80,7 @@ class World:
     static: frozenset[str]  # predicates
     facts: frozenset[Fact]  # the static ones that hold
     values: Mapping[Fact, float]  # of static functions
+    temporal: bool  # whether any action takes time
 
     def choices(self, variable: Typed) -> tuple[str, ...]:
         """The objects that a variable may stand for."""

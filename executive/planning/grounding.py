@@ -56,7 +56,8 @@ def world_of(problem: Problem) -> World:
         for kind in frozenset[str]().union(*(domain.ancestors[own] for own in item.types)):
             objects[kind].append(item.name)
     facts = frozenset(fact for fact in problem.initial if fact[0] in static)
-    return World(domain, {kind: tuple(names) for kind, names in objects.items()}, static, facts, dict(problem.values))
+    by_type = {kind: tuple(names) for kind, names in objects.items()}
+    return World(domain, by_type, static, facts, dict(problem.values), domain.durative)
 
 
 def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
@@ -153,11 +154,10 @@ def _instance(
 ) -> GroundAction | None:
     """The ground action, or None when it can never run or achieves nothing."""
     bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
-    temporal = world.domain.durative
-    conditions = _conditions(schema.conditions, binding, world, facts, temporal)
+    conditions = _conditions(schema.conditions, binding, world, facts)
     if bounds is None or conditions is None:
         return None
-    effects = _useful(conditions, _effects(schema, binding, world, facts, temporal))
+    effects = _useful(conditions, _effects(schema, binding, world, facts))
     if not effects:
         return None
     bits: dict[int, int] = {}
@@ -181,7 +181,7 @@ def _span(when: When, temporal: bool) -> Span:
 
 
 def _conditions(
-    conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts, temporal: bool
+    conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts
 ) -> tuple[tuple[GroundCondition, Span], ...] | None:
     """The ground conditions by span, in order; None when one is false."""
     grounded: list[tuple[GroundCondition, Span]] = []
@@ -190,16 +190,16 @@ def _conditions(
         if result == FALSE:
             return None
         for part in conjuncts(result):
-            grounded.append((part, _span(condition.when, temporal)))
+            grounded.append((part, _span(condition.when, world.temporal)))
     return tuple(grounded)
 
 
-def _effects(schema: Action, binding: Binding, world: World, facts: Facts, temporal: bool) -> list[GroundEffect]:
+def _effects(schema: Action, binding: Binding, world: World, facts: Facts) -> list[GroundEffect]:
     effects: dict[GroundEffect, None] = {}
     for effect in schema.effects:
-        moment = _span(effect.when, temporal)[0]
+        moment = _span(effect.when, world.temporal)[0]
         for inner in bindings(effect.variables, binding, world):
-            conditions = _conditions(effect.condition, inner, world, facts, temporal)
+            conditions = _conditions(effect.condition, inner, world, facts)
             if conditions is not None:
                 literal = ground(effect.atom, inner, world, facts, effect.positive)
                 assert isinstance(literal, int)  # an atom that an action touches is no static one
@@ -215,32 +215,35 @@ def _useful(
     A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
     action's own condition promises to hold up to that very moment changes nothing.
     """
+    demanded = {(part, span[1]) for part, span in conditions}
+    at: dict[tuple[int, int], list[GroundEffect]] = {}
+    for effect in effects:
+        at.setdefault((effect.literal, effect.moment), []).append(effect)
     kept: list[GroundEffect] = []
     for effect in effects:
-        demanded = any(part == effect.literal and span[1] == effect.moment for part, span in conditions)
-        if not demanded:
-            kept += [effect] if effect.literal % 2 == 0 else _unless_added(effect, effects)
+        if (effect.literal, effect.moment) not in demanded:
+            additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+            kept += _unless_added(effect, additions)
     return tuple(kept)
 
 
-def _unless_added(effect: GroundEffect, effects: list[GroundEffect]) -> list[GroundEffect]:
-    """A delete effect under the conditions that no add effect of the same moment wins; none when one always does.
+def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
+    """An effect under the conditions that no add effect of the same moment wins; none when one always does.
 
     Where an add effect looks at several moments, it is enough that it fails at one: each is an effect of its own.
     """
     ways = [effect.conditions]
-    for other in effects:
-        if other.literal == effect.literal ^ 1 and other.moment == effect.moment:
-            spans: dict[Span, list[GroundCondition]] = {}
-            for condition, span in other.conditions:
-                spans.setdefault(span, []).append(condition)
-            lost = [(negation(conjunction(own)), span) for span, own in spans.items()]
-            ways = [
-                (*way, *((part, span) for part in conjuncts(fails)))
-                for way in ways
-                for fails, span in lost
-                if fails != FALSE
-            ]
-            if len(ways) > MAX_WAYS:
-                raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
-    return [replace(effect, conditions=way) for way in ways]
+    for other in additions:
+        spans: dict[Span, list[GroundCondition]] = {}
+        for condition, span in other.conditions:
+            spans.setdefault(span, []).append(condition)
+        lost = [(negation(conjunction(own)), span) for span, own in spans.items()]
+        ways = [
+            (*way, *((part, span) for part in conjuncts(fails)))
+            for way in ways
+            for fails, span in lost
+            if fails != FALSE
+        ]
+        if len(ways) > MAX_WAYS:
+            raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
+    return [replace(effect, conditions=way) for way in ways] if additions else [effect]

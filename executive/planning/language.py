@@ -102,11 +102,10 @@ class Function:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """Arithmetic on two numbers; a sign is written as 0 - x."""
+    """Arithmetic on two or more numbers, from left to right; a sign is written as 0 - x."""
 
     operator: OneOf["+", "-", "*", "/"]
-    left: Numeric
-    right: Numeric
+    operands: tuple[Numeric, ...]
 
 
 Numeric = Number | Function | Operation

@@ -36,6 +36,11 @@ class Orderings(Protocol):
         """By node, the mask of the nodes that cannot come before it."""
         ...
 
+    @property
+    def entries(self) -> int:
+        """How many numbers they consist of: nearly all of the memory that a plan does not share with its parent."""
+        ...
+
     def with_step(self, action: Lasting, moment: int, before: int) -> Orderings | None:
         """The orderings with the nodes of one more step, after the initial state and before the goal.
 
@@ -62,6 +67,11 @@ class Closure(NamedTuple):
     """Orderings of nodes that take no time."""
 
     late: tuple[int, ...] = (0b11, 0b10)
+
+    @property
+    def entries(self) -> int:
+        """See `Orderings`."""
+        return len(self.late)
 
     def with_step(self, action: Lasting, moment: int, before: int) -> Closure:
         """See `Orderings`; such a step has one node, and nothing comes before it but the initial state."""

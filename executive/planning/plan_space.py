@@ -38,6 +38,10 @@ class PlanSpace(Protocol[P]):
         """The number of steps."""
         ...
 
+    def entries(self, plan: P) -> int:
+        """The size of the plan's orderings: see `Orderings`."""
+        ...
+
     def refine(self, plan: P, order: int) -> list[P]:
         """All ways to mend the flaw that the order-th flaw order chooses."""
         ...
@@ -74,6 +78,10 @@ class GroundSpace:
     def length(self, plan: PartialPlan) -> int:
         """See `PlanSpace`."""
         return len(plan.steps)
+
+    def entries(self, plan: PartialPlan) -> int:
+        """See `PlanSpace`."""
+        return plan.orderings.entries
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """Chooses a flaw and mends it in every way."""

@@ -32,6 +32,11 @@ class TemporalNetwork(NamedTuple):
         )
         return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
 
+    @property
+    def entries(self) -> int:
+        """See `Orderings`."""
+        return len(self.rows) ** 2
+
     def with_step(self, action: Lasting, moment: int, before: int) -> TemporalNetwork | None:
         """See `Orderings`: start and end, as far apart as the duration allows, one of them before a node."""
         start = len(self.rows)

@@ -18,6 +18,7 @@ from executive.refinement.boxes import NOWHERE, Boxes, joined
 from executive.refinement.chain import forward_costs, through_costs, traced
 
 Places = NDArray[np.intp]
+PIECES = 16  # that the boxes chosen are cut into at a time, at least
 
 
 class PairBound(Protocol):
@@ -61,6 +62,12 @@ class BoxChain:
         self._effort = effort
         self._tables = [np.full((len(a), len(b)), -np.inf) for a, b in zip([NOWHERE, *boxes], boxes, strict=False)]
 
+    @property
+    def steps(self) -> float:
+        """How many steps it takes to begin, roughly."""
+        efforts = (bound.effort * table.size for bound, table in zip(self._bounds, self._tables, strict=True))
+        return sum(efforts) / self._effort
+
     def begin(self) -> Iterator[None]:
         """Bound all pairs, in steps."""
         for index, table in enumerate(self._tables):
@@ -79,12 +86,14 @@ class BoxChain:
     def cut(
         self, index: int, kept: Places, chosen: Places, weight: Array, costs: Costs, limit: float
     ) -> Iterator[None]:
-        """Halve the chosen boxes of a subgoal and forget all but them and the kept ones, in steps.
+        """Cut the chosen boxes of a subgoal and forget all but them and the kept ones, in steps.
 
-        Halves inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
+        Pieces inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
         """
-        children = self.boxes[index].part(chosen).halves(weight)
-        parents = np.concatenate([kept, chosen, chosen])
+        children, parents = self.boxes[index].part(chosen), chosen
+        while len(parents) < PIECES:
+            children, parents = children.halves(weight), np.tile(parents, 2)
+        parents = np.concatenate([kept, parents])
         new = np.arange(len(kept), len(parents))
         before = costs.forward[index - 1] if index else np.zeros(1)
         last = index + 1 == len(self.boxes)

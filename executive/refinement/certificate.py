@@ -6,27 +6,29 @@ a box costs at least comes from the leaves that it meets, so that thresholds and
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
+from itertools import count
 
 import numpy as np
 
 from executive.budget import Budget
 from executive.library import Array
 from executive.refinement.box_chain import BoxChain, Costs
-from executive.refinement.boxes import box_of
+from executive.refinement.boxes import NOWHERE, box_of
 from executive.refinement.chain import Columns, blocks_of, links_of
 from executive.refinement.objective import SequenceObjective
+from executive.refinement.sensitivity import sensitivity
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
+from executive.refinement.stalling import Stalling
 
-EFFORT = 300_000  # comparisons of boxes and leaves in one check: about 1 ms, for most leaves are ruled out at once
-CUT_AT_ONCE = 8  # boxes of a subgoal
+EFFORT = 200_000  # comparisons of boxes and leaves in one check: about 1 ms
+CUT_AT_ONCE = 4  # boxes of a subgoal
+HOPELESS = 0.3  # of the checks just to begin: what is left will not get far
+LOOK_EVERY = 4  # turns of cutting
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
-FIRST_CUTS = 4  # before anything is bounded
-PROBES = 32  # choices at which it is tried how much each parameter matters
-PROBE_STEP = 0.05  # of a range
-LEAST_CHANGE_S = 1e-3  # where none is seen
+FIRST_CUTS = 6, 4  # before anything is bounded: of the only subgoal that has free parameters, of each of several
 
 
 class Certificate:
@@ -81,33 +83,44 @@ class Certificate:
 
     def _prove(self) -> Iterator[None]:
         """The proof, in steps of one check each."""
-        weight = _sensitivity(self._objective)
-        chain = self._first_boxes(weight)
+        weight = sensitivity(self._objective)
         yield
+        chain = yield from self._boxes(weight)
+        if chain.steps > HOPELESS * self._settings.certify_checks:
+            return
         yield from chain.begin()
-        idle = index = 0
-        while idle < len(self._blocks):
+        stalling, free = Stalling(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
+        for turn in count():
+            index = free[turn % len(free)]
             costs = chain.costs()
-            self._note(chain, costs)
-            if self.bound >= self._limit:
+            if self._note(costs) or stalling.stalls(self.bound, self.value):
                 return
+            if turn % LOOK_EVERY == LOOK_EVERY - 1:
+                self._look(chain, costs)
             kept, chosen = self._chosen(chain, costs, index)
-            idle = 0 if len(chosen) else idle + 1
             if len(chosen):
                 yield from chain.cut(index, kept, chosen, weight[self._blocks[index]], costs, self._limit)
-            index = (index + 1) % len(self._blocks)
 
-    def _first_boxes(self, weight: Array) -> BoxChain:
+    def _boxes(self, weight: Array) -> Generator[None, None, BoxChain]:
+        """The first boxes, and bounds for what lies inside of all of them: a check for each action."""
         boxes = [box_of(self._objective.ranges.part(block)) for block in self._blocks]
-        for i, block in enumerate(self._blocks):
-            for _ in range(FIRST_CUTS if len(block) else 0):
-                boxes[i] = boxes[i].halves(weight[block])
-        return BoxChain(self._bounds, boxes, EFFORT)
+        bounds = []
+        for bound, *ends in zip(self._bounds, [NOWHERE, *boxes], boxes, strict=False):
+            bounds.append(bound.within(*ends))
+            yield
+        free = [i for i, block in enumerate(self._blocks) if len(block)]
+        for i in free * FIRST_CUTS[len(free) > 1]:
+            boxes[i] = boxes[i].halves(weight[self._blocks[i]])
+        return BoxChain(bounds, boxes, EFFORT)
 
-    def _note(self, chain: BoxChain, costs: Costs) -> None:
-        """Take up what is proven; and the middle of the cheapest chain of boxes, where it is a better choice."""
+    def _note(self, costs: Costs) -> bool:
+        """Take up what is proven; whether it is good enough."""
         # what was forgotten costs at least the limit of its time, which only falls
         self.bound = max(self.bound, min(float(costs.through[-1].min(initial=np.inf)), self._limit))
+        return self.bound >= self._limit
+
+    def _look(self, chain: BoxChain, costs: Costs) -> None:
+        """Take the middle of the cheapest chain of boxes where it is a better choice."""
         if not np.isfinite(costs.through[-1]).any():
             return
         candidate = self.best.copy()
@@ -125,7 +138,7 @@ class Certificate:
         able = alive[widest > NARROWEST]
         able = able[np.argsort(through[able], kind="stable")] if len(boxes) < BOXES_MAX else able[:0]
         chosen = able[:CUT_AT_ONCE]
-        return np.setdiff1d(alive, chosen), chosen
+        return alive[~np.isin(alive, chosen)], chosen
 
 
 def certificate(objective: SequenceObjective, best: Array, settings: RefinementSettings) -> Certificate | NoBound:
@@ -140,18 +153,3 @@ def certificate(objective: SequenceObjective, best: Array, settings: RefinementS
             return bound
         bounds.append(bound)
     return Certificate(objective, blocks, bounds, best, settings)
-
-
-def _sensitivity(objective: SequenceObjective) -> Array:
-    """Seconds a unit by which each free parameter matters, shape (d,): a side that matters more is cut first."""
-    ranges = objective.ranges
-    probes = ranges.draw(PROBES, np.random.default_rng(0))
-    moved = np.tile(probes, (ranges.count + 1, 1, 1))
-    columns = np.arange(ranges.count)
-    moved[columns, :, columns] += PROBE_STEP * ranges.width[:, None]
-    costs = objective(ranges.confine(moved.reshape(-1, ranges.count))).reshape(ranges.count + 1, PROBES)
-    known = np.isfinite(costs[:-1]) & np.isfinite(costs[-1])
-    change = np.abs(np.subtract(costs[:-1], costs[-1], out=np.zeros_like(costs[:-1]), where=known))
-    mean = change.sum(axis=1) / np.maximum(known.sum(axis=1), 1)
-    weight: Array = np.maximum(mean, LEAST_CHANGE_S) / ranges.width
-    return weight

@@ -6,7 +6,7 @@ plane that touches it, and only what is sure to be too likely to fail counts as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,14 @@ class StageBound:
         models = [model for model in (self.duration, self.success, self.energy) if model is not None]
         return self.stage.ways * sum(model.effort for model in models)
 
+    def within(self, before: Boxes, own: Boxes) -> StageBound:
+        """The same for boxes inside of these: quicker to compute."""
+        arguments = self.spans(*self._parameters(before, own))
+        asked = (self.duration, self.success, self.energy)
+        duration, success, energy = (model and model.within(*arguments) for model in asked)
+        assert duration is not None
+        return replace(self, duration=duration, success=success, energy=energy)
+
     def least(self, before: Boxes, own: Boxes) -> Array:
         """Seconds, shape (len(before), len(own)): no values in the two boxes cost less; +inf: all are INVALID."""
         arguments = self.spans(*self._parameters(before, own))
@@ -76,12 +84,11 @@ class StageBound:
 
     def _ends(self, mine: NDArray[np.bool_], places: NDArray[np.intp], boxes: Boxes) -> tuple[Array, Array]:
         """All parameters at both ends of one side's boxes, shapes (ways, n, p); they rise with every free parameter."""
-        ends = []
-        for values in (boxes.lower, boxes.upper):
-            rows = np.zeros((len(values), len(mine)))
-            rows[:, mine] = values[:, places]
-            ends.append(self.stage.parameters(rows).reshape(-1, len(values), len(self.owners)))
-        return ends[0], ends[1]
+        values = np.vstack([boxes.lower, boxes.upper])
+        rows = np.zeros((len(values), len(mine)))
+        rows[:, mine] = values[:, places]
+        parameters = self.stage.parameters(rows).reshape(-1, len(values), len(self.owners))
+        return parameters[:, : len(boxes)], parameters[:, len(boxes) :]
 
 
 def stage_bound(stage: Stage, link: Link, settings: RefinementSettings) -> StageBound | NoBound:

@@ -18,6 +18,7 @@ from executive.refinement.selection import solver_for
 from executive.refinement.sequence import ActionSequence
 from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound
+from executive.refinement.stalling import PATIENCE, Stalling
 from tests.random_trees import Trees
 from tests.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
 
@@ -136,6 +137,23 @@ def test_proof_ends_when_its_checks_are_used_up():
     made.advance(budget)
     assert made.finished
     assert budget.granted == made.checks == 7
+
+
+def test_proof_stalls_only_where_its_bound_does_not_rise():
+    stalling, bounds = Stalling(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
+    assert not any(stalling.stalls(bound, 2.0) for bound in bounds)
+    idle = [stalling.stalls(2.0, 2.0) for _ in range(PATIENCE + 1)]
+    assert idle == [False] * PATIENCE + [True]
+
+
+def test_proof_that_would_spend_its_checks_on_its_first_boxes_is_not_begun(monkeypatch):
+    monkeypatch.setattr("executive.refinement.certificate.EFFORT", 1000)
+    cost, chosen = objective("detour", 0, 1.0, True)
+    made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
+    made.advance(CheckBudget(100))
+    assert made.finished
+    assert made.checks < 10
+    assert made.gap_pct is None
 
 
 def test_spent_budget_proves_nothing():

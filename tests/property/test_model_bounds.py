@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from models.bag_bounds import least_of_bag
 from models.card import card_path
 from models.feature_spans import FEATURE_SPANS
 from models.features import SPACES
-from models.leaf_bounds import LeafBounds
-from models.model_bounds import _projected
+from models.leaf_bounds import LeafBounds, Side
 from models.runtime import ZOO
 from models.spans import Span
 from models.tree_boxes import tree_boxes
@@ -128,9 +128,35 @@ def test_what_is_no_model_of_trees_is_not_read(content):
 def test_leaves_of_all_trees_meet_every_box():
     bounds = LeafBounds(Trees.random(5, trees=4).boxes)
     everywhere = tuple(Span(np.full(SHAPE, -10.0), np.full(SHAPE, 10.0)) for _ in range(5))
-    assert bounds.least(everywhere).shape == (4, *SHAPE)
+    assert bounds.least(bounds.meeting(everywhere), Side.LEAST).shape == (1, 4, *SHAPE)
 
 
-def test_trees_that_agree_but_for_rounding_have_a_bound() -> None:
-    off = np.full((12, 1), -1.2e-7, np.float32)
-    assert _projected(np.zeros_like(off), off, 1.0) == pytest.approx(0.0)
+@settings(max_examples=300, deadline=None)
+@given(seeds, st.integers(2, 12), st.sampled_from([0.3, 1.0, 3.0]))
+def test_bag_between_two_values_says_no_less_than_its_bound_which_is_tight_where_k_is_small(seed, trees, k_std):
+    rng = np.random.default_rng(seed)
+    least = rng.normal(5.0, rng.choice([1e-7, 0.3, 2.0]), (trees, 1)).astype(np.float32)
+    most = least + rng.exponential(rng.choice([0.0, 0.1, 3.0]), (trees, 1)).astype(np.float32)
+    said = least + rng.choice([0.0, 1.0, np.nan], (trees, 4000), p=[0.6, 0.1, 0.3]) * (most - least)
+    said = np.where(np.isnan(said), least + rng.random(said.shape) * (most - least), said)
+    levels = np.clip(np.linspace(least.min(), most.max(), 2000), least, most)  # the optimum is of this kind
+    cost = np.concatenate([one.mean(axis=0) + k_std * one.std(axis=0) for one in (said, levels)])
+    bound = least_of_bag(least, most, k_std).item()
+    assert bound <= cost.min() + 1e-5
+    assert bound > cost.min() - 0.1 or k_std >= 1
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.sampled_from(["relative", "projective", "projective-turn", "joints"]), seeds)
+def test_bounds_within_a_part_are_those_of_the_whole_model_there(space, seed):
+    rng = np.random.default_rng(seed)
+    model = Trees.random(seed, space, 3)
+    lower, upper = box(space, rng)
+    corners = np.sort(rng.uniform(lower, upper, (2, 8)), axis=0)
+    whole, part = (
+        [tuple(np.full(SHAPE, value) for value in end) for end in ends] for ends in ((lower, upper), corners)
+    )
+    fewer = model.bounds.within(*whole)
+    assert fewer.effort <= model.bounds.effort
+    assert fewer.least(*part, 1.0) == pytest.approx(model.bounds.least(*part, 1.0))
+    assert fewer.most(*part) == pytest.approx(model.bounds.most(*part))

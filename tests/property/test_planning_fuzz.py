@@ -12,6 +12,7 @@ from executive.planning import (
     PlanTextError,
     Search,
     Settings,
+    best_first,
     format_links,
     format_plan,
     parse_domain,
@@ -107,7 +108,45 @@ def objects(count):
     return " ".join(f"o{n}" for n in range(count))
 
 
+ANY = "(define (problem x) (:domain {}) (:objects {}) (:init) (:goal (p o0 o1)))"
+
+
+def one_action(name, effect="(p ?a ?b)", kind=":action", parameters="?a ?b", duration=""):
+    head = f"({kind} {name} :parameters ({parameters}) {duration} {':condition ()' if duration else ''}"
+    return f"{head} :effect {effect})"
+
+
+def domain_of(name, *actions):
+    return f"(define (domain {name}) (:predicates (p ?a ?b)) {' '.join(actions)})"
+
+
 BOMBS = {
+    "thousands of actions": lambda: solve(
+        *read(domain_of("d", *(one_action(f"a{n}") for n in range(8000))), ANY.format("d", objects(3)))
+    ),
+    "an effect that takes back each of thousands": lambda: solve(
+        *read(
+            domain_of("d", one_action("a", "(forall (?c ?d) (when (p ?d ?c) (not (p ?c ?d))))")),
+            ANY.format("d", objects(60)),
+        )
+    ),
+    "thousands of parameters": lambda: parse_domain(
+        domain_of("d", one_action("a", parameters=" ".join(f"?{n}" for n in range(3000))))
+    ),
+    "a sum of tens of thousands": lambda: solve(
+        *read(
+            domain_of(
+                "d",
+                one_action(
+                    "a",
+                    "(at end (p ?a ?b))",
+                    ":durative-action",
+                    duration=f":duration (= ?duration (+ {'1 ' * 50_000}))",
+                ),
+            ),
+            ANY.format("d", objects(200)),
+        )
+    ),
     "a million ground actions": lambda: solve(*read(WIDE, MANY.format(objects(10)))),
     "a thousand million ground actions": lambda: solve(*read(WIDE, MANY.format(objects(32)))),
     "quantifiers over everything": lambda: solve(
@@ -158,6 +197,22 @@ def test_bombs_stay_within_512_mb():
     code += "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')))"
     kilobytes = int(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True).stdout)
     assert kilobytes < 512 * 1024
+
+
+def test_a_search_ends_in_a_limit_before_its_waiting_plans_fill_the_memory(monkeypatch):
+    """A temporal network has a bound for every two moments: a thousand such plans with timed literals took 400 MB."""
+    texts = ((DATA / "own" / f"kitchen-durative-{part}.pddl").read_text() for part in ("domain", "s2"))
+    domain, problem = read(*texts)
+    assert Search(domain, problem).advance(CheckBudget(10_000)).status == "solved"
+    monkeypatch.setattr(best_first, "MAX_ENTRIES", 2000)
+    result = Search(domain, problem).advance(CheckBudget(10_000))
+    assert (result.status, result.reason) == ("limit", "the plans that wait take too much memory")
+
+
+def test_a_message_stays_short_whatever_the_file_says():
+    with pytest.raises(PddlError) as told:
+        parse_domain(f"(define (domain d) (:predicates (p)) {'x' * 100_000})")
+    assert len(str(told.value)) < 500
 
 
 def test_unreadable_goals_are_refused_when_they_come_from_the_bus():

@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from executive import domains
+from executive.refinement.settings import RefinementSettings
 from models.episodes import Episode, read_data_set, write_manifest, write_part
 from models.examples import energy_examples
+from models.runtime import load_robot
 from schemas.messages import JointState, Odometry, SimTruth
 from tools import lockstep
+from tools.evaluations.outcome import Task, Variant
+from tools.evaluations.trials import run_one
 from tools.trials.drive_work import MASS_KG, joint_work_j, wheel_work_j
 
 
@@ -61,3 +65,20 @@ def test_work_survives_the_file_and_its_absence_is_kept(tmp_path) -> None:
     assert first.work_j.tolist() == [1.0, 2.0, 0.0]
     assert second.work_j is None
     assert energy_examples([first, second], 2).targets.tolist() == [3.0, 2.0]  # what remains; the untold left out
+
+
+def test_every_action_that_ships_with_durations_ships_with_energies() -> None:
+    for robot in ("agilo", "powercube"):
+        durations, _ = load_robot(robot)
+        actions = {name.split("/")[0] for name in durations}
+        assert {f"{action}/{kind}" for action in actions for kind in ("duration", "energy")} == set(durations)
+
+
+def test_what_a_joule_is_worth_changes_how_the_arm_passes_its_waypoints() -> None:
+    chosen = {}
+    for weight in (0.0, 0.1):
+        variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
+        outcome = run_one(Task("arm", "letter-T"), variant, 500)
+        assert outcome.achieved
+        chosen[weight] = [value for *_, value in outcome.free]
+    assert chosen[0.0] != chosen[0.1]

@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from executive.composition import load_models
 from models import runtime
 from models.card import card_path, read_card, sha256_of, write_card
 from models.features import projective
 from schemas.errors import UsageError
+from tools.main import main
 
 SHIPPED = runtime.ZOO / "agilo"
 
@@ -124,6 +126,52 @@ def test_a_broken_card_is_refused(zoo: Path, content: str) -> None:
     card_path(duration(zoo)).write_text(content)
     with pytest.raises(UsageError, match="card"):
         runtime.load_robot("agilo", zoo)
+
+
+NUMBERS = [0.5] * 32
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("arguments", "x", "arguments is 'x', expected a list"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": "a", "upper": 1}], "expected name, unit, and numbers"),
+        ("golden", "x", "golden is 'x', expected an object"),
+        ("golden", {"arguments": [], "mean_s": [], "std_s": []}, "golden arguments are"),
+        ("golden", {"arguments": [[1]] * 32, "mean_s": NUMBERS, "std_s": NUMBERS}, "expected rows of 8 numbers"),
+        ("golden", {"arguments": [[0] * 8] * 32, "mean_s": NUMBERS[:2], "std_s": NUMBERS}, "golden mean_s is"),
+        ("golden", {"arguments": [[0] * 8] * 32, "std_s": NUMBERS}, "golden mean_s is None, expected 32 numbers"),
+        ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'std_s']"),
+        ("output_range", [60, 0], "output_range is [60, 0], expected two numbers"),
+        ("output_range", [float("nan"), 1], "output_range is [nan, 1]"),
+        ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success, benefit"),
+        ("sha256", None, "sha256 is None, expected text"),
+        ("test", {}, "test's mae_s is None, expected a number"),
+        ("learner", None, "learner is None, expected an object"),
+        ("feature_units", None, "feature_units is None, expected an object"),
+    ],
+)
+def test_a_card_whose_parts_are_of_another_shape_is_refused(zoo: Path, key: str, value: object, said: str) -> None:
+    changed_card(duration(zoo), **{key: value})
+    with pytest.raises(UsageError, match="card's") as told:
+        runtime.load_model(duration(zoo))
+    assert said in str(told.value)
+
+
+def test_a_success_model_without_its_threshold_is_refused(zoo: Path) -> None:
+    path = zoo / "agilo" / "approachBall" / "success.onnx"
+    changed_card(path, threshold="high")
+    with pytest.raises(UsageError, match="threshold is 'high', expected a number"):
+        runtime.load_model(path)
+
+
+def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: Path) -> None:
+    """The executive, and whatever else composes models, asks the domain for the ranges."""
+    arguments = read_card(card_path(duration(zoo)))["arguments"]
+    changed_card(duration(zoo), arguments=[{**a, **({"upper": 0.2} if a["name"] == "vg" else {})} for a in arguments])
+    with pytest.raises(UsageError, match=r"vg was learned in \[0, 0.2\] m/s, expected to cover \[0, 0.6\]"):
+        load_models("agilo", str(zoo))
+    assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
 
 
 def test_an_oversized_card_is_refused_before_it_is_read(zoo: Path) -> None:

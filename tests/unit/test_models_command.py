@@ -52,6 +52,20 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert json.loads(capsys.readouterr().out)["kind"] == "duration"
 
 
+def test_a_robot_s_name_stands_for_all_its_models(capsys) -> None:
+    assert main(["models", "list", "powercube", "--json"]) == 0
+    said = [row["model"] for row in json.loads(capsys.readouterr().out)]
+    assert "powercube/reach/duration" in said
+    assert all(name.startswith("powercube/") for name in said)
+    assert main(["models", "list", "r2d2"]) == 2
+    assert "'r2d2' has no models" in capsys.readouterr().err
+
+
+def test_tables_in_a_pipe_tell_names_whole(capsys) -> None:
+    assert main(["models", "list"]) == 0
+    assert "agilo/approachBall/duration" in capsys.readouterr().out
+
+
 def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert main(["models", "rules", "agilo/goToPose"]) == 0
     first, _, rule, *_ = capsys.readouterr().out.splitlines()
@@ -87,6 +101,13 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         (["models", "show", "agilo/fly"], "no such file"),
         (["models", "list", "--zoo", "nowhere"], "no action models"),
         (["train", "agilo", "--data", "nowhere"], "no data sets"),
+        (["train", "agilo", "--failure-learner", "magic"], "learner 'magic' is unknown for success"),
+        (["train", "agilo", "--energy-features", "magic"], "no feature space 'magic'"),
+        (["train", "agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
+        (
+            ["gather", "agilo", "goToPose", "--episodes", "1", "--out", "/dev/null"],
+            "/dev/null/goToPose: Not a directory",
+        ),
         (["evaluate", "table9"], "evaluation 'table9' is unknown"),
         (["evaluate"], "no evaluation named"),
         (["evaluate", "table1", "--robot", "r2d2"], "no action models for robot 'r2d2'"),

@@ -92,11 +92,11 @@ def proof(case: Case, models: Models, settings: RefinementSettings) -> Proof:
 
 def _first_tree(model: object) -> OneTree:
     bounds: ModelBounds = model.bounds  # type: ignore[attr-defined]
-    boxes = bounds.lowest.boxes
+    boxes = bounds.trees.boxes
     end = int(boxes.first[1]) if len(boxes.first) > 1 else len(boxes.low)
     parts = (getattr(boxes, name)[:end] for name in ("lower", "upper", "slopes", "intercept", "low", "high"))
     alone = TreeBoxes(boxes.first[:1], *parts)
-    return OneTree(bounds.space, alone, ModelBounds(bounds.space, LeafBounds(alone), LeafBounds(alone.negated())))
+    return OneTree(bounds.space, alone, ModelBounds(bounds.space, LeafBounds(alone)))
 
 
 def _row(case: str, objective: str, proofs: Sequence[Proof]) -> dict[str, object]:

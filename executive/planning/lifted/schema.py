@@ -62,7 +62,7 @@ def _schemata(
     action: Action, names: dict[str, str], lowering: Lowering, world: World, tick_s: float
 ) -> Iterator[Schema]:
     """The schemata of one action: one, or one for each choice of the parameters that its duration depends on."""
-    durative = world.domain.durative
+    durative = world.temporal
     lowered = [
         (part, span_of(condition.when, durative))
         for condition in action.conditions
@@ -108,6 +108,6 @@ def _terms(number: Numeric) -> Iterator[str]:
             return
         case Function(_, terms):
             yield from terms
-        case Operation(_, left, right):
-            yield from _terms(left)
-            yield from _terms(right)
+        case Operation(_, operands):
+            for operand in operands:
+                yield from _terms(operand)

@@ -44,6 +44,10 @@ class LiftedSpace:
         """See `PlanSpace`."""
         return len(plan.steps)
 
+    def entries(self, plan: LiftedPlan) -> int:
+        """See `PlanSpace`."""
+        return plan.orderings.entries
+
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """Chooses a flaw and mends it in every way; nothing is left to do for bindings that cannot be completed."""
         if plan.open is None and plan.threats is None:
