@@ -67,7 +67,7 @@ def space(names: tuple[str, ...]) -> FeatureSpace:
     """Situations as they are told; a name ends in its unit."""
     units = {"s": "s", "pct": "%", "rad": "rad"}
     quantities = tuple(Quantity(name, units.get(name.rpartition("_")[2], "")) for name in names)
-    return FeatureSpace("situation", quantities, quantities, lambda rows, _: rows)
+    return FeatureSpace("situation", quantities, quantities, lambda columns, _: columns)
 
 
 def train_benefit(
