@@ -26,9 +26,10 @@ class DubinsPath:
         """Of all pieces, m."""
         return sum(length for _, length in self.pieces)
 
-    def extended(self, straight_m: float) -> DubinsPath:
-        """The same path, run out straight."""
-        return DubinsPath(self.start, self.radius, (*self.pieces, (0, straight_m)))
+    def between(self, run_in_m: float, run_out_m: float) -> DubinsPath:
+        """The same path with a straight run-in before its start and a straight run-out."""
+        start = straight_on(self.start, -run_in_m)
+        return DubinsPath(start, self.radius, ((0, run_in_m), *self.pieces, (0, run_out_m)))
 
     def at(self, s: float) -> tuple[float, float, float, float]:
         """Pose and curvature (1/m, left positive) after `s` metres; beyond the end it goes straight on."""
@@ -39,6 +40,12 @@ class DubinsPath:
             pose = _along(pose, turn, length, self.radius)
             s -= length
         return (*_along(pose, 0, s, self.radius), 0.0)
+
+
+def straight_on(pose: Pose2, distance_m: float) -> Pose2:
+    """The pose so far ahead; behind, if negative."""
+    x, y, heading = pose
+    return x + distance_m * math.cos(heading), y + distance_m * math.sin(heading), heading
 
 
 def shortest(start: Pose2, goal: Pose2, radius: float) -> DubinsPath:
@@ -56,7 +63,7 @@ def shortest(start: Pose2, goal: Pose2, radius: float) -> DubinsPath:
 def _along(pose: Pose2, turn: int, s: float, radius: float) -> Pose2:
     x, y, heading = pose
     if turn == 0:
-        return x + s * math.cos(heading), y + s * math.sin(heading), heading
+        return straight_on(pose, s)
     new = heading + turn * s / radius
     return (
         x + turn * radius * (math.sin(new) - math.sin(heading)),
