@@ -23,10 +23,10 @@ class DribblePath:
     ahead_m: float  # axle to ball
     radii_m: tuple[float, ...] = (0.48, 0.65)  # of bends: the tighter, the slower
     run_in_m: float = 0.12  # the ball is to lie in the rail before the first bend
-    braking_mps2: float = 0.3  # on the run-in
+    braking_mps2: float = 0.35  # on the run-in
     run_out_m: float = 0.15
     slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3, 0.6, -0.6)  # a path may end so far off the goal's heading
-    asides_m: tuple[float, ...] = (0.0, 0.12, -0.12)  # and so far aside of it
+    asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
     slant_s_per_rad: float = 2.0  # if it is quicker by as much
     aside_s_per_m: float = 4.0
 
