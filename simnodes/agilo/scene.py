@@ -9,7 +9,7 @@ import mujoco
 
 from simnodes.agilo.physique import Physique
 
-TIMESTEP_S = 0.01  # contacts give way over 0.02 s; at 1 ms every roll and push ends within 2 cm of the same place
+TIMESTEP_S = 0.01  # contacts give way over 0.02 s; with 1 ms rolls, pushes and hits end within 3 cm
 
 # What the model has not got, and a search of bounding boxes that costs more than the few pairs that it rules out.
 UNUSED = ("spring", "damper", "equality", "limit", "frictionloss", "sensor", "midphase")
