@@ -27,7 +27,7 @@ class DribblePath:
     run_out_m: float = 0.15
     slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3, 0.6, -0.6)  # a path may end so far off the goal's heading
     asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
-    slant_s_per_rad: float = 3.0  # if it is quicker by as much
+    slant_s_per_rad: float = 2.0  # if it is quicker by as much
     aside_s_per_m: float = 4.0
 
     def quickest(self, pose: Pose, v: float, goal: tuple[float, ...]) -> DubinsPath:
