@@ -13,7 +13,7 @@ import numpy as np
 
 from schemas.messages import Message
 
-STEP_NS = 5_000_000  # every duration handed to a body is a multiple of this
+STEP_NS = 10_000_000  # every duration handed to a body is a multiple of this
 
 
 @dataclass(frozen=True, slots=True)

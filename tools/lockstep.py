@@ -124,9 +124,9 @@ def run_action(
     body.reset(rng, start)
     memory: Any = None
     failure, rows, work, trace = "", [], [], []
+    truth = body.truth()
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        truth = body.truth()
         failure = failure or trials.failure(action, start, truth)
         rows.append(trials.arguments_now(action, belief, arguments))
         control = action.controller(memory, now_ns, belief, arguments)
@@ -138,7 +138,8 @@ def run_action(
         body.command(control.command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
-        work.append(trials.work_j(truth, body.truth()))
+        before, truth = truth, body.truth()
+        work.append(trials.work_j(before, truth))
     done = control.outcome == "done"
     if not done:
         failure = failure or control.reason or "time limit"
@@ -149,10 +150,11 @@ def run_action(
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
     """The newest sensor reading of each topic, as a ring of depth one hands it over on the bus."""
-    last = {reading.topic: reading for reading in readings if TOPICS[reading.topic].source == "driver"}
+    last = {reading.topic: reading for reading in readings}
     return tuple(
         Sample(reading.topic, reading.message, reading.time_ns, 0)
         for reading in sorted(last.values(), key=lambda reading: reading.time_ns)
+        if TOPICS[reading.topic].source == "driver"
     )
 
 

@@ -10,6 +10,7 @@ from executive.actions.dribble_path import DribblePath
 from executive.actions.fetch_ball import SEEKING, FetchBall, Stage
 from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, BallBelief
+from executive.actions.rail_grip import RailGrip
 from executive.belief.angles import difference
 from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
@@ -42,7 +43,7 @@ class DribbleBall:
     """Follows a Dubins path, gentle enough for the rail, with feedback from the ball's slip in it."""
 
     fetch: FetchBall
-    in_rail_m: float  # axle to ball
+    grip: RailGrip
     v_max_mps: float = 0.75
     bend_radps: float = 0.60  # what bends are planned for
     omega_max_radps: float = 0.66  # the rest is for corrections; the rail holds 0.75 for ever
@@ -51,7 +52,7 @@ class DribbleBall:
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.35  # the ball must not roll out of the rail: it slows by 0.53 by itself
     bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
-    bending_radps: float = 0.15  # turning faster than this counts as a bend
+    least_braking_mps2: float = 0.05  # it must be able to stop
     preview_s: float = 0.6  # turning lags so far behind the command
     settle_m: float = 0.4
     slip_aside_m: float = 0.035  # so far aside or ahead of the rail's bottom the ball is slipping out
@@ -78,7 +79,7 @@ class DribbleBall:
         stage: Stage = memory.stage if isinstance(memory, Fetching) else "chase"
         if self.fetch.misses(stage, ball, now_ns):
             return self._seek(memory, now_ns, belief, ball)
-        ahead, left = ball.ahead - self.in_rail_m, abs(ball.left)
+        ahead, left = ball.ahead - self.grip.in_rail_m, abs(ball.left)
         if math.hypot(ahead, left) > self.gone_m:
             return Control(memory, (0.0, 0.0), "failed", "the ball got away")
         lost = isinstance(memory, Fetching) or math.hypot(ahead, left) > self.lost_m
@@ -89,7 +90,8 @@ class DribbleBall:
         return self._push(memory, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
-        return Progress(DribblePath(self.v_max_mps, self.bend_radps).quickest(pose, v, goal), 0.0)
+        paths = DribblePath(self.v_max_mps, self.bend_radps, self.grip.in_rail_m)
+        return Progress(paths.quickest(pose, v, goal), 0.0)
 
     def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
@@ -106,17 +108,16 @@ class DribbleBall:
         if slipping:
             limit = min(self.v_max_mps, limit + self.catch_up_mps)
             omega = self.chase_radps * math.atan2(ball.left, ball.ahead)
-        v = self._ramp(memory.v, limit, abs(belief.omega) > self.bending_radps)
+        v = self._ramp(memory, limit)
         bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
         omega = max(-bound, min(bound, omega))
         if not slipping:
-            step = self.yaw_radps2 * TICK_S
-            omega = max(memory.omega - step, min(memory.omega + step, omega))
+            omega = self._turn(memory, (memory.v - v) / TICK_S, omega)
         return Control(Pushing(progress, v, omega, slipping), (v, omega))
 
     def _slips(self, ball: BallTrack, before: bool) -> bool:
         """Whether the ball is leaving the rail, or has been and is not back at the bottom."""
-        ahead, aside = ball.ahead - self.in_rail_m, abs(ball.left)
+        ahead, aside = ball.ahead - self.grip.in_rail_m, abs(ball.left)
         if before:
             return aside > self.mended_m or ahead > self.slip_ahead_m
         return aside > self.slip_aside_m or ahead > self.slip_ahead_m
@@ -124,26 +125,38 @@ class DribbleBall:
     def _pace(self, radius: float) -> Pace:
         return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking_mps2)
 
-    def _ramp(self, v: float, limit: float, bending: bool) -> float:
+    def _ramp(self, memory: Pushing, limit: float) -> float:
         """The next commanded speed: towards the limit as fast as the ball allows."""
-        braking = self.bend_braking_mps2 if bending else self.braking_mps2
-        return max(v - braking * TICK_S, min(limit, v + self.speeding_up_mps2 * TICK_S))
+        braking = min(self.braking_mps2, max(self.least_braking_mps2, self.grip.braking_mps2(memory.v, memory.omega)))
+        return max(memory.v - braking * TICK_S, min(limit, memory.v + self.speeding_up_mps2 * TICK_S))
+
+    def _turn(self, memory: Pushing, braking_mps2: float, wanted: float) -> float:
+        """The next commanded turning: more of it only as quickly as the ball follows."""
+        growth = min(self.yaw_radps2, self.grip.yaw_radps2(memory.v, memory.omega, braking_mps2))
+        up, down = growth * TICK_S, self.yaw_radps2 * TICK_S
+        left, right = (up, down) if memory.omega >= 0.0 else (down, up)
+        return max(memory.omega - right, min(memory.omega + left, wanted))
 
     def _missed(self, progress: Progress, pose: Pose, goal: tuple[float, ...]) -> bool:
         """Past the end without having arrived."""
         if progress.remaining_m > 0.0:
             return False
-        aside = math.hypot(goal[0] - pose.x, goal[1] - pose.y)
-        return aside > self.near_m or abs(difference(goal[2], pose.phi)) > self.heading_rad
+        return self._ball_off_m(pose, goal) > self.near_m or abs(difference(goal[2], pose.phi)) > self.heading_rad
 
     def _arrived(self, progress: Progress, belief: BallBelief, goal: tuple[float, ...]) -> bool:
         pose = belief.pose
         return (
             progress.remaining_m < self.reached_m
-            and math.hypot(goal[0] - pose.x, goal[1] - pose.y) < self.near_m
+            and self._ball_off_m(pose, goal) < self.near_m
             and abs(difference(goal[2], pose.phi)) < self.heading_rad
             and belief.v < goal[3] + self.speed_mps
         )
+
+    def _ball_off_m(self, pose: Pose, goal: tuple[float, ...]) -> float:
+        """How far from where the goal has it a ball in the rail is, m."""
+        dx = goal[0] - pose.x + self.grip.in_rail_m * (math.cos(goal[2]) - math.cos(pose.phi))
+        dy = goal[1] - pose.y + self.grip.in_rail_m * (math.sin(goal[2]) - math.sin(pose.phi))
+        return math.hypot(dx, dy)
 
     def _seek(self, memory: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
         """Turn, always the same way, until the ball is seen."""

@@ -1,6 +1,8 @@
 """The path to dribble a ball along: the quickest of several radii and of ends that are good enough.
 
 Ends that may be a little off keep the duration smooth: an exact end can cost a full circle where a slant costs nothing.
+What they cost is less than the time that they save: else noise in the start, by which one end or another is chosen,
+would show in the duration.
 """
 
 from __future__ import annotations
@@ -8,27 +10,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.actions.dubins import DubinsPath, Pose2, shortest
+from executive.actions.dubins import DubinsPath, Pose2, shortest, straight_on
 from executive.belief.planar_ekf import Pose
 
 
 @dataclass(frozen=True, slots=True)
 class DribblePath:
-    """Plans paths of bounded curvature that end with a straight run-out."""
+    """Plans paths of bounded curvature that begin and end straight."""
 
     v_max_mps: float
     bend_radps: float  # how fast bends are driven
-    radii_m: tuple[float, ...] = (0.48, 0.55, 0.65)  # of bends: the tighter, the slower
+    ahead_m: float  # axle to ball
+    radii_m: tuple[float, ...] = (0.48, 0.65)  # of bends: the tighter, the slower
+    run_in_m: float = 0.12  # the ball is to lie in the rail before the first bend
+    braking_mps2: float = 0.35  # on the run-in
     run_out_m: float = 0.15
-    slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3)  # a path may end so far off the goal's heading
-    asides_m: tuple[float, ...] = (0.0, 0.12, -0.12)  # and so far aside of it
-    slant_s_per_rad: float = 4.0  # if it is quicker by as much
-    aside_s_per_m: float = 8.0
+    slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3, 0.6, -0.6)  # a path may end so far off the goal's heading
+    asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
+    slant_s_per_rad: float = 2.0  # if it is quicker by as much
+    aside_s_per_m: float = 4.0
 
     def quickest(self, pose: Pose, v: float, goal: tuple[float, ...]) -> DubinsPath:
         """The best path that can be driven from a pose at speed v (m/s) to a goal (x, y, phi, ...)."""
-        start = (pose.x, pose.y, pose.phi)
-        tightest = v / self.bend_radps
+        start = straight_on((pose.x, pose.y, pose.phi), self.run_in_m)
+        tightest = math.sqrt(max(0.0, v * v - 2.0 * self.run_in_m * self.braking_mps2)) / self.bend_radps
         radii = [radius for radius in self.radii_m if radius >= tightest] or [tightest]
         candidates = []
         for slant in self.slants_rad:
@@ -37,7 +42,7 @@ class DribblePath:
                 end = self._end(goal, slant, aside)
                 candidates += [(shortest(start, end, radius), blemish_s) for radius in radii]
         best, _ = min(candidates, key=lambda path: self.driving_s(path[0]) + path[1])
-        return best.extended(self.run_out_m)
+        return best.between(self.run_in_m, self.run_out_m)
 
     def driving_s(self, path: DubinsPath) -> float:
         """Roughly how long a path takes, s."""
@@ -45,7 +50,8 @@ class DribblePath:
         return sum(length / (bend if turn else straight) for turn, length in path.pieces)
 
     def _end(self, goal: tuple[float, ...], slant: float, aside: float) -> Pose2:
-        """Where the run-out begins."""
+        """Where the run-out begins: the ball ends where the goal has it, or beside it."""
         heading = goal[2] + slant
         c, s = math.cos(heading), math.sin(heading)
-        return goal[0] - self.run_out_m * c - aside * s, goal[1] - self.run_out_m * s + aside * c, heading
+        ball_x, ball_y, _ = straight_on((goal[0], goal[1], goal[2]), self.ahead_m)
+        return straight_on((ball_x - aside * s, ball_y + aside * c, heading), -self.ahead_m - self.run_out_m)

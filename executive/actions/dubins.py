@@ -6,7 +6,7 @@ Notation: a path is three pieces, each turning left (+1), right (-1) or straight
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 Pose2 = tuple[float, float, float]  # x m, y m, heading rad
 Piece = tuple[int, float]  # turn, length m
@@ -20,25 +20,38 @@ class DubinsPath:
     start: Pose2
     radius: float
     pieces: tuple[Piece, ...]
+    _joints: tuple[Pose2, ...] = field(init=False, repr=False, compare=False)  # where pieces begin, and the end
+
+    def __post_init__(self) -> None:
+        """Work out once what every look-up needs."""
+        joints = [self.start]
+        for turn, length in self.pieces:
+            joints.append(_along(joints[-1], turn, length, self.radius))
+        object.__setattr__(self, "_joints", tuple(joints))
 
     @property
     def length(self) -> float:
         """Of all pieces, m."""
         return sum(length for _, length in self.pieces)
 
-    def extended(self, straight_m: float) -> DubinsPath:
-        """The same path, run out straight."""
-        return DubinsPath(self.start, self.radius, (*self.pieces, (0, straight_m)))
+    def between(self, run_in_m: float, run_out_m: float) -> DubinsPath:
+        """The same path with a straight run-in before its start and a straight run-out."""
+        start = straight_on(self.start, -run_in_m)
+        return DubinsPath(start, self.radius, ((0, run_in_m), *self.pieces, (0, run_out_m)))
 
     def at(self, s: float) -> tuple[float, float, float, float]:
         """Pose and curvature (1/m, left positive) after `s` metres; beyond the end it goes straight on."""
-        pose = self.start
-        for turn, length in self.pieces:
+        for (turn, length), joint in zip(self.pieces, self._joints, strict=False):
             if s <= length:
-                return (*_along(pose, turn, max(0.0, s), self.radius), turn / self.radius)
-            pose = _along(pose, turn, length, self.radius)
+                return (*_along(joint, turn, max(0.0, s), self.radius), turn / self.radius)
             s -= length
-        return (*_along(pose, 0, s, self.radius), 0.0)
+        return (*_along(self._joints[-1], 0, s, self.radius), 0.0)
+
+
+def straight_on(pose: Pose2, distance_m: float) -> Pose2:
+    """The pose so far ahead; behind, if negative."""
+    x, y, heading = pose
+    return x + distance_m * math.cos(heading), y + distance_m * math.sin(heading), heading
 
 
 def shortest(start: Pose2, goal: Pose2, radius: float) -> DubinsPath:
@@ -56,7 +69,7 @@ def shortest(start: Pose2, goal: Pose2, radius: float) -> DubinsPath:
 def _along(pose: Pose2, turn: int, s: float, radius: float) -> Pose2:
     x, y, heading = pose
     if turn == 0:
-        return x + s * math.cos(heading), y + s * math.sin(heading), heading
+        return straight_on(pose, s)
     new = heading + turn * s / radius
     return (
         x + turn * radius * (math.sin(new) - math.sin(heading)),

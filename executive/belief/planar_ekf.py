@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from executive.belief.angles import difference, wrap
 
 Covariance = tuple[float, float, float, float, float, float]  # xx, xy, xφ, yy, yφ, φφ in m², m·rad, rad²
+_Estimate = tuple[float, float, float, float, float, float, float, float, float]  # three values and their covariance
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,20 +58,27 @@ def predict(pose: Pose, v: float, omega: float, duration_s: float, noise: Odomet
 
 def correct(pose: Pose, x: float, y: float, phi: float, variances: tuple[float, float, float]) -> Pose:
     """Fuse an absolute pose with independent errors of `variances` (m², m², rad²), one axis after the other."""
-    state = [pose.x, pose.y, pose.phi]
-    rows = _rows(pose.covariance)
-    for axis, (seen, variance) in enumerate(zip((x, y, phi), variances, strict=True)):
-        innovation = difference(seen, state[2]) if axis == 2 else seen - state[axis]
-        column = (rows[0][axis], rows[1][axis], rows[2][axis])
-        scale = 1.0 / (column[axis] + variance)
-        for i in range(3):
-            gain = column[i] * scale
-            state[i] += gain * innovation
-            rows[i] = [rows[i][j] - gain * column[j] for j in range(3)]
-    a, b, c = rows
-    return Pose(state[0], state[1], wrap(state[2]), (a[0], a[1], a[2], b[1], b[2], c[2]))
+    cxx, cxy, cxp, cyy, cyp, cpp = pose.covariance
+    state = (pose.x, pose.y, pose.phi, cxx, cxy, cxp, cyy, cyp, cpp)
+    state = _fuse_first(state, x - state[0], variances[0])
+    state = _fuse_first(state, y - state[0], variances[1])
+    state = _fuse_first(state, difference(phi, state[0]), variances[2])
+    return Pose(state[0], state[1], wrap(state[2]), state[3:])
 
 
-def _rows(covariance: Covariance) -> list[list[float]]:
-    xx, xy, xp, yy, yp, pp = covariance
-    return [[xx, xy, xp], [xy, yy, yp], [xp, yp, pp]]
+def _fuse_first(state: _Estimate, innovation: float, variance: float) -> _Estimate:
+    """Fuse a measurement of the first of three values; it becomes the last, so that three calls turn full circle."""
+    a, b, c, aa, ab, ac, bb, bc, cc = state
+    scale = 1.0 / (aa + variance)
+    gain_a, gain_b, gain_c = aa * scale, ab * scale, ac * scale
+    return (
+        b + gain_b * innovation,
+        c + gain_c * innovation,
+        a + gain_a * innovation,
+        bb - gain_b * ab,
+        bc - gain_b * ac,
+        ab - gain_b * aa,
+        cc - gain_c * ac,
+        ac - gain_c * aa,
+        aa - gain_a * aa,
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 
 import mujoco
 import numpy as np
@@ -30,6 +31,7 @@ class AgiloBody:
         self._sensing = sensing or Sensing()
         self._model = compile_scene(self._p)
         self._data = mujoco.MjData(self._model)
+        self._qpos, self._qvel, self._ctrl = self._data.qpos, self._data.qvel, self._data.ctrl  # looked up once
         self._sensors = Sensors(self._sensing)
         self._firmware = fw.Firmware(self._p.track_m)
         self._time_ns = 0
@@ -47,10 +49,11 @@ class AgiloBody:
 
     def place(self, values: Mapping[str, float]) -> None:
         """Move the robot (with any of x, y, phi, v, omega) or the ball; what is not named stays as it is."""
+        now = asdict(self.truth())
         if any(name in values for name in ("x", "y", "phi", "v", "omega")):
-            self._place_robot({**self._robot_state(), **values})
+            self._place_robot({**now, **values})
         if any(name.startswith("ball_") for name in values):
-            self._place_ball({**self._ball_state(), **values})
+            self._place_ball({**now, **values})
         mujoco.mj_forward(self._model, self._data)
 
     def command(self, values: tuple[float, ...]) -> None:
@@ -74,18 +77,22 @@ class AgiloBody:
 
     def truth(self) -> SimTruth:
         """Pose and velocities of robot and ball, field frame."""
-        robot, ball = self._robot_state(), self._ball_state()
-        return SimTruth(self._time_ns, *robot.values(), *ball.values())
+        x, y, phi = self._pose()
+        vx, vy, _, _, _, omega, _, _, ball_vx, ball_vy = self._qvel[: BALL_V + 2].tolist()
+        ball_x, ball_y = self._qpos[BALL : BALL + 2].tolist()
+        v = vx * math.cos(phi) + vy * math.sin(phi)
+        return SimTruth(self._time_ns, x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy)
 
     def _drive(self) -> None:
         v, omega = self._firmware.tick()
         rim = omega * self._p.track_m / 2
-        self._data.ctrl[:] = ((v - rim) / self._p.wheel_radius_m, (v + rim) / self._p.wheel_radius_m)
+        self._ctrl[0] = (v - rim) / self._p.wheel_radius_m
+        self._ctrl[1] = (v + rim) / self._p.wheel_radius_m
 
     def _sense(self) -> list[Reading]:
         """All readings of this firmware period; camera readings fall due after the camera's delay."""
         now_ns = self._time_ns
-        left, right = self._data.qvel[LEFT_V : LEFT_V + 2].tolist()
+        left, right = self._qvel.item(LEFT_V), self._qvel.item(LEFT_V + 1)
         v = 0.5 * (left + right) * self._p.wheel_radius_m
         omega = (right - left) * self._p.wheel_radius_m / self._p.track_m
         readings = [Reading("odom", self._sensors.odometry(now_ns, v, omega, fw.PERIOD_S), now_ns)]
@@ -99,7 +106,7 @@ class AgiloBody:
 
     def _look(self, now_ns: int) -> None:
         x, y, phi = self._pose()
-        ball_x, ball_y = self._data.qpos[BALL : BALL + 2].tolist()
+        ball_x, ball_y = self._qpos[BALL : BALL + 2].tolist()
         c, s = math.cos(phi), math.sin(phi)
         dx, dy = ball_x - x, ball_y - y
         due_ns = now_ns + self._sensing.camera_delay_ns
@@ -111,32 +118,21 @@ class AgiloBody:
             self._pending.append(Reading("ball", ball, due_ns))
 
     def _pose(self) -> tuple[float, float, float]:
-        x, y, _, w, i, j, k = self._data.qpos[ROBOT : ROBOT + 7].tolist()
+        x, y, _, w, i, j, k = self._qpos[ROBOT : ROBOT + 7].tolist()
         return x, y, math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k))
-
-    def _robot_state(self) -> dict[str, float]:
-        x, y, phi = self._pose()
-        vx, vy, _, _, _, omega = self._data.qvel[ROBOT_V : ROBOT_V + 6].tolist()
-        v = vx * math.cos(phi) + vy * math.sin(phi)
-        return {"x": x, "y": y, "phi": phi, "v": v, "omega": omega}
-
-    def _ball_state(self) -> dict[str, float]:
-        x, y = self._data.qpos[BALL : BALL + 2].tolist()
-        vx, vy = self._data.qvel[BALL_V : BALL_V + 2].tolist()
-        return {"ball_x": x, "ball_y": y, "ball_vx": vx, "ball_vy": vy}
 
     def _place_robot(self, state: Mapping[str, float]) -> None:
         phi, v, omega = state["phi"], state["v"], state["omega"]
         half = 0.5 * phi
         height = self._p.wheel_radius_m
-        self._data.qpos[ROBOT : ROBOT + 7] = (state["x"], state["y"], height, math.cos(half), 0, 0, math.sin(half))
-        self._data.qvel[ROBOT_V : ROBOT_V + 6] = (v * math.cos(phi), v * math.sin(phi), 0, 0, 0, omega)
+        self._qpos[ROBOT : ROBOT + 7] = (state["x"], state["y"], height, math.cos(half), 0, 0, math.sin(half))
+        self._qvel[ROBOT_V : ROBOT_V + 6] = (v * math.cos(phi), v * math.sin(phi), 0, 0, 0, omega)
         rim = omega * self._p.track_m / 2
-        self._data.qvel[LEFT_V : LEFT_V + 2] = ((v - rim) / height, (v + rim) / height)
+        self._qvel[LEFT_V : LEFT_V + 2] = ((v - rim) / height, (v + rim) / height)
         self._firmware.reset(v, omega)
 
     def _place_ball(self, state: Mapping[str, float]) -> None:
         """Put the ball on the floor, rolling without slip."""
         radius, vx, vy = self._p.ball_radius_m, state["ball_vx"], state["ball_vy"]
-        self._data.qpos[BALL : BALL + 7] = (state["ball_x"], state["ball_y"], radius, 1, 0, 0, 0)
-        self._data.qvel[BALL_V : BALL_V + 6] = (vx, vy, 0, -vy / radius, vx / radius, 0)
+        self._qpos[BALL : BALL + 7] = (state["ball_x"], state["ball_y"], radius, 1, 0, 0, 0)
+        self._qvel[BALL_V : BALL_V + 6] = (vx, vy, 0, -vy / radius, vx / radius, 0)

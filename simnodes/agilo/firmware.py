@@ -43,4 +43,4 @@ class Firmware:
 
 
 def _towards(difference: float, step: float) -> float:
-    return max(-step, min(step, difference))
+    return step if difference > step else -step if difference < -step else difference

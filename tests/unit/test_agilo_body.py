@@ -11,10 +11,12 @@ import pytest
 from executive.domains.soccer import robot
 from schemas.messages import BallPercept, Odometry, PoseEstimate
 from schemas.topics import TOPICS
-from simnodes.agilo import firmware
+from simnodes.agilo import body as agilo_body
+from simnodes.agilo import firmware, scene
 from simnodes.agilo.body import AgiloBody
 from simnodes.agilo.physique import Physique, ball_in_rail_m
 from simnodes.agilo.sensing import Sensing
+from simnodes.body import STEP_NS
 
 ROOT = Path(__file__).resolve().parents[2]
 TICK_NS = 100_000_000
@@ -79,8 +81,8 @@ def test_steps_of_any_length_lead_to_the_same_place():
         body.command((0.7, 0.5))
     heard = whole.advance(2 * TICK_NS)
     pieces = []
-    for steps in (1, 2, 3, 7, 4, 13, 10):
-        pieces += parts.advance(steps * 5_000_000)
+    for steps in (1, 2, 3, 7, 4, 3):
+        pieces += parts.advance(steps * STEP_NS)
     assert whole.truth() == parts.truth()
     assert heard == pieces
 
@@ -126,6 +128,28 @@ def test_free_ball_slows_down_as_declared():
     assert body.truth().ball_vx == pytest.approx(1.0 - robot.BALL_ROLLING_MPS2, abs=0.03)
     body.advance(15 * TICK_NS)
     assert body.truth().ball_vx == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("start", "command"),
+    [
+        ({"ball_x": 2.0, "ball_y": 1.0, "ball_vx": 1.0}, (0.0, 0.0)),
+        ({"v": 0.5, "ball_x": 0.6, "ball_y": 0.03}, (0.5, 0.0)),
+        ({"v": 0.8, "ball_x": 0.6, "ball_y": 0.08}, (0.8, 0.0)),
+        ({"v": 0.5, "ball_x": 0.6, "ball_y": 0.20}, (0.5, 0.0)),
+        ({"v": 0.36, "ball_x": robot.IN_RAIL_M, "ball_y": 0.0, "ball_vx": 0.36}, (0.36, 0.5)),
+        ({"ball_x": 1.5, "ball_y": 0.02, "ball_vx": -2.0}, (0.0, 0.0)),
+    ],
+    ids=["rolls", "hit", "hit hard", "grazed by the rail's tip", "carried round", "caught"],
+)
+def test_ball_ends_where_ten_times_finer_steps_take_it(monkeypatch, start, command):
+    coarse = driven(command, 20, start)[0].truth()
+    monkeypatch.setattr(scene, "TIMESTEP_S", scene.TIMESTEP_S / 10)
+    monkeypatch.setattr(agilo_body, "STEP_NS", STEP_NS // 10)
+    fine = driven(command, 20, start)[0].truth()
+    assert coarse != fine
+    assert math.hypot(coarse.ball_x - fine.ball_x, coarse.ball_y - fine.ball_y) < 0.03
+    assert math.hypot(coarse.x - fine.x, coarse.y - fine.y) < 0.02
 
 
 @pytest.mark.parametrize(("omega", "held"), [(0.6, True), (0.95, False)])

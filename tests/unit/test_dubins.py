@@ -54,7 +54,13 @@ def test_known_paths_have_their_known_length(goal, length):
     assert shortest((0.0, 0.0, 0.0), goal, 0.5).length == pytest.approx(length, abs=1e-9)
 
 
+def test_path_runs_in_and_out_straight():
+    path = shortest((0.0, 0.0, 0.0), (1.0, 0.5, 0.7), 0.4)
+    longer = path.between(0.1, 0.2)
+    assert longer.length == pytest.approx(path.length + 0.3)
+    assert longer.at(0.0)[:3] == pytest.approx((-0.1, 0.0, 0.0))
+    assert longer.at(0.1 + path.length)[:3] == pytest.approx((1.0, 0.5, 0.7))
+
+
 def test_path_goes_straight_on_beyond_its_end():
-    path = shortest((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.5).extended(0.2)
-    assert path.length == pytest.approx(1.2)
-    assert path.at(2.0)[:3] == pytest.approx((2.0, 0.0, 0.0))
+    assert shortest((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.5).at(2.0)[:3] == pytest.approx((2.0, 0.0, 0.0))

@@ -12,6 +12,7 @@ from executive.actions.approach_ball import ApproachBall
 from executive.actions.dribble_ball import DribbleBall
 from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
+from executive.actions.rail_grip import RailGrip
 from executive.domains.soccer import robot
 from executive.domains.soccer.behind import Behind
 from executive.domains.soccer.bumping import BumpRisk
@@ -44,7 +45,8 @@ behind_goal = Behind((4,), robot.BEHIND_BALL_M)
 behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
 _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
-_dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), robot.IN_RAIL_M)
+_grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
+_dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 
 GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPose/duration")
 APPROACH_BALL = Action(
