@@ -54,7 +54,7 @@ APPROACH_BALL = Action(
     "approachBall/duration",
     "approachBall/success",
     detour="goToPose",
-    detour_risk=BumpRisk(_go.lead),
+    detour_risk=BumpRisk(0.25),
     arguments=behind_goal,
     spans=behind_goal.spans,
 )
