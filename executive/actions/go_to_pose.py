@@ -4,41 +4,44 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
-from executive.actions.arrival_path import ArrivalPath
-from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
+from executive.actions.arrival_path import ArrivalPath, stops
+from executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
 from executive.belief.planar_ekf import Pose
 from executive.library import Array, Control
 
-Align = Literal["align"]
+ALIGN = "align"  # the memory while it turns on the spot at its goal
 
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Faces the way into the goal, follows it, and turns on the spot only when it has missed.
+    """Turns to face the way into the goal, follows it, and turns on the spot only where that is planned or it missed.
 
-    Memory: None while it turns to face the way, the way (in the goal's frame) and how far along it is, or "align".
+    The way is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
+    deviations are taken back over `settle_m`: steered anew at the goal, a few centimetres of noise beside it would
+    swing the robot round right where it is to face ahead.
+
+    Memory: None, then a `Progress` on the way that is kept, then perhaps ALIGN.
     """
 
     v_max_mps: float
     omega_max_radps: float
-    bend_radps: float = 1.2
-    radius_m: float = 0.30
-    grow: float = 1.0
-    steer_gain: float = 2.8  # rad/s per rad of heading error
-    slow_in_turns: float = 1.5  # exponent of the cosine of the heading error
+    ways: ArrivalPath
+    steer_gain: float = 3.5  # rad/s per rad of heading error
     braking_mps2: float = 0.55  # what the motor board does, with a reserve
-    bend_braking: float = 0.55
-    commit_rad: float = 0.40
-    commit_m: float = 0.15
-    commit_s: float = 0.7
-    preview_s: float = 0.35
+    keep_m: float = 0.15  # the way is kept when its bend is so near,
+    keep_s: float = 0.5  # and so much time,
+    keep_rad: float = 0.6  # and the robot faces it
+    preview_s: float = 0.40  # turning lags so far behind the command
+    swing_s: float = 0.18  # so long the robot turns on as it does
     settle_m: float = 0.35
-    off_path_m: float = 0.25
+    off_path_m: float = 0.25  # plan a new way
     off_path_rad: float = 0.8
+    past_m: float = 0.10
+    stopping_m: float = 0.10  # before a goal where it stops
     near_m: float = 0.15  # so close to the goal only the heading is left to correct
     stay_m: float = 0.30  # turning on the spot may have carried it so far
     reached_m: float = 0.03  # along the goal's heading
@@ -47,6 +50,7 @@ class GoToPose:
     stopping_radps2: float = 1.3  # what the motor board does, with a reserve
     still_radps: float = 0.4
     speed_mps: float = 0.10  # by which the arrival may be too fast
+    crawl_mps: float = 0.10  # never slower, or it would not arrive
 
     def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See executive.library.Controller; the command is (v m/s, omega rad/s)."""
@@ -54,64 +58,66 @@ class GoToPose:
         pose = _seen_from(belief.pose, xg, yg, phig)
         if self._arrived(belief, pose, vg, memory):
             return Control(memory, (vg, 0.0), "done")
+        if self._aligns(memory, pose):
+            return Control(ALIGN, (0.0, self._turn(-pose.phi)))
+        followed = self._follow(memory, belief, pose, vg) if isinstance(memory, Progress) else None
+        return followed or self._face(belief, pose, vg)
+
+    def _face(self, belief: PlanarBelief, pose: Pose, vg: float) -> Control:
+        """Turn to where the way leads, the faster ahead the better it is faced."""
+        way = Progress(self.ways.quickest((pose.x, pose.y, pose.phi), vg), 0.0)
+        error = difference(way.path.start[2], pose.phi)
+        if abs(error) < self.keep_rad and way.path.pieces[0][1] < self.keep_m + self.keep_s * max(0.0, belief.v):
+            followed = self._follow(way, belief, pose, vg)
+            if followed is not None:
+                return followed
+        return Control(None, (self._speed(way, vg) * max(0.0, math.cos(error)), self._turn(error)))
+
+    def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
+        """Along the way that is kept; None when it is lost."""
+        way, off = project(way, pose, 0.3)
+        if abs(off.aside_m) > self.off_path_m or abs(off.turned) > self.off_path_rad or way.remaining_m < -self.past_m:
+            return None
+        if stops(way.path) and way.remaining_m < self.stopping_m:
+            return Control(ALIGN, (0.0, self._turn(-pose.phi)))
+        swing = self.swing_s * (belief.omega - belief.v * way.path.at(way.s)[3])
+        v = max(belief.v, self.crawl_mps)
+        off = Deviation(off.aside_m, off.turned + swing)
+        omega = v * tracking_curvature(way, off, v * self.preview_s, self.settle_m)
+        return Control(way, (self._speed(way, vg), self._within(omega)))
+
+    def _speed(self, way: Progress, vg: float) -> float:
+        bend_mps = self.ways.bend_radps * way.path.radius
+        pace = Pace(self.v_max_mps, bend_mps, self.braking_mps2, self.braking_mps2)
+        return max(self.crawl_mps, speed_limit(way, 0.0 if stops(way.path) else vg, pace))
+
+    def _aligns(self, memory: Any, pose: Pose) -> bool:
+        """Whether it has come to its goal, or past it, headed wrongly; with hysteresis against noise."""
         distance = math.hypot(pose.x, pose.y)
-        if distance < (self.stay_m if memory == "align" else self.near_m) and (
-            memory == "align" or (-pose.x < self.reached_m and abs(pose.phi) > self.heading_rad)
-        ):
-            return Control("align", (0.0, self._turn(-pose.phi)))
-        if isinstance(memory, Progress):
-            followed = self._follow(memory, belief, pose, vg)
-            if followed is not None:
-                return followed
-        path = self._planner().quickest((pose.x, pose.y, pose.phi), self._radius(vg))
-        error = difference(path.start[2], pose.phi)
-        if abs(error) < self.commit_rad and path.pieces[0][1] < self.commit_m + self.commit_s * max(0.0, belief.v):
-            followed = self._follow(Progress(path, 0.0), belief, pose, vg)
-            if followed is not None:
-                return followed
-        v = speed_limit(Progress(path, 0.0), vg, self._pace(path.radius))
-        return Control(None, (v * max(0.0, math.cos(error)) ** self.slow_in_turns, self._turn(error)))
-
-    def _follow(self, progress: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
-        progress, off = project(progress, pose, 0.3)
-        if abs(off.aside_m) > self.off_path_m or abs(off.turned) > self.off_path_rad:
-            return None
-        if progress.remaining_m < -0.1:
-            return None
-        v = max(0.1, speed_limit(progress, vg, self._pace(progress.path.radius)))
-        speed = max(belief.v, 0.1)
-        omega = speed * tracking_curvature(progress, off, speed * self.preview_s, self.settle_m)
-        omega = max(-self.omega_max_radps, min(self.omega_max_radps, omega))
-        return Control(progress, (v, omega))
-
-    def _planner(self) -> ArrivalPath:
-        return ArrivalPath(self.v_max_mps, self.bend_radps, 1.3)
-
-    def _pace(self, radius: float) -> Pace:
-        return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking)
-
-    def _radius(self, vg: float) -> float:
-        return max(self.radius_m, self.grow * vg / self.bend_radps)
+        if memory == ALIGN:
+            return distance < self.stay_m
+        return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) > self.heading_rad
 
     def _arrived(self, belief: PlanarBelief, pose: Pose, vg: float, memory: Any) -> bool:
         """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
         if belief.v > vg + self.speed_mps:
             return False
         distance = math.hypot(pose.x, pose.y)
-        if memory == "align":
+        if memory == ALIGN:
             return abs(pose.phi) < self.aligned_rad and abs(belief.omega) < self.still_radps and distance < self.stay_m
         return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) < self.heading_rad
 
     def _turn(self, off: float) -> float:
-        """Turning on the spot so that it can be stopped in time."""
-        return math.copysign(min(abs(self._steer(off)), math.sqrt(2 * self.stopping_radps2 * abs(off))), off)
+        """Turning so that it can be stopped in time."""
+        omega = min(self.steer_gain * abs(off), math.sqrt(2 * self.stopping_radps2 * abs(off)))
+        return self._within(math.copysign(omega, off))
 
-    def _steer(self, error: float) -> float:
-        return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))
+    def _within(self, omega: float) -> float:
+        return max(-self.omega_max_radps, min(self.omega_max_radps, omega))
 
 
 def _seen_from(pose: Pose, x: float, y: float, phi: float) -> Pose:
-    """A pose in the frame of another."""
+    """A pose in the frame of another (m, m, rad)."""
     c, s = math.cos(phi), math.sin(phi)
     dx, dy = pose.x - x, pose.y - y
     return Pose(c * dx + s * dy, c * dy - s * dx, difference(pose.phi, phi), pose.covariance)
