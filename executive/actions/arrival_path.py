@@ -17,7 +17,10 @@ NO_BEND = 1e-6  # rad short of a full circle: a bend of nothing, but for roundin
 
 @dataclass(frozen=True, slots=True)
 class ArrivalPath:
-    """Plans ways into a goal; where it is quicker, one that stops there and turns on the spot."""
+    """Plans ways into a goal; where it is quicker, one that stops there and turns on the spot.
+
+    Right before the goal no bend may fit: the way is then the goal's line, though the robot is a little beside it.
+    """
 
     v_max_mps: float
     radius_m: float = 0.45  # of the bend, for goals that are passed slowly
@@ -29,6 +32,7 @@ class ArrivalPath:
     bend_worth_radps: float = 0.9
     facing_radps: float = 1.3
     spot_radps: float = 1.6
+    aside_s_per_m: float = 20.0  # going on beside the goal's line may cost as much
     stop_s: float = math.inf  # what it costs to stop at the goal, beyond turning; endless: it never does
 
     def radius(self, vg: float) -> float:
@@ -43,9 +47,12 @@ class ArrivalPath:
           vg: Speed at the goal, m/s.
         """
         x, y, heading = start
-        straight = DubinsPath((x, y, math.atan2(-y, -x)), 1.0, ((0, math.hypot(x, y)),))
-        paths = (self._bent(x, y, 1, self.radius(vg)), self._bent(x, y, -1, self.radius(vg)), straight)
-        return min(paths, key=lambda path: self._roughly_s(path, heading))
+        radius = self.radius(vg)
+        straight = DubinsPath((x, y, math.atan2(-y, -x)), radius, ((0, math.hypot(x, y)),))
+        along = DubinsPath((x, 0.0, 0.0), radius, ((0, 0.0), (1, 0.0), (0, max(0.0, -x))))
+        paths = (self._bent(x, y, 1, radius), self._bent(x, y, -1, radius), straight)
+        best_s, best = min(((self._roughly_s(path, heading), path) for path in paths), key=lambda found: found[0])
+        return along if x < 0.0 and self._roughly_s(along, heading) + self.aside_s_per_m * abs(y) < best_s else best
 
     def _bent(self, x: float, y: float, side: int, radius: float) -> DubinsPath:
         """The way that ends with a bend to the left (side 1) or right (-1)."""
