@@ -32,7 +32,8 @@ class ArrivalPath:
     bend_worth_radps: float = 0.9
     facing_radps: float = 1.3
     spot_radps: float = 1.6
-    aside_s_per_m: float = 20.0  # going on beside the goal's line may cost as much
+    beside_m: float = 0.12  # right before its goal the robot may go on so far beside the goal's line,
+    aside_s_per_m: float = 20.0  # where else it would lose as much
     stop_s: float = math.inf  # what it costs to stop at the goal, beyond turning; endless: it never does
 
     def radius(self, vg: float) -> float:
@@ -52,7 +53,8 @@ class ArrivalPath:
         along = DubinsPath((x, 0.0, 0.0), radius, ((0, 0.0), (1, 0.0), (0, max(0.0, -x))))
         paths = (self._bent(x, y, 1, radius), self._bent(x, y, -1, radius), straight)
         best_s, best = min(((self._roughly_s(path, heading), path) for path in paths), key=lambda found: found[0])
-        return along if x < 0.0 and self._roughly_s(along, heading) + self.aside_s_per_m * abs(y) < best_s else best
+        along_s = self._roughly_s(along, heading) + self.aside_s_per_m * abs(y)
+        return along if x < 0.0 and abs(y) < self.beside_m and along_s < best_s else best
 
     def _bent(self, x: float, y: float, side: int, radius: float) -> DubinsPath:
         """The way that ends with a bend to the left (side 1) or right (-1)."""
