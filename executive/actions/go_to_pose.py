@@ -4,34 +4,45 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
+from executive.actions.arrival_path import ArrivalPath, stops
+from executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
 from executive.actions.planar import VG, XG, PlanarBelief
 from executive.belief.angles import difference
+from executive.belief.planar_ekf import Pose
 from executive.library import Array, Control
 
-Phase = Literal["drive", "align"]
+ALIGN = "align"  # the memory while it turns on the spot at its goal
 
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Steers to a point on the goal's line that wanders from behind the goal past it; turns on the spot at last.
+    """Turns to face the way into the goal, follows it, and turns on the spot only where that is planned or it missed.
 
-    The point stays `look_m` ahead near the goal: steered at the goal itself, a few centimetres of noise beside it would
+    The way is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
+    deviations are taken back over `settle_m`: steered anew at the goal, a few centimetres of noise beside it would
     swing the robot round right where it is to face ahead.
 
-    The memory is the phase: with its hysteresis noise cannot toggle driving and turning.
+    Memory: None, then a `Progress` on the way that is kept, then perhaps ALIGN.
     """
 
     v_max_mps: float
     omega_max_radps: float
-    lead: float = 0.25  # the point to steer to lies this share of the distance behind the goal,
-    look_m: float = 0.35  # but never nearer than this
-    steer_gain: float = 2.8  # rad/s per rad of heading error
-    slow_in_turns: float = 1.5  # exponent of the cosine of the heading error
+    ways: ArrivalPath
+    steer_gain: float = 3.5  # rad/s per rad of heading error
     braking_mps2: float = 0.55  # what the motor board does, with a reserve
+    keep_m: float = 0.15  # the way is kept when its bend is so near,
+    keep_s: float = 0.5  # and so much time,
+    keep_rad: float = 0.6  # and the robot faces it
+    preview_s: float = 0.40  # turning lags so far behind the command
+    swing_s: float = 0.18  # so long the robot turns on as it does
+    settle_m: float = 0.35
+    off_path_m: float = 0.25  # plan a new way
+    off_path_rad: float = 0.8
+    past_m: float = 0.10
+    stopping_m: float = 0.10  # before a goal where it stops
     near_m: float = 0.15  # so close to the goal only the heading is left to correct
-    settle_m: float = 0.08  # the goal's speed is reached so far before it
     stay_m: float = 0.30  # turning on the spot may have carried it so far
     reached_m: float = 0.03  # along the goal's heading
     heading_rad: float = 0.20
@@ -39,47 +50,74 @@ class GoToPose:
     stopping_radps2: float = 1.3  # what the motor board does, with a reserve
     still_radps: float = 0.4
     speed_mps: float = 0.10  # by which the arrival may be too fast
+    crawl_mps: float = 0.10  # never slower, or it would not arrive
 
     def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See executive.library.Controller; the command is (v m/s, omega rad/s)."""
         xg, yg, phig, vg = arguments[XG : VG + 1].tolist()
-        pose = belief.pose
-        dx, dy = xg - pose.x, yg - pose.y
-        distance = math.hypot(dx, dy)
-        off = difference(phig, pose.phi)
-        if self._arrived(belief, distance, dx * math.cos(phig) + dy * math.sin(phig), off, vg, memory):
+        pose = _seen_from(belief.pose, xg, yg, phig)
+        if self._arrived(belief, pose, vg, memory):
             return Control(memory, (vg, 0.0), "done")
-        if self._phase(memory, distance, off) == "align":
-            return Control("align", (0.0, self._turn(off)))
-        behind = min(self.lead * distance, distance - self.look_m)
-        error = difference(math.atan2(dy - behind * math.sin(phig), dx - behind * math.cos(phig)), pose.phi)
-        v_end = vg * max(0.0, math.cos(off)) ** 2  # headed wrongly, it will have to stop and turn
-        return Control("drive", (self._speed(distance, error, v_end), self._steer(error)))
+        if self._aligns(memory, pose):
+            return Control(ALIGN, (0.0, self._turn(-pose.phi)))
+        followed = self._follow(memory, belief, pose, vg) if isinstance(memory, Progress) else None
+        return followed or self._face(belief, pose, vg)
 
-    def _phase(self, phase: Phase | None, distance: float, off: float) -> Phase:
-        if phase == "align":
-            return "align" if distance < self.stay_m else "drive"
-        return "align" if distance < self.near_m and abs(off) > self.heading_rad else "drive"
+    def _face(self, belief: PlanarBelief, pose: Pose, vg: float) -> Control:
+        """Turn to where the way leads, the faster ahead the better it is faced."""
+        way = Progress(self.ways.quickest((pose.x, pose.y, pose.phi), vg), 0.0)
+        error = difference(way.path.start[2], pose.phi)
+        if abs(error) < self.keep_rad and way.path.pieces[0][1] < self.keep_m + self.keep_s * max(0.0, belief.v):
+            followed = self._follow(way, belief, pose, vg)
+            if followed is not None:
+                return followed
+        return Control(None, (self._speed(way, vg) * max(0.0, math.cos(error)), self._turn(error)))
 
-    def _arrived(
-        self, belief: PlanarBelief, distance: float, along: float, off: float, vg: float, phase: Phase | None
-    ) -> bool:
+    def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
+        """Along the way that is kept; None when it is lost."""
+        way, off = project(way, pose, 0.3)
+        if abs(off.aside_m) > self.off_path_m or abs(off.turned) > self.off_path_rad or way.remaining_m < -self.past_m:
+            return None
+        if stops(way.path) and way.remaining_m < self.stopping_m:
+            return Control(ALIGN, (0.0, self._turn(-pose.phi)))
+        swing = self.swing_s * (belief.omega - belief.v * way.path.at(way.s)[3])
+        v = max(belief.v, self.crawl_mps)
+        off = Deviation(off.aside_m, off.turned + swing)
+        omega = v * tracking_curvature(way, off, v * self.preview_s, self.settle_m)
+        return Control(way, (self._speed(way, vg), self._within(omega)))
+
+    def _speed(self, way: Progress, vg: float) -> float:
+        bend_mps = self.ways.bend_radps * way.path.radius
+        pace = Pace(self.v_max_mps, bend_mps, self.braking_mps2, self.braking_mps2)
+        return max(self.crawl_mps, speed_limit(way, 0.0 if stops(way.path) else vg, pace))
+
+    def _aligns(self, memory: Any, pose: Pose) -> bool:
+        """Whether it has come to its goal, or past it, headed wrongly; with hysteresis against noise."""
+        distance = math.hypot(pose.x, pose.y)
+        if memory == ALIGN:
+            return distance < self.stay_m
+        return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) > self.heading_rad
+
+    def _arrived(self, belief: PlanarBelief, pose: Pose, vg: float, memory: Any) -> bool:
         """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
         if belief.v > vg + self.speed_mps:
             return False
-        if phase == "align":
-            return abs(off) < self.aligned_rad and abs(belief.omega) < self.still_radps and distance < self.stay_m
-        return distance < self.near_m and along < self.reached_m and abs(off) < self.heading_rad
+        distance = math.hypot(pose.x, pose.y)
+        if memory == ALIGN:
+            return abs(pose.phi) < self.aligned_rad and abs(belief.omega) < self.still_radps and distance < self.stay_m
+        return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) < self.heading_rad
 
     def _turn(self, off: float) -> float:
-        """Turning on the spot so that it can be stopped in time."""
-        return math.copysign(min(abs(self._steer(off)), math.sqrt(2 * self.stopping_radps2 * abs(off))), off)
+        """Turning so that it can be stopped in time."""
+        omega = min(self.steer_gain * abs(off), math.sqrt(2 * self.stopping_radps2 * abs(off)))
+        return self._within(math.copysign(omega, off))
 
-    def _steer(self, error: float) -> float:
-        return max(-self.omega_max_radps, min(self.omega_max_radps, self.steer_gain * error))
+    def _within(self, omega: float) -> float:
+        return max(-self.omega_max_radps, min(self.omega_max_radps, omega))
 
-    def _speed(self, distance: float, error: float, v_end: float) -> float:
-        facing = math.pow(max(0.0, math.cos(error)), self.slow_in_turns)
-        rest = max(0.0, distance - self.settle_m)
-        # never slower than a crawl, or it would not arrive
-        return min(self.v_max_mps * facing, max(0.1, math.sqrt(v_end * v_end + 2 * self.braking_mps2 * rest)))
+
+def _seen_from(pose: Pose, x: float, y: float, phi: float) -> Pose:
+    """A pose in the frame of another (m, m, rad)."""
+    c, s = math.cos(phi), math.sin(phi)
+    dx, dy = pose.x - x, pose.y - y
+    return Pose(c * dx + s * dy, c * dy - s * dx, difference(pose.phi, phi), pose.covariance)

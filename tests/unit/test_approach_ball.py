@@ -17,7 +17,8 @@ from executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
 
 SOCCER = domains.load("soccer")
-GO, APPROACHING = SOCCER.actions["goToPose"].controller, SOCCER.actions["approachBall"].controller
+APPROACHING = SOCCER.actions["approachBall"].controller
+GO = APPROACHING.go
 BUMP_RISK = SOCCER.actions["approachBall"].detour_risk
 GOAL = np.array([0.0, 0.0, 0.0, 0.0, 2.0 - robot.BEHIND_BALL_M, 0.0, 0.0, 0.2])  # behind a ball at (2, 0)
 

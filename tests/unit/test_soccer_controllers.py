@@ -5,14 +5,18 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from executive import domains
 from executive.actions.dribble_ball import Fetching, Pushing
 from executive.actions.dubins import shortest
+from executive.actions.go_to_pose import ALIGN
 from executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
 from executive.belief.ball_track import BallTrack
 from executive.belief.planar_ekf import Pose
 from executive.domains.soccer.belief import unknown
+from executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
 from tools.lockstep import new_body, run_action, sample_arguments
 
 SOCCER = domains.load("soccer")
@@ -87,15 +91,48 @@ def test_duration_changes_little_when_the_goal_does():
 
 
 def test_robot_stops_turning_before_it_says_that_it_has_arrived():
-    control = GO("align", 0, believing(omega=-1.2, phi=0.05), goal(0.0, 0.0, 0.0))
+    control = GO(ALIGN, 0, believing(omega=-1.2, phi=0.05), goal(0.0, 0.0, 0.0))
     assert control.outcome == "running"
-    assert GO("align", 0, believing(omega=-0.1, phi=0.05), goal(0.0, 0.0, 0.0)).outcome == "done"
+    assert GO(ALIGN, 0, believing(omega=-0.1, phi=0.05), goal(0.0, 0.0, 0.0)).outcome == "done"
 
 
 def test_turning_on_the_spot_and_driving_do_not_alternate():
     near = believing(x=0.2, phi=0.15)
-    assert GO("align", 0, near, goal(0.0, 0.0, 0.0)).memory == "align"
-    assert GO("drive", 0, near, goal(0.0, 0.0, 0.0)).memory == "drive"
+    assert GO(ALIGN, 0, near, goal(0.0, 0.0, 0.0)).memory == ALIGN
+    assert GO(None, 0, near, goal(0.0, 0.0, 0.0)).memory != ALIGN
+
+
+def test_way_is_kept_from_before_its_bend_to_the_goal():
+    far = GO(None, 0, believing(x=-3.0, y=1.0, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
+    near = GO(None, 0, believing(x=-0.6, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
+    assert far.memory is None
+    assert isinstance(near.memory, Progress)
+    kept = GO(near.memory, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
+    assert kept.memory.path == near.memory.path
+    moved = GO(near.memory, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.8, 0.0, 0.5))
+    assert moved.memory is None or moved.memory.path != near.memory.path, "the goal is elsewhere now"
+
+
+def test_robot_passes_its_goal_at_the_speed_that_is_asked():
+    speeds = []
+    for number in range(16):
+        rng = np.random.default_rng([22, number])
+        arguments = sample_arguments(SOCCER, "goToPose", rng)
+        arguments[7] = 0.5
+        speeds.append(run_action(BODY, SOCCER, "goToPose", arguments, rng, traced=True).trace[-1].truth.v)
+    assert sum(speed > 0.3 for speed in speeds) >= 14
+    assert max(speeds) < 0.7
+
+
+@settings(max_examples=200, deadline=None)
+@given(*(st.floats(-3.0, 3.0) for _ in range(3)), st.floats(-0.3, 0.9), st.floats(-1.75, 1.75), st.floats(0.0, 0.6))
+def test_commands_are_within_the_robots_limits(x, y, phi, v, omega, vg):
+    for controller in (GO, SOCCER.actions["approachBall"].controller):
+        control = controller(None, 0, believing(x, y, phi, v, omega), goal(0.0, 0.0, 0.0, vg))
+        for _ in range(2):  # with the memory of the first
+            assert 0.0 <= control.command[0] <= V_MAX_MPS
+            assert abs(control.command[1]) <= OMEGA_MAX_RADPS
+            control = controller(control.memory, 0, believing(x, y, phi, v, omega), goal(0.0, 0.0, 0.0, vg))
 
 
 def seen(ahead, left, seen_ns=0):

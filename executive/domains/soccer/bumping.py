@@ -6,34 +6,46 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.actions.planar import PHIG, XG, YG, X, Y
+from executive.actions.arrival_path import ArrivalPath
+from executive.actions.planar import PHIG, VG, XG, YG, X, Y
 from executive.library import Array
 
-POINTS = np.linspace(0.0, 1.0, 9)  # of the way that are looked at
+POINTS = np.linspace(0.0, 1.0, 6)[:, None]  # of the straight piece, and of the bend, that are looked at
 TOUCHING_M = 0.38  # from the axle to the ball: about what the rail reaches, and the ball's radius
-CLEAR_M = 0.55  # with what noise and the bend of the way may add
+CLEAR_M = 0.55  # with what noise may add
 
 
 @dataclass(frozen=True, slots=True)
 class BumpRisk:
     """See executive.library.DetourRisk: the risk that the robot touches the ball on its way."""
 
-    lead: float  # goToPose's: it steers at a point this share of the distance behind its goal
+    ways: ArrivalPath  # goToPose's
 
     def __call__(self, detours: Array, action: Array) -> Array:
-        """Risks, 0 to 1; the way is a parabola, off towards the point behind the goal, in along its heading.
+        """Risks, 0 to 1.
 
         Args:
           detours: goToPose's parameters, shape (n, 8).
           action: Those of the approach that follows, shape (8,); its goal is the ball's place.
         """
-        start, goal = detours[:, [X, Y]], detours[:, [XG, YG]]
-        distance = np.hypot(*(goal - start).T)
-        heading = np.stack([np.cos(detours[:, PHIG]), np.sin(detours[:, PHIG])], axis=1)
-        behind = goal - self.lead * distance[:, None] * heading
-        t = POINTS[:, None, None]
-        way = (1 - t) ** 2 * start + 2 * t * (1 - t) * behind + t**2 * goal  # (points, n, 2)
-        off = way - action[[XG, YG]]
+        off = self._way(detours) - action[[XG, YG]]
         nearest = np.sqrt((off**2).sum(axis=2).min(axis=0))
         risk: Array = np.clip((CLEAR_M - nearest) / (CLEAR_M - TOUCHING_M), 0.0, 1.0)
         return risk
+
+    def _way(self, detours: Array) -> Array:
+        """Points, shape (p, n, 2), of ArrivalPath's way that bends to the side where the start lies."""
+        c, s = np.cos(detours[:, PHIG]), np.sin(detours[:, PHIG])
+        dx, dy = (detours[:, [X, Y]] - detours[:, [XG, YG]]).T
+        x, aside = c * dx + s * dy + self.ways.run_in_m, c * dy - s * dx
+        side = np.where(aside < 0.0, -1.0, 1.0)
+        y = np.maximum(np.abs(aside), 1e-9)  # mirrored, so that the bend is to the left
+        radius = np.maximum(self.ways.radius_m, detours[:, VG] / self.ways.bend_radps)
+        radius = np.maximum(self.ways.tightest_m, np.minimum(radius, self.ways.inside * (x**2 + y**2) / (2 * y)))
+        distance = np.maximum(radius, np.hypot(x, radius - y))
+        heading = np.arctan2(radius - y, -x) - np.arcsin(radius / distance)
+        straight = POINTS * np.sqrt(distance**2 - radius**2)
+        turned = heading + POINTS * (-heading % (2 * np.pi))
+        ahead = np.concatenate([x + straight * np.cos(heading), radius * np.sin(turned)]) - self.ways.run_in_m
+        left = side * np.concatenate([y + straight * np.sin(heading), radius * (1 - np.cos(turned))])
+        return np.stack([detours[:, XG] + c * ahead - s * left, detours[:, YG] + s * ahead + c * left], axis=2)

@@ -7,8 +7,10 @@ position and phi the robot's heading there; controllers and models take poses of
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from executive.actions.approach_ball import ApproachBall
+from executive.actions.arrival_path import ArrivalPath
 from executive.actions.dribble_ball import DribbleBall
 from executive.actions.fetch_ball import FetchBall
 from executive.actions.go_to_pose import GoToPose
@@ -44,7 +46,10 @@ behind_goal = Behind((4,), robot.BEHIND_BALL_M)
 # Both places -> poses of the axle with the ball in the rail
 behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
-_go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
+_ways = ArrivalPath(robot.V_MAX_MPS)
+_go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways)
+# From before the ball it is quicker to stop and turn behind it, which sweeps it away: half of random approaches do
+_approach = replace(_go, ways=replace(_ways, radius_m=0.33, stop_s=1.0))
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 
@@ -52,11 +57,11 @@ GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPos
 APPROACH_BALL = Action(
     "approachBall",
     _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
-    ApproachBall(_go, robot.BEHIND_BALL_M, BALL_MOVED_M),
+    ApproachBall(_approach, robot.BEHIND_BALL_M, BALL_MOVED_M),
     "approachBall/duration",
     "approachBall/success",
     detour="goToPose",
-    detour_risk=BumpRisk(_go.lead),
+    detour_risk=BumpRisk(_ways),
     arguments=behind_goal,
     spans=behind_goal.spans,
 )
