@@ -91,6 +91,7 @@ def without_gate(order: Order) -> Order:
 
 def recompose(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
+    _check(recorded)
     order = from_table(Order, recorded["order"], "recording's provenance")
     if BENEFIT not in recorded["models"]:  # the run had no benefit tree, whatever there is here
         order = without_gate(order)
@@ -99,5 +100,16 @@ def recompose(recorded: Mapping[str, Any]) -> Context:
     for name, sha256 in recorded["models"].items():
         if here.get(name) != sha256:
             found = str(here.get(name, "missing"))[:12]
-            raise UsageError(f"model {name} is {found} here, but the recording was made with {sha256[:12]}")
+            raise UsageError(f"model {name} is {found} here, but the recording was made with {str(sha256)[:12]}")
     return context
+
+
+def _check(recorded: Mapping[str, Any]) -> None:
+    """Whether a provenance has what `recompose` needs: it comes from a file."""
+    if not recorded:
+        raise UsageError("the recording does not say what the executive was made of, expected exec/provenance in it")
+    kinds = {"order": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}
+    for name, kind in kinds.items():
+        found = recorded.get(name, {} if name == "machine" else None)  # nothing was said of machines once
+        if not isinstance(found, kind):
+            raise UsageError(f"recording's provenance: '{name}' is {found!s:.40}, expected {kind.__name__}")

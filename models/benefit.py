@@ -85,10 +85,7 @@ def train_benefit(
     Raises:
       UsageError: Too few pairs, pairs that all ended alike, or an unknown learner.
     """
-    if learner not in LEARNERS:
-        raise UsageError(f"learner '{learner}' is unknown for benefit (expected one of: {', '.join(LEARNERS)})")
-    if len(pairs.slower) < LEAST:
-        raise UsageError(f"{len(pairs.slower)} pairs of episodes, expected at least {LEAST}")
+    check_learner(learner, len(pairs.slower))
     if len(np.unique(pairs.slower)) < 2:
         raise UsageError("refining ended alike in all pairs, expected some slower and some not")
     unseen = _said_by_twins(pairs, learner, seed)
@@ -98,6 +95,14 @@ def train_benefit(
     ungated = judged(pairs, ~everything, 1.0)
     test = {**best, "ungated": ungated, "perfect": judged(pairs, pairs.slower, 0.0), "curve": curve}
     return TrainedBenefit(pairs.grown(learner, everything, seed), best["threshold"], test, _rules(pairs, names))
+
+
+def check_learner(learner: str, pairs: int) -> None:
+    """Raises UsageError where there is no such learner, or fewer pairs of episodes than any can learn from."""
+    if learner not in LEARNERS:
+        raise UsageError(f"learner '{learner}' is unknown for benefit (expected one of: {', '.join(LEARNERS)})")
+    if pairs < LEAST:
+        raise UsageError(f"{pairs} pairs of episodes, expected at least {LEAST}")
 
 
 def chosen(curve: list[dict[str, Any]], price_pct: float) -> dict[str, Any]:

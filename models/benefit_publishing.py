@@ -14,7 +14,7 @@ import numpy as np
 
 from models.benefit import Pairs, TrainedBenefit, space
 from models.card import FORMAT, Card, card_path, identity, sha256_of, write_card
-from models.onnx_features import add_features
+from models.onnx_features import add_features, as_columns
 from models.onnx_graph import Graph
 from models.onnx_trees import add_probability
 from models.publishing import GOLDEN, LIBRARIES
@@ -59,7 +59,7 @@ def withdraw_benefit(zoo: Path, robot: str) -> bool:
 def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> bytes:
     """Double `arguments` (n, k) to float `slower` (n,)."""
     graph, columns = Graph(), space(names)
-    features = add_features(graph, columns, "arguments")
+    features = as_columns(graph, add_features(graph, columns, "arguments"))
     slower = add_probability(graph, features, trained.trees.steps)
     return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
 

@@ -5,31 +5,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from models import tree_names
 from models.onnx_wire import Contents
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]
+Boxes = tuple[Ints, Floats, Floats, Floats]
 
 
-def boxes_of_cells(graph: Contents, features: int) -> tuple[Ints, Floats, Floats, Floats] | None:
-    """First leaf of each tree, box of each leaf (lower < x <= upper), and its number; None where there are no cells.
+def boxes_of_cells(graph: Contents, features: int) -> Boxes:
+    """First leaf of each tree, box of each leaf (lower < x <= upper), and its number in its tree.
 
-    The counterpart of `onnx_trees._leaves_by_cell`: products with thresholds, with strides, then the table.
+    The counterpart of `onnx_leaves._looked_up`: products with thresholds, with strides, then the table.
+
+    Raises:
+      KeyError: The graph has no tables of cells.
     """
-    by_op = {node.op: node for node in graph.nodes if node.op in ("HardSigmoid", "Clip")}
-    made = {name: node for node in graph.nodes for name in node.outputs}
-    readers = {name: node for node in graph.nodes for name in node.inputs}
-    if len(by_op) != 2:
-        return None
-    minus = graph.constants[made[by_op["HardSigmoid"].inputs[0]].inputs[1]]  # (f + 1, u)
-    sums = readers[by_op["HardSigmoid"].outputs[0]]
-    strides, first = (graph.constants[sums.inputs[k]] for k in (0, 2))  # (u, k), (k, 1)
-    leaf = graph.constants[readers[by_op["Clip"].outputs[0]].inputs[0]]
-    feature = np.argmax(minus[:features] == 1.0, axis=0)
-    ends = np.append(first[1:, 0], len(leaf)).astype(np.int64)
+    minus, strides = graph.constants[tree_names.BEYOND], graph.constants[tree_names.STRIDES]
+    first, leaf = graph.constants[tree_names.FIRST][:, 0].astype(np.int64), graph.constants[tree_names.LEAF]
+    feature = np.argmax(minus[:, :features] == 1.0, axis=1)
+    ends = [*first[1:], len(leaf)]
     parts = [
-        _tree(feature, -minus[features], strides[:, k], leaf[int(first[k, 0]) : ends[k]], features)
-        for k in range(len(first))
+        _tree(feature, -minus[:, features], stride, leaf[start:end], features)
+        for stride, start, end in zip(strides, first, ends, strict=True)
     ]
     starts = np.cumsum([0, *(len(part[2]) for part in parts)])[:-1]
     lower, upper, said = (np.concatenate(column) for column in zip(*parts, strict=True))

@@ -31,20 +31,19 @@ class Cells:
     threshold: Floats  # (u,)
     strides: Floats  # (u, k) how many cells of a tree lie between both sides of a threshold; 0: not this tree's
     first: Floats  # (k,) first cell of each tree in the table
-    leaf: Ints  # (cells,) leaf numbers, counted on from tree to tree
+    leaf: Ints  # (cells,) leaf numbers, from 0 in each tree
 
 
 def cells_of(trees: Sequence[SplitTree], features: int) -> Cells | None:
     """The cells of trees over so many features; None if there are too many to be worth it, or nothing but roots."""
     own = [_thresholds(tree, features) for tree in trees]
     sizes = [int(np.prod([len(some) + 1 for some in each])) for each in own]
-    leaves = sum(tree.leaves for tree in trees)
-    if leaves == len(trees) or leaves > LEAVES_MAX or sum(sizes) > CELLS_MAX:
+    leaves = [tree.leaves for tree in trees]
+    if max(leaves) == 1 or max(leaves) > LEAVES_MAX or sum(sizes) > CELLS_MAX:
         return None
     union = [np.unique(np.concatenate([each[f] for each in own])) for f in range(features)]
     strides = np.stack([_strides(each, union) for each in own], axis=1)
-    offsets = np.cumsum([0, *(tree.leaves for tree in trees)])
-    leaf = [tree.leaf_of(_corners(each)) + at for tree, each, at in zip(trees, own, offsets[:-1], strict=True)]
+    leaf = [tree.leaf_of(_corners(each)) for tree, each in zip(trees, own, strict=True)]
     return Cells(
         np.repeat(np.arange(features), [len(some) for some in union]).astype(np.int32),
         np.concatenate(union),

@@ -80,8 +80,9 @@ def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
     if not known.any():
         return direction(xg - x, yg - y)
     dx, dy = (np.float32(there.lower) - np.float32(here.lower) for here, there in ((x, xg), (y, yg)))
-    length = features.length(dx, dy, NUMPY)
-    exact = features.direction(dx, dy, length, 0.0, NUMPY)
+    with np.errstate(invalid="ignore", divide="ignore"):  # the same place has no direction, and is not known, below
+        length = features.length(dx, dy, NUMPY)
+        exact = features.direction(dx, dy, length, 0.0, NUMPY)
     known = known & (length > FAR)
     if known.all():
         return Span(exact, exact)

@@ -15,7 +15,7 @@ from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_features import append_one
+from models.onnx_features import as_rows
 from models.onnx_graph import ML, ML_OPSET, OPSET
 from models.onnx_trees import add_bag, add_probability, add_tree
 
@@ -36,9 +36,9 @@ class _ContainerSink:
         self._container.add_node(op, list(inputs), names, domain, version, name=name, **attributes)
         return names[0] if outputs == 1 else names
 
-    def constant(self, value: NDArray[Any]) -> str:
-        """Name of a constant tensor."""
-        name = str(self._scope.get_unique_variable_name("constant"))
+    def constant(self, value: NDArray[Any], name: str = "constant") -> str:
+        """Name of a constant tensor, with a number where there are several."""
+        name = str(self._scope.get_unique_variable_name(name))
         kind = TYPES[value.dtype.str[1:]]
         self._container.add_initializer(name, kind, list(value.shape), value.ravel().tolist())
         return name
@@ -71,13 +71,12 @@ def _classifier_shape(operator: Any) -> None:
 
 def _features(sink: _ContainerSink, operator: Any) -> str:
     guess_tensor_type(operator.inputs[0].type)  # raises if these are no numbers
-    values = sink.add("Cast", operator.inputs[0].full_name, to=TensorProto.FLOAT)
-    return append_one(sink, values, operator.raw_operator.n_features_in_)
+    return str(sink.add("Cast", operator.inputs[0].full_name, to=TensorProto.FLOAT))
 
 
 def _convert_regressor(scope: Any, operator: Any, container: Any) -> None:
     sink, learner = _ContainerSink(scope, container), operator.raw_operator
-    features = _features(sink, operator)
+    features = as_rows(sink, _features(sink, operator), learner.n_features_in_)
     if isinstance(learner, BaggedModelTrees):
         mean, _ = add_bag(sink, features, learner.trees_)
     else:

@@ -11,7 +11,7 @@ from models.borrowed import BorrowedClassifier, BorrowedRegressor
 from models.failure_tree import FailureModel
 from models.features import FeatureSpace
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_features import add_features, without_one
+from models.onnx_features import add_features, as_columns
 from models.onnx_graph import Graph
 from models.onnx_trees import add_bag, add_probability, add_tree
 
@@ -34,8 +34,8 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
         case BorrowedRegressor():
             from models.onnx_borrowed import add_regressor
 
-            plain = without_one(graph, features, len(space.features))
-            mean, spread = add_regressor(graph, plain, learner.inner_, learner.low_, learner.high_, learner.spread_)
+            columns = as_columns(graph, features)
+            mean, spread = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.spread_)
         case _:
             raise TypeError(f"no export for {type(learner).__name__}")
     return graph.model(len(space.arguments), {f"mean_{unit}": mean, f"std_{unit}": spread}, notes)
@@ -48,14 +48,14 @@ def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) 
       TypeError: The learner is none of ours.
     """
     graph = Graph()
-    features = add_features(graph, space, "arguments")
+    features = as_columns(graph, add_features(graph, space, "arguments"))
     match learner:
         case FailureModel():
             success = add_probability(graph, features, learner.steps_)
         case BorrowedClassifier():
             from models.onnx_borrowed import add_classifier
 
-            success = add_classifier(graph, without_one(graph, features, len(space.features)), learner.inner_)
+            success = add_classifier(graph, features, learner.inner_)
         case _:
             raise TypeError(f"no export for {type(learner).__name__}")
     return graph.model(len(space.arguments), {"success": success}, notes)

@@ -13,7 +13,7 @@ from models.onnx_graph import Sink, single
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A column of the graph under construction, shape (1, n), single precision."""
+    """Rows of the graph under construction, shape (k, n), single precision."""
 
     sink: Sink
     name: str
@@ -22,6 +22,9 @@ class Symbol:
         name = other.name if isinstance(other, Symbol) else self.sink.constant(single(other))
         pair = (name, self.name) if swapped else (self.name, name)
         return Symbol(self.sink, self.sink.add(op, *pair))
+
+    def __getitem__(self, rows: list[int]) -> Symbol:
+        return Symbol(self.sink, self.sink.add("Gather", self.name, self.sink.constant(np.array(rows)), axis=0))
 
     def __add__(self, other: Symbol | float) -> Symbol:
         return self._with("Add", other)
@@ -35,8 +38,8 @@ class Symbol:
     def __mul__(self, other: Symbol | float) -> Symbol:
         return self._with("Mul", other)
 
-    def __truediv__(self, other: Symbol) -> Symbol:
-        return self._with("Div", other)
+    def __rtruediv__(self, other: float) -> Symbol:
+        return self._with("Div", other, swapped=True)
 
     def __lt__(self, other: Symbol | float) -> Symbol:
         return self._with("Less", other)
@@ -57,38 +60,35 @@ class Tracing:
         """Nearest whole number, ties to even."""
         return Symbol(a.sink, a.sink.add("Round", a.name))
 
-    def maximum(self, a: Symbol, floor: float) -> Symbol:
-        """The larger of each element and a number."""
-        return a._with("Max", floor)
+    def clip(self, a: Symbol, low: float, high: float) -> Symbol:
+        """What lies outside is brought to the nearer end."""
+        ends = (a.sink.constant(single(end)) for end in (low, high))
+        return Symbol(a.sink, a.sink.add("Clip", a.name, *ends))
 
     def where(self, condition: Symbol, a: Symbol | float, b: Symbol) -> Symbol:
         """Elements of `a` where the condition holds, of `b` elsewhere."""
         first = a.name if isinstance(a, Symbol) else b.sink.constant(single(a))
         return Symbol(b.sink, b.sink.add("Where", condition.name, first, b.name))
 
+    def stack(self, *parts: Symbol) -> Symbol:
+        """All rows of the parts, in order."""
+        return Symbol(parts[0].sink, parts[0].sink.add("Concat", *(part.name for part in parts), axis=0))
+
 
 def add_features(sink: Sink, space: FeatureSpace, arguments: str) -> str:
-    """Write a feature space into a graph: double arguments (n, k) to float features with a one, (n, f + 1)."""
+    """Write a feature space into a graph: double arguments (n, k) to a row of each feature, float (f, n)."""
     values = sink.add("Cast", arguments, to=TensorProto.FLOAT)
-    every = sink.constant(np.eye(len(space.arguments), dtype=np.float32))
-    # to (1, n) each: the runtime is slow on (n, 1), and would push a Transpose through every node
-    rows = sink.add("Gemm", every, values, transB=1)
-    names = sink.add("Split", rows, outputs=len(space.arguments), axis=0, num_outputs=len(space.arguments))
-    columns = space.columns(tuple(Symbol(sink, name) for name in names), Tracing())
-    stacked = sink.add("Concat", *(column.name for column in columns), axis=0)
-    return append_one(sink, stacked, len(columns), transpose=True)
+    return space.rows(Symbol(sink, as_rows(sink, values, len(space.arguments))), Tracing()).name
 
 
-def append_one(sink: Sink, features: str, count: int, transpose: bool = False) -> str:
-    """Features (n, f), or (f, n) to be transposed, with a column of ones for the intercept: (n, f + 1).
+def as_rows(sink: Sink, columns: str, count: int) -> str:
+    """Columns (n, count) as rows (count, n): the runtime is quick on long rows.
 
-    A product with ones and zeros is exact, and the runtime's optimiser does not push it up through every node.
+    A product with ones and zeros is exact, and makes everything NaN where one number is not finite.
     """
-    copy = sink.constant(np.eye(count, count + 1, dtype=np.float32))
-    one = sink.constant(np.eye(count + 1, dtype=np.float32)[-1])
-    return str(sink.add("Gemm", features, copy, one, transA=int(transpose)))
+    return str(sink.add("Gemm", sink.constant(np.eye(count, dtype=np.float32)), columns, transB=1))
 
 
-def without_one(sink: Sink, features: str, count: int) -> str:
-    """Features with a one, (n, f + 1), without it: (n, f)."""
-    return str(sink.add("Gemm", features, sink.constant(np.eye(count + 1, count, dtype=np.float32))))
+def as_columns(sink: Sink, rows: str) -> str:
+    """Rows (f, n) as columns (n, f), which tree ensembles ask for."""
+    return str(sink.add("Transpose", rows, perm=[1, 0]))

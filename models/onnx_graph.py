@@ -21,8 +21,8 @@ class Sink(Protocol):
         """Add a node; returns the name of its output, or a list of names when it has several."""
         ...
 
-    def constant(self, value: NDArray[Any]) -> str:
-        """Name of a constant tensor."""
+    def constant(self, value: NDArray[Any], name: str = "") -> str:
+        """Name of a constant tensor; one that shall be found again is given its name."""
         ...
 
 
@@ -31,7 +31,7 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: list[onnx.NodeProto] = []
-        self._constants: dict[tuple[str, tuple[int, ...], bytes], str] = {}
+        self._constants: dict[tuple[str, str, tuple[int, ...], bytes], str] = {}
         self._tensors: list[TensorProto] = []
 
     def add(self, op: str, *inputs: str, outputs: int = 1, domain: str = "", **attributes: Any) -> Any:
@@ -40,11 +40,11 @@ class Graph:
         self._nodes.append(helper.make_node(op, list(inputs), names, domain=domain, **attributes))
         return names[0] if outputs == 1 else names
 
-    def constant(self, value: NDArray[Any]) -> str:
-        """Name of a constant tensor; equal constants are stored once."""
-        key = (value.dtype.str, value.shape, value.tobytes())
+    def constant(self, value: NDArray[Any], name: str = "") -> str:
+        """Name of a constant tensor, its own or a new one; equal constants without a name are stored once."""
+        key = (name, value.dtype.str, value.shape, value.tobytes())
         if key not in self._constants:
-            self._constants[key] = f"constant_{len(self._constants)}"
+            self._constants[key] = name or f"constant_{len(self._constants)}"
             self._tensors.append(numpy_helper.from_array(value, self._constants[key]))
         return self._constants[key]
 

@@ -3,37 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from onnx import TensorProto
 
-from models.cells import Cells, cells_of
+from models import tree_names
 from models.linear_tree import LinearTree
-from models.onnx_graph import ML, Sink
-from models.split_tree import LEAF, SplitTree
+from models.onnx_graph import Sink, single
+from models.onnx_leaves import add_leaves, add_steps
+from models.split_tree import SplitTree
 
-ENSEMBLE = (
-    "nodes_treeids", "nodes_nodeids", "nodes_featureids", "nodes_modes", "nodes_values", "nodes_truenodeids",
-    "nodes_falsenodeids", "target_treeids", "target_nodeids", "target_ids", "target_weights",
-)  # fmt: skip
-STEEP = 1e38  # a ramp that is 1 where any two different numbers are apart
-
-
-def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]]) -> str:
-    """The sum of trees with one number in each leaf, (l,): features (n, f) to (n, 1)."""
-    rows: dict[str, list[Any]] = {name: [] for name in ENSEMBLE}
-    for number, (tree, values) in enumerate(steps):
-        for node, feature in enumerate(tree.feature):
-            inner = feature != LEAF
-            row = (number, node, max(int(feature), 0), "BRANCH_LEQ" if inner else "LEAF", float(tree.threshold[node]))
-            for name, item in zip(ENSEMBLE[:7], (*row, int(tree.left[node]), int(tree.right[node])), strict=True):
-                rows[name].append(item)
-            if not inner:
-                for name, item in zip(ENSEMBLE[7:], (number, node, 0, float(values[tree.leaf[node]])), strict=True):
-                    rows[name].append(item)
-    return str(sink.add("TreeEnsembleRegressor", features, domain=ML, n_targets=1, post_transform="NONE", **rows))
+Tables = NDArray[np.float32]
 
 
 def add_probability(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]]) -> str:
@@ -43,71 +23,66 @@ def add_probability(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, 
 
 
 def add_tree(sink: Sink, features: str, tree: LinearTree) -> tuple[str, str]:
-    """One model tree: mean and spread, shapes (n,), of features with a one (n, f + 1)."""
-    leaf = _leaves(sink, features, [tree])
-    mean = _formula(sink, features, leaf, [tree])
-    return _flat(sink, mean), _flat(sink, str(sink.add("Gather", sink.constant(tree.spread), leaf)))
+    """One model tree: mean and spread, shapes (n,), of rows of features (f, n).
+
+    Every leaf's formula is computed, in one product, and then the right one is taken.
+    """
+    rows, width = _with_one(sink, features), tree.slopes.shape[1]
+    leaf = add_leaves(sink, rows, [tree.splits], width)
+    formulas = np.column_stack([tree.slopes, tree.intercept])
+    every = sink.add("MatMul", sink.constant(formulas, tree_names.FORMULAS), rows)  # (l, n)
+    ends = {tree_names.LOW: tree.low[None], tree_names.HIGH: tree.high[None]}
+    mean = _clipped(sink, sink.add("GatherElements", every, leaf, axis=0), leaf, ends)
+    return _flat(sink, mean), _flat(sink, _looked_up(sink, tree_names.SPREAD, tree.spread[None], leaf))
 
 
 def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str, str]:
-    """A bag of k model trees: mean and standard deviation over the trees, shapes (n,), of features (n, f + 1)."""
+    """A bag of k model trees: mean and standard deviation over the trees, shapes (n,), of rows of features (f, n)."""
     width = trees[0].slopes.shape[1]
-    cells = cells_of([tree.splits for tree in trees], width)
-    leaves = _leaves(sink, features, trees) if cells is None else _leaves_by_cell(sink, features, cells, width)
-    each = _formula(sink, features, leaves, trees)  # (k, n, 1)
-    over = sink.constant(np.array([0]))
-    mean = sink.add("ReduceMean", each, over, keepdims=1)
+    leaf = add_leaves(sink, _with_one(sink, features), [tree.splits for tree in trees], width)
+    each = _formulas(sink, features, leaf, trees)  # (k, n)
+    share = sink.constant(np.full(len(trees), 1 / len(trees), np.float32))
+    mean = str(sink.add("MatMul", share, each))
     off = sink.add("Sub", each, mean)
-    variance = sink.add("ReduceMean", sink.add("Mul", off, off), over, keepdims=1)
-    return _flat(sink, mean), _flat(sink, str(sink.add("Sqrt", variance)))
+    return mean, str(sink.add("Sqrt", sink.add("MatMul", share, sink.add("Mul", off, off))))
 
 
-def _leaves(sink: Sink, features: str, trees: Sequence[LinearTree]) -> str:
-    """Leaf numbers, counted on from tree to tree, shape (k, n).
-
-    One ensemble for each tree: one ensemble with several targets costs eight times as much.
-    """
-    columns, first = [], 0
-    for tree in trees:
-        numbers = np.arange(first, first + tree.leaves, dtype=np.float32)  # whole numbers, exact below 2**24
-        columns.append(add_steps(sink, features, [(tree.splits, numbers)]))
-        first += tree.leaves
-    stacked = sink.add("Concat", *columns, axis=0) if len(columns) > 1 else columns[0]  # (k·n, 1)
-    rows = sink.add("Reshape", stacked, sink.constant(np.array([len(trees), -1])))
-    return str(sink.add("Cast", rows, to=TensorProto.INT32))
-
-
-def _leaves_by_cell(sink: Sink, features: str, cells: Cells, width: int) -> str:
-    """The same from tables of cells in half the time: who walks down a tree waits for branches that were guessed wrong.
-
-    `x - threshold` is a product with ones and zeros, so its sign is exact; a steep ramp makes 0 or 1 of it.
-    """
-    count = len(cells.threshold)
-    minus = np.zeros((width + 1, count), np.float32)
-    minus[cells.feature, np.arange(count)] = 1.0
-    minus[width] = -cells.threshold
-    beyond = sink.add("MatMul", features, sink.constant(minus))  # (n, u)
-    beyond = sink.add("HardSigmoid", beyond, alpha=STEEP, beta=0.0)
-    first = sink.constant(cells.first[:, None])
-    cell = sink.add("Gemm", sink.constant(cells.strides), beyond, first, transA=1, transB=1)  # (k, n)
-    limits = (sink.constant(np.array(limit, np.int32)) for limit in (0, len(cells.leaf) - 1))
-    # what is not a number may be cast to any cell: its formula gives no number either
-    number = sink.add("Clip", sink.add("Cast", cell, to=TensorProto.INT32), *limits)
-    leaf = sink.add("Gather", sink.constant(cells.leaf.astype(np.uint16)), number)
-    return str(sink.add("Cast", leaf, to=TensorProto.INT32))
+def _formulas(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree]) -> str:
+    """clip(slopes · features + intercept, low, high) of leaves (k, n): seconds (k, n). One table for each term."""
+    tables = [_table([tree.slopes[:, j] for tree in trees]) for j in range(trees[0].slopes.shape[1])]
+    total = _looked_up(sink, tree_names.TERM.format(len(tables)), _table([tree.intercept for tree in trees]), leaf)
+    for j, table in enumerate(tables):
+        slope = _looked_up(sink, tree_names.TERM.format(j), table, leaf)
+        row = sink.add("Gather", features, sink.constant(np.array([j])), axis=0)
+        total = sink.add("Add", total, sink.add("Mul", slope, row))
+    ends = {
+        tree_names.LOW: _table([tree.low for tree in trees]),
+        tree_names.HIGH: _table([tree.high for tree in trees]),
+    }
+    return _clipped(sink, total, leaf, ends)
 
 
-def _formula(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree]) -> str:
-    """clip(features · slopes + intercept, low, high) of leaves (k, n): seconds (k, n, 1).
+def _table(each: Sequence[NDArray[np.float32]]) -> Tables:
+    """A row for each tree, as long as the one with most leaves needs."""
+    table = np.zeros((len(each), max(map(len, each))), np.float32)
+    for row, values in zip(table, each, strict=True):
+        row[: len(values)] = values
+    return table
 
-    One table of rows (slopes, intercept, low, high): what costs time is to look up, not to compute.
-    """
-    rows = [np.column_stack([tree.slopes, tree.intercept, tree.low, tree.high]) for tree in trees]
-    row = sink.add("Gather", sink.constant(np.concatenate(rows)), leaf)  # (k, n, f + 3)
-    widths = sink.constant(np.array([rows[0].shape[1] - 2, 1, 1]))
-    slopes, low, high = sink.add("Split", row, widths, outputs=3, axis=2)
-    total = sink.add("ReduceSum", sink.add("Mul", slopes, features), sink.constant(np.array([-1])), keepdims=1)
-    return str(sink.add("Min", sink.add("Max", total, low), high))
+
+def _looked_up(sink: Sink, name: str, table: Tables, leaf: str) -> str:
+    """Each tree's number for its leaf, (k, n). Of single numbers, GatherElements takes an eighth of Gather's time."""
+    return str(sink.add("GatherElements", sink.constant(table, name), leaf, axis=1))
+
+
+def _clipped(sink: Sink, values: str, leaf: str, ends: dict[str, Tables]) -> str:
+    low, high = (_looked_up(sink, name, table, leaf) for name, table in ends.items())
+    return str(sink.add("Min", sink.add("Max", values, low), high))
+
+
+def _with_one(sink: Sink, features: str) -> str:
+    """Rows of features with a row of ones below, for what is added to products: (f + 1, n)."""
+    return str(sink.add("Pad", features, sink.constant(np.array([0, 0, 1, 0])), sink.constant(single(1.0))))
 
 
 def _flat(sink: Sink, values: str) -> str:

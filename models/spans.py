@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 ARGUMENT_ERROR = 2e-6  # m (or rad, m/s): a field's coordinates in single precision, and their differences
 ANGLE_ERROR = 1e-6  # rad: sums of angles in single precision, and whole turns taken off them
-ARCTANGENT_ERROR = 4e-6  # rad: that of the features is 3.5e-6 off
+ARCTANGENT_ERROR = 1.1e-5  # rad: that of the features is 1e-5 off
 TURN = 2 * np.pi
 NEAR = 1e-3  # m: nearer, the line of sight is taken to have any direction
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models import tree_names
 from models.cell_boxes import boxes_of_cells
 from models.onnx_wire import Contents, Node, read_graph
 
@@ -53,19 +54,13 @@ def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
     try:
         graph = read_graph(model)
         ensembles = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
-        read = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)
-        if read is None:
-            return None
-        first, lower, upper, said = read
-        formulas = _formulas(graph)
-        if formulas is None:
-            return _plain(first, lower, upper, said, len(graph.nodes), graph)
-        return _linear(graph, first, lower, upper, said, formulas)
+        boxes = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)
+        return _linear(graph, *boxes) if tree_names.LOW in graph.constants else _plain(graph, *boxes)
     except (ValueError, KeyError, IndexError):
         return None
 
 
-def _plain(first: Ints, lower: Floats, upper: Floats, said: Floats, nodes: int, graph: Contents) -> TreeBoxes | None:
+def _plain(graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats) -> TreeBoxes | None:
     """Leaves that say one number; the graph adds the trees up."""
     last = [node.op for node in graph.nodes[-2:]]
     if last != ["TreeEnsembleRegressor", "Reshape"]:
@@ -74,41 +69,22 @@ def _plain(first: Ints, lower: Floats, upper: Floats, said: Floats, nodes: int, 
     return TreeBoxes(first, lower, upper, np.zeros_like(lower), value, value, value)
 
 
-def _linear(
-    graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats, formulas: Floats
-) -> TreeBoxes | None:
-    """Leaves that say which row of the constants holds their formula."""
-    rows = said.astype(np.int64)
-    if not np.array_equal(rows, said):
-        return None
-    spread = _constant(graph, "Reshape", 1)
-    if spread is None and "Sqrt" not in {node.op for node in graph.nodes[-3:]}:
-        return None
-    said_by = formulas[rows]
-    ends = (said_by[:, -2], said_by[:, -1], None if spread is None else spread[rows])
-    return TreeBoxes(first, lower, upper, said_by[:, :-3], said_by[:, -3], *ends)
+def _linear(graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats) -> TreeBoxes:
+    """Leaves that say their number in their tree, where the constants hold their formula."""
+    tree = np.repeat(np.arange(len(first)), np.diff([*first, len(said)]))
+    place = tree, said.astype(np.int64)
+    formula = _formulas(graph, lower.shape[1])[place]
+    low, high = (graph.constants[name][place] for name in (tree_names.LOW, tree_names.HIGH))
+    spread = graph.constants.get(tree_names.SPREAD)
+    said_spread = None if spread is None else spread[place]
+    return TreeBoxes(first, lower, upper, formula[:, :-1], formula[:, -1], low, high, said_spread)
 
 
-def _formulas(graph: Contents) -> Floats | None:
-    """Rows of slopes, intercept, low and high; older graphs keep the ends in constants of their own."""
-    packed = _constant(graph, "Split", 2)
-    if packed is not None:
-        return packed
-    slopes, low, high = (_constant(graph, op, axes) for op, axes in (("Mul", 2), ("Max", 1), ("Min", 1)))
-    if slopes is None or low is None or high is None:
-        return None
-    return np.column_stack([slopes, low, high])
-
-
-def _constant(graph: Contents, op: str, axes: int) -> Floats | None:
-    """The constant of so many axes that is gathered by leaf and goes into an operator of this kind."""
-    gathered = {node.outputs[0]: node.inputs[0] for node in graph.nodes if node.op == "Gather"}
-    for node in graph.nodes:
-        for name in node.inputs:
-            constant = graph.constants.get(gathered.get(name, ""))
-            if node.op == op and constant is not None and constant.ndim == axes:
-                return constant
-    return None
+def _formulas(graph: Contents, features: int) -> Floats:
+    """Slopes and intercept of each leaf of each tree, (k, m, f + 1)."""
+    if tree_names.FORMULAS in graph.constants:
+        return np.asarray(graph.constants[tree_names.FORMULAS])[None]
+    return np.stack([graph.constants[tree_names.TERM.format(j)] for j in range(features + 1)], axis=2)
 
 
 def _boxes(ensembles: list[Node], features: int) -> tuple[Ints, Floats, Floats, Floats]:

@@ -5,6 +5,7 @@ Trusts no length: a record must lie inside the file, a chunk must not unpack to 
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
 from collections.abc import Iterator
@@ -27,6 +28,9 @@ from schemas.errors import UsageError
 MAGIC = b"\x89MCAP0\r\n"
 MOST_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
 MOST_RECORD_BYTES = 128_000_000
+WINDOW_BYTES = 1_000_000
+CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
+_CHUNK = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})", re.DOTALL)
 _HEAD = struct.Struct("<BQ")  # opcode, length
 _FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its offsets, checksum
 _KINDS: dict[int, Any] = {
@@ -51,7 +55,7 @@ class Account:
 
     def text(self) -> str:
         """One line for people; empty for a file without damage."""
-        if self.complete and not self.damaged_chunks:
+        if self.complete and not self.damaged_chunks and not self.lost_bytes:
             return ""
         what = "" if self.complete else "no footer; "
         why = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
@@ -111,9 +115,14 @@ def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) ->
             account.lose(len(head), "the file ends early")
             return
         opcode, length = _HEAD.unpack(head)
-        if length > min(size - file.tell(), MOST_RECORD_BYTES):
-            account.lose(size - start, "the file ends inside a record")
-            return
+        if opcode == 0 or length > min(size - file.tell(), MOST_RECORD_BYTES):
+            again = _next_chunk(file, start + 1, size)
+            if again == size:
+                account.lose(size - start, "the file ends inside a record")
+                return
+            account.lose(again - start, f"bytes {start} to {again} make no sense")
+            file.seek(again)
+            continue
         if opcode == Opcode.DATA_END:
             account.complete = _ends_well(file, size)
             return
@@ -125,6 +134,21 @@ def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) ->
             yield from _one(_KINDS[opcode].read, file.read(length), account)
         else:
             file.seek(length, 1)
+
+
+def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
+    """Where the next chunk seems to begin, from `start` on; the file's end if there is none."""
+    file.seek(start)
+    window, at = b"", start  # bytes of the file from `at` on
+    while block := file.read(WINDOW_BYTES):
+        window += block
+        for found in _CHUNK.finditer(window):
+            (length,) = struct.unpack_from("<Q", window, found.start() + 1)
+            if length <= min(size - at - found.start() - _HEAD.size, MOST_RECORD_BYTES):
+                return at + found.start()
+        at += max(len(window) - CHUNK_HEAD_BYTES, 0)
+        window = window[-CHUNK_HEAD_BYTES:]
+    return size
 
 
 def _one(read: Any, data: bytes, account: Account) -> Iterator[Any]:

@@ -13,6 +13,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from schemas.errors import UsageError
 from schemas.messages import ActionFinished, PlanReport
 from tools.comparison import Run, chosen, commands_apart, compared_run
 
@@ -27,6 +28,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 when both ended alike and commanded the same, 1 when not."""
+    if arguments.plot and arguments.plot.suffix != ".png":
+        raise UsageError(f"--plot {arguments.plot}: expected a name that ends in .png")
     a, b = compared_run(arguments.first), compared_run(arguments.second)
     told = _told(a, b)
     if arguments.json:
@@ -70,7 +73,7 @@ def _action(action: ActionFinished) -> dict[str, Any]:
 
 
 def _show(a: Run, b: Run, told: dict[str, Any]) -> None:
-    console = Console()
+    console = Console(markup=False, highlight=False)  # what was recorded is no markup
     console.width = max(console.width, 120)  # a file or a pipe has no width of its own
     actions = [[_brief(action) for action in run.actions] for run in (a, b)]
     console.print(_side_by_side("action, predicted → actual s", a, b, *actions))

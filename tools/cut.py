@@ -10,6 +10,8 @@ from runtime.recording import open_recording
 from runtime.selection import selection
 from schemas.errors import UsageError
 
+LONGEST_S = 1e10  # what the file's clock can tell
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor cut`."""
@@ -32,13 +34,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 when something is left, 1 when nothing is."""
-    if arguments.end is not None and arguments.end <= arguments.start:
+    if not 0 <= arguments.start < LONGEST_S:
+        raise UsageError(f"--from is {arguments.start:g}, expected seconds from 0 on")
+    if arguments.end is not None and not arguments.start < arguments.end < LONGEST_S:
         raise UsageError(f"--to is {arguments.end:g}, expected more than --from {arguments.start:g}")
     recording = open_recording(arguments.file)
     wanted = selection(arguments.topics, arguments.exclude)
     first = next(recording.messages(), None)
     zero_ns = 0 if first is None else first.log_ns
-    start_ns = zero_ns + round(arguments.start * 1e9)
+    start_ns = zero_ns + round(arguments.start * 1e9) if arguments.start else 0  # what comes first need not be earliest
     end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
     target = Path(arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap"))
 

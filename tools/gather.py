@@ -121,8 +121,7 @@ def actions_of(domain: str, asked: list[str]) -> list[str]:
     """
     known = domains.load(domain).actions
     for action in asked:
-        if action not in known:
-            raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
+        gathering.check_action(domain, action)
     return list(dict.fromkeys(asked)) or sorted({action.duration_model.split("/")[0] for action in known.values()})
 
 

@@ -55,6 +55,13 @@ def domain_of(robot: str) -> str:
     return known[robot]
 
 
+def check_action(domain: str, action: str) -> None:
+    """Raises UsageError, listing a domain's actions, where there is none of that name."""
+    known = domains.load(domain).actions
+    if action not in known:
+        raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
+
+
 def run_one(work: Work, domain: Domain, body: Any, number: int) -> Episode:
     """Run one episode; the same work and number give the same bits."""
     rng = work.rng(number)

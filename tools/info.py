@@ -11,7 +11,12 @@ from rich.console import Console
 from rich.table import Table
 
 from runtime.recording import Recording, open_recording
+from schemas.errors import Rejected
+from schemas.json_text import table_of
+from tools.plain_text import plain
 from tools.survey import Stream, Survey, percentiles, survey
+
+MOST_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,11 +42,11 @@ def _told(recording: Recording, found: Survey) -> dict[str, Any]:
     return {
         "file": str(recording.path),
         "bytes": recording.path.stat().st_size,
-        "start": datetime.fromtimestamp(start_ns / 1e9, UTC).isoformat(timespec="milliseconds"),
+        "start": _time(start_ns) if found.streams else "",
         "duration_s": round((end_ns - start_ns) / 1e9, 3),
         "messages": sum(stream.count for stream in found.streams.values()),
         "damage": recording.account.text(),
-        "drops": {key: int(count) for key, count in metadata.get("drops", {}).items()},
+        "drops": {key: int(count) if count.isdecimal() else count for key, count in metadata.get("drops", {}).items()},
         "topics": [_stream(s) for s in sorted(found.streams.values(), key=lambda s: (s.key, s.first_ns))],
         "episodes": [{"goal": goal, "result": result} for goal, result in found.results],
         "actions": [
@@ -74,23 +79,27 @@ def _stream(stream: Stream) -> dict[str, Any]:
     }
 
 
+def _time(wall_ns: int) -> str:
+    return datetime.fromtimestamp(wall_ns / 1e9, UTC).isoformat(timespec="milliseconds")
+
+
 def _parsed(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
+    table = table_of(text)
+    return text if isinstance(table, Rejected) else table
 
 
 def _show(told: dict[str, Any]) -> None:
-    console = Console()
+    console = Console(markup=False, highlight=False)  # what stands in a file is no markup
     console.width = max(console.width, 120)  # a file or a pipe has no width of its own
-    size, seconds = told["bytes"] / 1e6, told["duration_s"]
-    console.print(f"{told['file']}: {told['messages']} messages, {seconds:.1f} s from {told['start']}, {size:.2f} MB")
+    size, since = told["bytes"] / 1e6, f" from {told['start']}" if told["start"] else ""
+    console.print(f"{told['file']}: {told['messages']} messages, {told['duration_s']:.1f} s{since}, {size:.2f} MB")
     if told["damage"]:
-        console.print(f"[red]damaged:[/red] {told['damage']}")
+        console.print(f"damaged: {told['damage']}", style="red")
     for key, count in told["drops"].items():
-        console.print(f"[red]dropped:[/red] {count} of {key}")
-    console.print(_topics(told["topics"]))
+        console.print(f"dropped: {count} of {plain(key)}", style="red")
+    console.print(_topics(told["topics"][:MOST_ROWS]))
+    if len(told["topics"]) > MOST_ROWS:
+        console.print(f"and {len(told['topics']) - MOST_ROWS} topics more; --json tells all")
     if told["actions"]:
         console.print(_actions(told["actions"]))
     for episode in told["episodes"]:
@@ -109,7 +118,7 @@ def _topics(rows: list[dict[str, Any]]) -> Table:
     table = _table(("key", "type", "sender"), ("count", "Hz", "longest gap s", "lost", "rejected"))
     for row in rows:
         numbers = (row["count"], row["rate_hz"], row["longest_gap_s"], row["lost"], sum(row["rejected"].values()))
-        table.add_row(row["key"], row["type"], row["sender"][:8], *map(str, numbers))
+        table.add_row(*map(plain, (row["key"], row["type"], row["sender"][:8])), *map(str, numbers))
     return table
 
 
@@ -118,7 +127,7 @@ def _actions(rows: list[dict[str, Any]]) -> Table:
     for row in rows:
         predicted, actual = row["predicted_s"], row["actual_s"]
         error = f"{(actual / predicted - 1):+.0%}" if predicted > 0 else ""
-        table.add_row(row["action"], row["outcome"], f"{predicted:.2f}", f"{actual:.2f}", error)
+        table.add_row(plain(row["action"]), plain(row["outcome"]), f"{predicted:.2f}", f"{actual:.2f}", error)
     return table
 
 

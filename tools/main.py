@@ -6,8 +6,10 @@ import argparse
 import importlib
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from schemas.errors import UsageError
+from tools.plain_text import plain
 
 # command -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -51,12 +53,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"tailor: unknown command '{name}' (expected one of: {', '.join(COMMANDS)})", file=sys.stderr)
         return 2
     module = importlib.import_module(COMMANDS[name][0])
-    parser = argparse.ArgumentParser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
+    parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
     try:
         return int(module.run(parser.parse_args(rest)))
     except UsageError as error:
-        print(f"tailor {name}: {error}", file=sys.stderr)
+        print(f"tailor {name}: {plain(str(error))}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
@@ -67,6 +69,13 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise
         print(f"tailor {name}: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells a mistake in one line, as all mistakes are told, instead of with the usage above it."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message} ({self.prog} --help tells more)")
 
 
 def _overview() -> str:

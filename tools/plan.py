@@ -114,10 +114,13 @@ class _LimitOrder(argparse.Action):
 
 
 def _minutes(text: str) -> float:
-    """A time limit; raises argparse's own kind of error."""
-    minutes = float(text)
+    """A time limit."""
+    try:
+        minutes = float(text)
+    except ValueError:
+        minutes = -1.0
     if not minutes >= 0:
-        raise ValueError(text)
+        raise UsageError(f"--time-limit: expected minutes from 0 on, found '{text}'")
     return minutes
 
 

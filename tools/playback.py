@@ -31,6 +31,7 @@ class Passage:
     def messages(self) -> Iterator[Recorded]:
         """The messages, in file order."""
         start_ns, end_ns = self.bounds_ns()
+        start_ns = start_ns if self.start_s else 0  # what comes first need not be earliest
         for recorded in self.recording.messages():
             if start_ns <= recorded.log_ns < end_ns and self.wanted.wants(recorded.key, recorded.ros_type):
                 yield self.rewrite(replace(recorded, key=self.remap.get(recorded.key, recorded.key)))

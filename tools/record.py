@@ -31,6 +31,7 @@ from schemas.errors import UsageError
 from tools.deployment import configure_bus, deployment
 
 TURN_S = 0.02
+MOST = 1e9  # MB or seconds: no disk and no run is so large
 SNAPSHOT_KEY = "recorder/snapshot"
 
 
@@ -50,8 +51,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Record until told to stop; 0, or 1 when something was lost."""
-    if min(arguments.max_size, arguments.max_duration, arguments.snapshot) < 0:
-        raise UsageError("--max-size, --max-duration and --snapshot: expected a positive number")
+    for name in ("max_size", "max_duration", "snapshot"):
+        if not 0 <= getattr(arguments, name) <= MOST:
+            raise UsageError(f"--{name.replace('_', '-')} is {getattr(arguments, name):g}, expected 0 to {MOST:g}")
     intake = Intake()
     with open_client(deployment(arguments).bus.endpoint) as session:
         if arguments.write:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from executive.replay import RecordedTick
 from runtime.recording import Recorded, open_recording
 from schemas.codec import decode, encode
 from schemas.errors import Rejected, UsageError
+from schemas.json_text import table_of
 from schemas.messages import Message, Provenance, Sample, TickReport
 from schemas.topics import TOPICS
 from schemas.typesystem import type_of
@@ -40,10 +40,12 @@ class RecordedRuns:
         """Read the whole file; raises UsageError if it is none or holds no run."""
         self.path = path
         self._heard: dict[tuple[str, str, int], Recorded] = {}
-        everything = list(open_recording(path).messages())
+        recording = open_recording(path)
+        everything = list(recording.messages())
         executives = list(dict.fromkeys(m.sender for m in everything if m.key == TICK_KEY))
         if not executives:
-            raise UsageError(f"{path}: no message of {TICK_KEY}, expected the recording of an executive's run")
+            damage = f" ({recording.account.text()})" if recording.account.text() else ""
+            raise UsageError(f"{path}: no message of {TICK_KEY}, expected the recording of an executive's run{damage}")
         self.runs = [RecordedRun(sender) for sender in executives]
         by_sender = {run.sender: run for run in self.runs}
         for message in everything:
@@ -107,13 +109,21 @@ def _take(run: RecordedRun, message: Recorded) -> None:
     if message.key == PROVENANCE_KEY:
         said = decoded(message)
         if isinstance(said, Provenance):
-            run.provenance = json.loads(said.json)
+            run.provenance = _table(said)
     elif message.key == TICK_KEY:
         report = decoded(message)
-        assert isinstance(report, TickReport)
+        if not isinstance(report, TickReport):
+            raise UsageError(f"{TICK_KEY} number {message.sequence}: {message.ros_type}, expected reports of ticks")
         run.ticks.append(report)
     else:
         run.said[message.key].append(message)
+
+
+def _table(said: Provenance) -> dict[str, Any]:
+    table = table_of(said.json)
+    if isinstance(table, Rejected):
+        raise UsageError(f"{PROVENANCE_KEY}: {table.reason}, expected what an executive says of itself")
+    return table
 
 
 def _in_order(run: RecordedRun) -> None:

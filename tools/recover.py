@@ -16,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 also when there was nothing to recover."""
+    """0, also when there was nothing to recover; 1 when nothing could be."""
     source = Path(arguments.file)
     account = Account()
     for _ in scan(source, account):
@@ -28,4 +28,4 @@ def run(arguments: argparse.Namespace) -> int:
     copied = copy(source, target, lambda *_: True, {})
     print(f"{source}: {copied.account.text()}")
     print(f"{target}: {copied.kept} messages recovered, {copied.left_out} of unknown channels left out")
-    return 0
+    return 0 if copied.kept else 1

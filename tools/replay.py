@@ -32,6 +32,8 @@ from tools.substitution import SILENCED, SUBSTITUTES, armed_for, live_executive
 
 DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.priority == "real_time"))
 LISTEN_S = 0.5  # for a live driver; they speak at 10 Hz
+LONGEST_S = 1e9  # a recording has no such length
+FASTEST_CLOCK_HZ = 10_000.0
 TAIL_S = 0.2  # for the last messages to leave before the session closes
 
 
@@ -59,6 +61,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Play until the end; 0."""
     if not SLOWEST <= arguments.rate <= FASTEST:
         raise UsageError(f"--rate is {arguments.rate:g}, expected {SLOWEST:g} to {FASTEST:g}")
+    for name, most in (("start", LONGEST_S), ("duration", LONGEST_S), ("wait", LONGEST_S), ("clock", FASTEST_CLOCK_HZ)):
+        if not 0 <= getattr(arguments, name) <= most:
+            raise UsageError(f"--{name} is {getattr(arguments, name):g}, expected 0 to {most:g}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
     stop = stop_on_signals()

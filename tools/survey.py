@@ -41,13 +41,14 @@ class Stream:
     def add(self, recorded: Recorded) -> None:
         """Count one message."""
         if self.count == 0:
-            self.first_ns = recorded.log_ns
+            self.first_ns = self.last_ns = recorded.log_ns
         else:
             self.lost += max(0, recorded.sequence - self._sequence - 1) if recorded.sender else 0
             self.longest_gap_ns = max(self.longest_gap_ns, recorded.log_ns - self.last_ns)
         self.count += 1
         self.bytes += len(recorded.data)
-        self.last_ns, self._sequence = recorded.log_ns, recorded.sequence
+        self.first_ns = min(self.first_ns, recorded.log_ns)  # other recorders keep no order
+        self.last_ns, self._sequence = max(self.last_ns, recorded.log_ns), recorded.sequence
 
 
 @dataclass(slots=True)

@@ -15,6 +15,7 @@ from rich.console import Console
 from executive.refinement.settings import RefinementSettings
 from models.runtime import ZOO
 from schemas.errors import UsageError
+from tools.asked import at_least, finite, processes
 
 if TYPE_CHECKING:
     from models.benefit import Pairs
@@ -47,11 +48,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("robot", help="whose models")
     parser.add_argument("--scenario", default="approach-dribble", help="to run (default: %(default)s)")
-    parser.add_argument("--episodes", type=int, default=1200, help="pairs to run (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=DEFAULT_SEED, help="of the first start (default: %(default)s)")
+    parser.add_argument(
+        "--episodes", type=at_least(1, "--episodes"), default=1200, help="pairs to run (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seed", type=at_least(0, "--seed"), default=DEFAULT_SEED, help="of the first start (default: %(default)s)"
+    )
     parser.add_argument("--learner", default="forest", help="forest, tree (default: %(default)s)")
-    parser.add_argument("--price", type=float, default=0.1, metavar="POINTS", help=PRICE)
-    parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
+    parser.add_argument("--price", type=finite("--price"), default=0.1, metavar="POINTS", help=PRICE)
+    parser.add_argument("--jobs", type=processes, default=2, help="processes (default: %(default)s)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
     parser.add_argument(
         "--store", type=Path, default=Path("out/evaluate"), help="finished episodes (default: %(default)s)"
@@ -83,11 +88,12 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     """Make the tree and write it to the zoo; returns where it lies, and its test."""
     from executive.composition import load_models
     from executive.refinement.benefit import SITUATION
-    from models.benefit import train_benefit
+    from models.benefit import check_learner, train_benefit
     from models.benefit_publishing import AboutBenefit, publish_benefit
     from tools import gathering
     from tools.evaluations.outcome import Task
 
+    check_learner(arguments.learner, arguments.episodes)  # told before an hour of runs, not after
     domain = gathering.domain_of(arguments.robot)
     settings = RefinementSettings(benefit_gate=False)
     zoo = "" if arguments.zoo == ZOO else str(arguments.zoo)

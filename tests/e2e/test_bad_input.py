@@ -41,6 +41,14 @@ def refused(*arguments):
         (("goal", "(atball pos3)"), "no router answers"),
         (("frobnicate",), "unknown command 'frobnicate'"),
         (("verify", "nowhere.mcap"), "nowhere.mcap"),
+        (("plan", "domain.pddl"), "required: PROBLEM (tailor plan --help tells more)"),
+        (("plan", "domain.pddl", "problem.pddl", "-T", "nan"), "--time-limit: expected minutes from 0 on, found 'nan'"),
+        (("plan", "domain\x1b[31m\n.pddl", "problem.pddl"), "domain\\x1b[31m\\n.pddl: cannot be read"),
+        (("replay", "run.mcap", "--start", "nan"), "--start is nan, expected 0 to 1e+09"),
+        (("replay", "run.mcap", "--clock", "-1"), "--clock is -1, expected 0 to 10000"),
+        (("record", "--max-size", "nan"), "--max-size is nan, expected 0 to 1e+09"),
+        (("cut", "run.mcap", "--from", "inf"), "--from is inf, expected seconds from 0 on"),
+        (("compare", "a.mcap", "b.mcap", "--plot", "c.xyz"), "--plot c.xyz: expected a name that ends in .png"),
     ],
 )
 def test_mistake_on_the_command_line_is_told_in_one_line(arguments, expected):

@@ -4,12 +4,14 @@ import numpy as np
 import onnxruntime
 import pytest
 
+from models import cells
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.features import SPACES, joints, projective
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from models.onnx_export import export_duration, export_success
 from models.split_tree import LEAF
+from models.tree_boxes import tree_boxes
 from tests import standin
 
 PI = np.pi
@@ -76,6 +78,22 @@ def test_durations_agree(learner, examples) -> None:
     assert np.abs(std - expected[1]).max() <= TOLERANCE
 
 
+def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> None:
+    monkeypatch.setattr(cells, "CELLS_MAX", 10)
+    arguments, targets, groups = examples
+    bag = BaggedModelTrees(trees=3).fit(projective(arguments), targets, groups=groups)
+    model = export_duration(bag, projective, {})
+    assert [node.op_type for node in model.graph.node].count("TreeEnsembleRegressor") == 3
+    rows = awkward(10_000)
+    mean, std = session(model).run(None, {"arguments": rows})
+    expected = bag.predict_spread(projective(rows))
+    assert np.abs(mean - expected[0]).max() <= TOLERANCE
+    assert np.abs(std - expected[1]).max() <= TOLERANCE
+    boxes = tree_boxes(model.SerializeToString(), 5)
+    assert boxes is not None
+    assert len(boxes.low) == sum(tree.leaves for tree in bag.trees_)
+
+
 @pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20)])
 def test_probabilities_agree(learner, episodes) -> None:
     arguments, _, _ = standin.examples(episodes, 1)
@@ -108,12 +126,13 @@ def _fitted(space):
 def test_what_is_not_a_number_stays_not_a_number(examples) -> None:
     arguments, targets, groups = examples
     bag = BaggedModelTrees(trees=3).fit(projective(arguments), targets, groups=groups)
-    rows = awkward(1000)[:16].copy()
+    rows = awkward(1000)[:20].copy()
     rows[np.arange(8), np.arange(8)] = np.nan
-    rows[8 + np.arange(3), np.arange(3)] = np.inf
-    mean, _ = session(export_duration(bag, projective, {})).run(None, {"arguments": rows})
-    assert np.isnan(mean[:11]).all()
-    assert np.isfinite(mean[11:]).all()
+    rows[8 + np.arange(8), np.arange(8)] = np.inf
+    for learner in (bag, ModelTreeRegressor().fit(projective(arguments), targets)):
+        mean, _ = session(export_duration(learner, projective, {})).run(None, {"arguments": rows})
+        assert np.isnan(mean[:16]).all()
+        assert np.isfinite(mean[16:]).all()
 
 
 def test_the_runtime_has_nothing_to_warn_about(examples, capfd) -> None:

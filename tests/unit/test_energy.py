@@ -58,7 +58,8 @@ def test_work_survives_the_file_and_its_absence_is_kept(tmp_path) -> None:
     ticks = np.zeros((3, 2))
     told = Episode(0, ticks[0], ticks, 0.3, True, "", work_j=np.array([1.0, 2.0, 0.0]))
     untold = Episode(1, ticks[0], ticks, 0.3, True, "")
-    write_manifest(tmp_path, {"robot": "r", "action": "a", "arguments": [{"name": "x"}, {"name": "y"}]})
+    arguments = [{"name": name, "unit": "m", "lower": -1.0, "upper": 1.0} for name in ("x", "y")]
+    write_manifest(tmp_path, {"robot": "r", "action": "a", "arguments": arguments})
     write_part(tmp_path / "part-0.parquet", [told, untold], ["x", "y"])
     first, second = read_data_set(tmp_path).episodes
     assert first.work_j is not None

@@ -54,9 +54,10 @@ def test_no_difference_is_not_significant():
 
 
 def test_unequal_or_single_pairs_are_refused():
-    for first, second in (([1.0], [1.0]), ([1.0, 2.0], [1.0])):
-        with pytest.raises(ValueError, match="pairs"):
-            compare(first, second)
+    with pytest.raises(UsageError, match="1 episodes to compare, expected two"):
+        compare([1.0], [1.0])
+    with pytest.raises(ValueError, match="expected as many"):
+        compare([1.0, 2.0], [1.0])
 
 
 def test_share_of_nothing_is_unknown():

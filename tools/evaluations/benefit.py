@@ -17,6 +17,7 @@ from executive.library import BenefitModel
 from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 from tools import gathering
+from tools.asked import at_least
 from tools.evaluations.benefit_ceiling import foreknown
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
@@ -29,9 +30,11 @@ ROBOT, SCENARIO = "agilo", "approach-dribble"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate benefit`."""
-    parser.add_argument("--episodes", type=int, default=300, help="fresh starts, each run three ways")
     parser.add_argument(
-        "--luck", type=int, default=0, metavar="N",
+        "--episodes", type=at_least(2, "--episodes"), default=300, help="fresh starts, each run three ways"
+    )
+    parser.add_argument(
+        "--luck", type=at_least(0, "--luck"), default=0, metavar="N",
         help="run N starts five times with other noise, to tell what no gate can beat (default: %(default)s)",
     )  # fmt: skip
     configure_report(parser)

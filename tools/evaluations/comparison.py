@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from schemas.errors import UsageError
+
 Array = NDArray[np.float64]
 
 
@@ -34,11 +36,14 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike) -> Comparison:
     """Compare durations of the same episodes, both of shape (n,), n >= 2.
 
     Raises:
-      ValueError: Fewer than two pairs, or lengths that differ.
+      UsageError: Fewer than two pairs.
+      ValueError: Lengths that differ.
     """
     first, second = np.asarray(baseline_s, dtype=np.float64), np.asarray(refined_s, dtype=np.float64)
-    if first.shape != second.shape or len(first) < 2:
-        raise ValueError(f"{first.shape} against {second.shape} durations, expected at least two pairs")
+    if first.shape != second.shape:
+        raise ValueError(f"{first.shape} against {second.shape} durations, expected as many")
+    if len(first) < 2:
+        raise UsageError(f"{len(first)} episodes to compare, expected two that end well both ways: more --episodes")
     ratio = 1 - second / first
     mean = float(ratio.mean())
     half = float(stats.t.ppf(0.975, len(ratio) - 1) * stats.sem(ratio))

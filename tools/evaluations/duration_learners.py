@@ -13,6 +13,7 @@ from models.examples import duration_examples
 from models.features import SPACES
 from models.publishing import leaves
 from models.training import fit
+from tools.asked import at_least
 from tools.evaluations import fresh, weka
 from tools.evaluations.learned import PAPER_EPISODES, configure_learned
 from tools.evaluations.report import Report, tell
@@ -22,8 +23,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate duration-learners`."""
     configure_learned(parser, 1000)
     parser.add_argument("--actions", nargs="+", default=["goToPose", "dribbleBall"], help="(default %(default)s)")
-    parser.add_argument("--train", type=int, default=PAPER_EPISODES, help="episodes learned from (default %(default)s)")
-    parser.add_argument("--ticks", type=int, default=5, help="first ticks of each (n_i, default %(default)s)")
+    parser.add_argument(
+        "--train",
+        type=at_least(40, "--train"),
+        default=PAPER_EPISODES,
+        help="episodes learned from (default %(default)s)",
+    )
+    parser.add_argument(
+        "--ticks", type=at_least(1, "--ticks"), default=5, help="first ticks of each (n_i, default %(default)s)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

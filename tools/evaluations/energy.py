@@ -14,6 +14,7 @@ from joblib import Parallel, delayed
 from executive import domains
 from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
+from tools.asked import at_least, finite
 from tools.episodes import Episode
 from tools.evaluations.comparison import compare
 from tools.evaluations.outcome import FIRST_SEED, Task, Variant
@@ -36,8 +37,12 @@ class Cost:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate energy`."""
     parser.add_argument("--scenario", default="approach-dribble", help="soccer scenario (default %(default)s)")
-    parser.add_argument("--weights", type=float, nargs="+", default=list(WEIGHTS), help="s/J (default %(default)s)")
-    parser.add_argument("--episodes", type=int, default=60, help="episodes a weight (default %(default)s)")
+    parser.add_argument(
+        "--weights", type=finite("--weights"), nargs="+", default=list(WEIGHTS), help="s/J (default %(default)s)"
+    )
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=60, help="episodes a weight (default %(default)s)"
+    )
     configure_report(parser)
 
 

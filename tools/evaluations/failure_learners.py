@@ -11,6 +11,8 @@ from models import learners, scores
 from models.examples import success_examples
 from models.features import SPACES
 from models.training import fit
+from schemas.errors import UsageError
+from tools.asked import at_least
 from tools.evaluations import fresh, weka
 from tools.evaluations.learned import PAPER_EPISODES, configure_learned
 from tools.evaluations.report import Report, tell
@@ -20,7 +22,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate failure-learners`."""
     configure_learned(parser, 1000)
     parser.add_argument("--action", default="approachBall", help="which action (default %(default)s)")
-    parser.add_argument("--train", type=int, default=PAPER_EPISODES, help="episodes learned from (default %(default)s)")
+    parser.add_argument(
+        "--train",
+        type=at_least(40, "--train"),
+        default=PAPER_EPISODES,
+        help="episodes learned from (default %(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -29,6 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
     more = arguments.seed, arguments.jobs, arguments.store
     train = success_examples(fresh.training(*common, arguments.train, *more).episodes, 1)
     test = success_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
+    if len(np.unique(train.targets)) < 2:
+        raise UsageError(f"{arguments.action}: all training episodes ended alike, expected some failures to learn from")
     space = SPACES["projective"]
     observed = test.targets > 0.5
     rows = []
@@ -38,7 +47,8 @@ def run(arguments: argparse.Namespace) -> int:
     if weka.installed():
         predicted = weka.j48(space(train.arguments), train.targets > 0.5, space(test.arguments), learners.COST_RATIO)
         rows.append(_row("WEKA J48", predicted.astype(float), 0.5, observed))
-    remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; cost ratio 5; fresh runs"]
+    ratio = f"a missed failure costs {learners.COST_RATIO:g} false alarms"
+    remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; {ratio}; fresh runs"]
     tell(Report("failure-learners", "Failure learners", rows, remarks), arguments.json, arguments.report)
     return 0
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from executive.refinement.settings import RefinementSettings
+from tools.asked import at_least
 from tools.evaluations.comparison import compare
 from tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
@@ -28,8 +29,13 @@ Found = Mapping[tuple[str, int], Watched]
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure1`."""
-    parser.add_argument("--episodes", type=int, default=60, help="starts that the figures are of (default %(default)s)")
-    parser.add_argument("--drawn", type=int, default=3, help="of them, the first so many are drawn")
+    parser.add_argument(
+        "--episodes",
+        type=at_least(2, "--episodes"),
+        default=60,
+        help="starts that the figures are of (default %(default)s)",
+    )
+    parser.add_argument("--drawn", type=at_least(0, "--drawn"), default=3, help="of them, the first so many are drawn")
     configure_report(parser)
 
 

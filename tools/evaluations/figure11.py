@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from executive.refinement.settings import RefinementSettings
+from tools.asked import at_least
 from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.report import Report, configure_report, tell
 from tools.evaluations.sweep import Sweep, sweep_of
@@ -36,10 +37,14 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure11`."""
-    parser.add_argument("--episodes", type=int, default=10, help="starts at which to sweep (default %(default)s)")
-    parser.add_argument("--drawn", type=int, default=2, help="of them, the first so many are drawn")
-    parser.add_argument("--points", type=int, default=36, help="angles (default %(default)s)")
-    parser.add_argument("--repeats", type=int, default=3, help="runs an angle, each with noise of its own")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=10, help="starts at which to sweep (default %(default)s)"
+    )
+    parser.add_argument("--drawn", type=at_least(0, "--drawn"), default=2, help="of them, the first so many are drawn")
+    parser.add_argument("--points", type=at_least(2, "--points"), default=36, help="angles (default %(default)s)")
+    parser.add_argument(
+        "--repeats", type=at_least(1, "--repeats"), default=3, help="runs an angle, each with noise of its own"
+    )
     configure_report(parser)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from schemas.errors import UsageError
+from tools.asked import at_least
 from tools.evaluations.comparison import share_interval
 from tools.evaluations.figure16 import approached_s, assertion_task, succeeded, variants
 from tools.evaluations.ground import Ground, ground_of
@@ -33,8 +34,12 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure15`."""
-    parser.add_argument("--episodes", type=int, default=40, help="starts to look through (default %(default)s)")
-    parser.add_argument("--drawn", type=int, default=2, help="so many with a subgoal are drawn (default %(default)s)")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=40, help="starts to look through (default %(default)s)"
+    )
+    parser.add_argument(
+        "--drawn", type=at_least(0, "--drawn"), default=2, help="so many with a subgoal are drawn (default %(default)s)"
+    )
     configure_report(parser)
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from executive.refinement.settings import RefinementSettings
+from tools.asked import at_least
 from tools.evaluations.comparison import compare, share_interval
 from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.plots import draw_shares
@@ -23,7 +24,9 @@ PAPER = "paper: 47 % before, 97 % after, needless 10 % and 8 % slower there"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure16`."""
-    parser.add_argument("--episodes", type=int, default=500, help="approaches (default %(default)s)")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=500, help="approaches (default %(default)s)"
+    )
     configure_report(parser)
 
 

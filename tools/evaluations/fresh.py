@@ -18,8 +18,13 @@ REPEATED_TASKS = 60
 
 
 def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: Path, stream: int) -> DataSet:
-    """Episodes of an action from a stream of seeds; made at the first call, read at the next."""
+    """Episodes of an action from a stream of seeds; made at the first call, read at the next.
+
+    Raises:
+      UsageError: The robot has no such action.
+    """
     domain = gathering.domain_of(robot)
+    gathering.check_action(domain, action)
     made_by = gathering.source_hash(robot, domain)[:12]  # other controllers, other episodes
     folder = store / "episodes" / f"{robot}-{action}-{made_by}-{stream}-{seed}-{count}"
     work = Work(domain, action, count, seed, folder, stream)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from tools.asked import at_least
 from tools.evaluations.report import configure_report
 
 PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
@@ -12,6 +13,10 @@ PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
     """Robot, fresh episodes, seed, and how to tell the result."""
     parser.add_argument("--robot", default="agilo", help="whose models (default %(default)s)")
-    parser.add_argument("--episodes", type=int, default=episodes, help="fresh episodes (default %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="draws the fresh episodes (default %(default)s)")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=episodes, help="fresh episodes (default %(default)s)"
+    )
+    parser.add_argument(
+        "--seed", type=at_least(0, "--seed"), default=1, help="draws the fresh episodes (default %(default)s)"
+    )
     configure_report(parser)

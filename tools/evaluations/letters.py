@@ -17,6 +17,7 @@ from executive.domains.arm.letters import font
 from executive.library import Models
 from executive.refinement.settings import RefinementSettings
 from models.runtime import load_robot
+from tools.asked import at_least
 from tools.evaluations.comparison import compare
 from tools.evaluations.outcome import FIRST_SEED
 from tools.evaluations.perfect_reach import PerfectReach
@@ -56,7 +57,9 @@ class Figures:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate letters`."""
-    parser.add_argument("--seeds", type=int, default=5, help="starts and sizes of each letter (default %(default)s)")
+    parser.add_argument(
+        "--seeds", type=at_least(1, "--seeds"), default=5, help="starts and sizes of each letter (default %(default)s)"
+    )
     parser.add_argument("--no-oracle", action="store_true", help="leave the perfect model out")
     configure_report(parser)
 

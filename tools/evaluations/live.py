@@ -21,8 +21,9 @@ from executive.core.context import Settings
 from executive.refinement.settings import RefinementSettings
 from runtime.recording import open_recording
 from runtime.stopping import Stop, stop_on_signals
-from schemas.errors import Rejected, UsageError
+from schemas.errors import Rejected
 from schemas.messages import Message
+from tools.asked import at_least
 from tools.evaluations.agreement import agreement, starts_of
 from tools.evaluations.heard import Unseen, episode_of
 from tools.evaluations.journal import Journal
@@ -48,20 +49,25 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate live`."""
-    parser.add_argument("--episodes", type=int, default=20, help="starts (default %(default)s, about 20 s each)")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=20, help="starts (default %(default)s, about 20 s each)"
+    )
     parser.add_argument("--scenario", default="approach-dribble", help="of soccer's (default %(default)s)")
     parser.add_argument(
-        "--horizon", type=int, default=2, help="actions looked ahead; 1 is greedy (default %(default)s)"
+        "--horizon",
+        type=at_least(1, "--horizon"),
+        default=2,
+        help="actions looked ahead; 1 is greedy (default %(default)s)",
     )
-    parser.add_argument("--repeats", type=int, default=15, help="lock-step runs a start (default %(default)s)")
+    parser.add_argument(
+        "--repeats", type=at_least(2, "--repeats"), default=15, help="lock-step runs a start (default %(default)s)"
+    )
     parser.add_argument("--recordings", type=Path, metavar="DIR", help="keep the recordings of the runs there")
     configure_report(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, compare and tell; 0 when live runs end as lock-step's and neither test finds a difference; 130: stopped."""
-    if arguments.episodes < 2 or arguments.repeats < 2:
-        raise UsageError("--episodes and --repeats: expected at least 2 of each")
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     repeats = _lockstep(task, arguments, seeds)

@@ -17,6 +17,7 @@ from models.examples import duration_examples, split
 from models.features import SPACES
 from models.training import fit
 from tools import gathering
+from tools.asked import at_least
 from tools.evaluations.learned import configure_learned
 from tools.evaluations.report import Report, tell
 from tools.run_gathering import Policy, actions, models_hash, run_policy
@@ -31,7 +32,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     configure_learned(parser, 80)
     parser.add_argument("--data", type=Path, help="random episodes (default: data/ROBOT)")
     parser.add_argument("--scenarios", nargs="+", default=SCENARIOS, help="(default %(default)s)")
-    parser.add_argument("--ticks", type=int, default=2, help="first ticks of each episode (default %(default)s)")
+    parser.add_argument(
+        "--ticks", type=at_least(1, "--ticks"), default=2, help="first ticks of each episode (default %(default)s)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

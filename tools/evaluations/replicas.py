@@ -10,10 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich.console import Console
 from rich.progress import Progress
 from scipy import stats
 
 from tools import gathering, run_gathering, train
+from tools.asked import at_least
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 SCENARIOS = {"soccer": ("approach-dribble", "waypoints")}  # of the on-policy round, where it helps
@@ -31,11 +33,11 @@ class Recipe:
 
 def configure_replicas(parser: argparse.ArgumentParser) -> None:
     """The flags of evaluations that train models of their own."""
-    parser.add_argument("--models", type=int, default=0, metavar="K",
+    parser.add_argument("--models", type=at_least(0, "--models"), default=0, metavar="K",
                         help="judge K models more, each gathered for and trained anew, and their mean")  # fmt: skip
-    parser.add_argument("--model-episodes", type=int, default=3000, metavar="N",
+    parser.add_argument("--model-episodes", type=at_least(40, "--model-episodes"), default=3000, metavar="N",
                         help="random episodes an action for each of them (default %(default)s)")  # fmt: skip
-    parser.add_argument("--model-runs", type=int, default=200, metavar="N",
+    parser.add_argument("--model-runs", type=at_least(0, "--model-runs"), default=200, metavar="N",
                         help="runs a scenario of its on-policy round (default %(default)s; 0: none)")  # fmt: skip
 
 
@@ -71,7 +73,7 @@ def _gather(recipe: Recipe, seed: int, folder: Path, jobs: int) -> None:
 
 
 def _finish(running: Any, title: str) -> None:
-    with Progress(transient=True) as progress:
+    with Progress(transient=True, console=Console(stderr=True)) as progress:
         for _ in progress.track(running, total=None, description=title):
             pass
 

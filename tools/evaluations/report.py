@@ -13,6 +13,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from tools.asked import processes
 from tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]
@@ -33,7 +34,7 @@ class Report:
 
 def configure_report(parser: argparse.ArgumentParser) -> None:
     """The flags that every evaluation has."""
-    parser.add_argument("--jobs", type=int, default=2, help="processes (default %(default)s)")
+    parser.add_argument("--jobs", type=processes, default=2, help="processes (default %(default)s)")
     parser.add_argument("--json", action="store_true", help="print the rows as JSON")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots there")
     parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),

@@ -9,6 +9,7 @@ from typing import Any
 from executive import domains
 from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
+from tools.asked import at_least
 from tools.evaluations import letters
 from tools.evaluations.baselines import against_oracle, bias_s
 from tools.evaluations.comparison import compare
@@ -36,9 +37,17 @@ REMARKS = [
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table3`."""
     parser.add_argument("scenarios", nargs="*", help=f"of: {', '.join(SCENARIOS)} (default: all of the domain)")
-    parser.add_argument("--episodes", type=int, default=500, help="pairs (default %(default)s)")
-    parser.add_argument("--oracle", type=int, default=50, metavar="N", help="starts at which every choice is simulated")
-    parser.add_argument("--points", type=int, default=18, help="angles that the oracle tries (default %(default)s)")
+    parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=500, help="pairs (default %(default)s)")
+    parser.add_argument(
+        "--oracle",
+        type=at_least(0, "--oracle"),
+        default=50,
+        metavar="N",
+        help="starts at which every choice is simulated",
+    )
+    parser.add_argument(
+        "--points", type=at_least(2, "--points"), default=18, help="angles that the oracle tries (default %(default)s)"
+    )
     parser.add_argument(
         "--degraded", action="store_true", help="soccer with the stand-in real robot's noise and friction"
     )

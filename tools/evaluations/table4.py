@@ -9,6 +9,7 @@ from typing import Any
 
 from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
+from tools.asked import at_least
 from tools.evaluations.baselines import bias_s
 from tools.evaluations.comparison import compare
 from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
@@ -23,7 +24,9 @@ SCENARIOS = {"soccer": ("soccer", "waypoints", (1, 2, 3, 4), "10.6 %, 0.7 %, 0.2
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table4`."""
     parser.add_argument("scenarios", nargs="*", help=f"of: {', '.join(SCENARIOS)} (default: soccer)")
-    parser.add_argument("--episodes", type=int, default=200, help="episodes a horizon (default %(default)s)")
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=200, help="episodes a horizon (default %(default)s)"
+    )
     configure_report(parser)
 
 

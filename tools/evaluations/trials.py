@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
+from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from executive import domains
@@ -64,7 +65,7 @@ def run_all(
         delayed(run_one)(task, variant, seed) for variant, seed in wanted
     )
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, transient=True) as progress:
+    with Progress(*columns, transient=True, console=Console(stderr=True)) as progress:
         for outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
             found[outcome.variant][outcome.seed] = outcome
             journals[outcome.variant].note(outcome)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
-from schemas.errors import UsageError
+from schemas.errors import Rejected, UsageError
+from schemas.json_text import table_of
 from tools.viewer.rows import Fields
 
 # What the page draws as lines; the executive's shell keeps to them (architecture.md, "One tick").
@@ -40,10 +40,8 @@ def _domain(name: Any) -> Fields:
 
 
 def _loads(text: str) -> dict[str, Any]:
-    try:
-        return _table(json.loads(text))
-    except ValueError:
-        return {}
+    table = table_of(text)
+    return {} if isinstance(table, Rejected) else table
 
 
 def _table(value: Any) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -10,7 +9,8 @@ import numpy as np
 
 from executive.composition import recompose
 from executive.core.context import Context
-from schemas.errors import UsageError
+from schemas.errors import Rejected, UsageError
+from schemas.json_text import table_of
 from schemas.messages import Subgoals
 from tools.viewer.explanation import Explanation, FreeParameter, explain
 from tools.viewer.longer_search import best_cost
@@ -31,7 +31,10 @@ class Explainer:
     def learn(self, provenance: str) -> None:
         """Load what a provenance names; a failure is kept in `missing`."""
         try:
-            self._context = self._compose(json.loads(provenance))
+            table = table_of(provenance)
+            if isinstance(table, Rejected):
+                raise UsageError(f"provenance: {table.reason}")
+            self._context = self._compose(table)
             self.missing = ""
         except (UsageError, KeyError, ValueError) as error:
             self._context = None
