@@ -50,12 +50,18 @@ class RecordedRuns:
         by_sender = {run.sender: run for run in self.runs}
         for message in everything:
             if message.sender in by_sender and message.key != ANSWER_KEY:
-                _take(by_sender[message.sender], message)
+                self._take(by_sender[message.sender], message)
             else:
                 self._heard[message.key, message.sender, message.sequence] = message
         for run in self.runs:
             _in_order(run)
         _ready_codecs(everything)
+
+    def _take(self, run: RecordedRun, message: Recorded) -> None:
+        try:
+            _take(run, message)
+        except UsageError as error:
+            raise UsageError(f"{self.path}: {error}") from None
 
     def ticks(self, run: RecordedRun) -> Iterator[RecordedTick]:
         """What each tick of a run was given; raises UsageError where the recording lacks it."""
