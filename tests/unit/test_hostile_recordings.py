@@ -150,6 +150,13 @@ def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):
     assert "no footer" in capsys.readouterr().err
 
 
+def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch):
+    """A recording of 0.2 MB can hold 2.5 GB of zeros."""
+    monkeypatch.setattr(recorded_run, "MOST_BYTES", 10_000)
+    with pytest.raises(UsageError, match="more than 10000 bytes of messages"):
+        RecordedRuns(GOLDEN)
+
+
 # --- replay --------------------------------------------------------------------------------------
 def test_what_a_sender_cannot_be_counts_as_unsigned(tmp_path):
     path = tmp_path / "a.mcap"
