@@ -80,15 +80,17 @@ def run(arguments: argparse.Namespace) -> int:
             wanted = Selection(wanted.include, wanted.exclude + DRIVING)
             changes = {"barred": Selection(exclude=DRIVING)}
         passage = Passage(recording, wanted, remap, arguments.start, arguments.duration, **changes)
-        played = _play(arguments, session, passage, stop)
+        outlets = Outlets(session, passage.places())
+        damage = recording.account.text()  # now that all of it was read once; what follows may end early
+        played = _play(arguments, session, passage, outlets, stop)
     _tell(played, arguments.json)
-    if recording.account.text():
-        _say(f"{recording.path}: {recording.account.text()}")
+    if damage:
+        _say(f"{recording.path}: {damage}")
     return 0
 
 
-def _play(arguments: argparse.Namespace, session: Session, passage: Passage, stop: Stop) -> Played:
-    outlets, clock = Outlets(session, passage.places()), MonotonicClock()
+def _play(arguments: argparse.Namespace, session: Session, passage: Passage, outlets: Outlets, stop: Stop) -> Played:
+    clock = MonotonicClock()
     deaf = outlets.wait(arguments.wait)
     if deaf:
         _say(f"nobody listens to: {', '.join(deaf)}")
