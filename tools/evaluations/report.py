@@ -67,6 +67,8 @@ def shown(value: object) -> str:
         if value != 0 and abs(value) < 0.001:
             return f"{value:.1e}"
         return f"{value:.3f}" if abs(value) < 0.1 else f"{value:.2f}"
+    if value is None:
+        return ""
     if isinstance(value, tuple | list):
         return " .. ".join(shown(part) for part in value)
     return str(value)
