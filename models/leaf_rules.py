@@ -40,6 +40,23 @@ def rules_of(boxes: TreeBoxes, number: int, quantities: Sequence[Quantity], unit
     return said
 
 
+def applied(boxes: TreeBoxes, features: Floats, quantities: Sequence[Quantity], unit: str) -> str:
+    """The rule that applied to some features, (f,): of that tree which says nearest to what all of them say together.
+
+    Empty where a feature is not a number, or in no leaf.
+    """
+    inside = ((features > boxes.lower) & (features <= boxes.upper)).all(axis=1)
+    leaves = np.flatnonzero(inside)
+    if len(leaves) != len(boxes.first):
+        return ""
+    said = np.clip(boxes.slopes[leaves] @ features + boxes.intercept[leaves], boxes.low[leaves], boxes.high[leaves])
+    tree = int(np.abs(said - said.mean()).argmin())
+    leaf = int(leaves[tree])
+    box = Bounds(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
+    of = "" if len(leaves) == 1 else f" (tree {tree + 1} of {len(leaves)}, the one that says nearest to their mean)"
+    return f"if {conditions(box, quantities)} then {NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}{of}"
+
+
 def answers_of(boxes: TreeBoxes, number: int, features: Floats) -> Floats:
     """What a tree says of features (n, f), shape (n,)."""
     answers = np.full(len(features), np.nan, np.float32)

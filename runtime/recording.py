@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,9 @@ from schemas.codec import decode
 from schemas.errors import Rejected, UsageError
 from schemas.messages import Message
 from schemas.typesystem import definition, type_hash, type_of
+
+_SENDER = re.compile(r"[0-9a-f]{32}")
+_LATEST_NS = 2**63 - 1  # of a sender's clock: the bus has no more bits for it
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +56,8 @@ class Recording:
                 name = "" if schema is None else schema.name
                 self._check_schema(record, schema)
                 key = record.metadata.get("key") or record.topic.strip("/")
-                channels[record.id] = (key, name, record.metadata.get("sender", ""))
+                sender = record.metadata.get("sender", "")
+                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "")
 
     def decoded(self) -> Iterator[tuple[Recorded, Message | Rejected]]:
         """Messages of our own types with their values; others are left out."""
@@ -92,7 +97,8 @@ def open_recording(path: str | Path) -> Recording:
 
 
 def _recorded(record: Any, key: str, name: str, sender: str) -> Recorded:
-    return Recorded(key, name, sender, record.sequence, record.log_time, record.publish_time, record.data)
+    publish_ns = min(record.publish_time, _LATEST_NS)
+    return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data)
 
 
 def _squeezed(text: str) -> str:

@@ -17,9 +17,13 @@ class Selection:
     include: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
 
+    def allows(self, key: str, ros_name: str = "") -> bool:
+        """Whether nothing of `exclude` matches."""
+        return not any(_matches(pattern, key, ros_name) for pattern in self.exclude)
+
     def wants(self, key: str, ros_name: str = "") -> bool:
         """Whether a message of this key and ROS type is wanted."""
-        if any(_matches(pattern, key, ros_name) for pattern in self.exclude):
+        if not self.allows(key, ros_name):
             return False
         return not self.include or any(_matches(pattern, key, ros_name) for pattern in self.include)
 

@@ -21,6 +21,7 @@ from schemas.topics import TOPICS, key_of
 from schemas.typesystem import ros_type
 
 SELF_CONNECT_MS = 500
+LONGEST_KEY = 1000  # bytes; a message of zenoh has room for 65 535
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -90,7 +91,13 @@ class Session:
         return Publisher(key, _Wire(declared), self.sender)
 
     def player(self, key: str, ros_type: str) -> Publisher:
-        """An outlet for recorded bytes under any key; waits rather than lose one, so never use it in a tick."""
+        """An outlet for recorded bytes under any key; waits rather than lose one, so never use it in a tick.
+
+        Raises:
+          UsageError: Nothing can be said under this key, or it is a pattern of several.
+        """
+        if not _is_one_key(key):
+            raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
         declared = self._zenoh.declare_publisher(
             key,
             encoding=f"application/cdr;{ros_type}" if ros_type else None,
@@ -128,6 +135,15 @@ class Session:
         """
         handler: Any = zenoh.handlers.Callback(lambda sample: callback(_raw(sample)), indirect=False)
         return self._zenoh.declare_subscriber(pattern, handler)
+
+
+def _is_one_key(key: str) -> bool:
+    """Whether something can be said under a key: zenoh takes it, and it is no pattern."""
+    try:
+        zenoh.KeyExpr(key)
+    except zenoh.ZError:
+        return False
+    return "*" not in key and len(key.encode()) <= LONGEST_KEY
 
 
 class _Wire:

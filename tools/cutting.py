@@ -14,6 +14,7 @@ import numpy as np
 
 from executive.library import Action, Array, Domain
 from models.episodes import UNOBSERVED, Episode
+from schemas.errors import UsageError
 from schemas.messages import (
     ActionFinished,
     ExecStatus,
@@ -88,6 +89,9 @@ class Cutter:
     def _begin(self, status: ExecStatus) -> _Running | None:
         if self._newest is None or not self._newest.actions or self._newest.actions[0].action != status.action:
             return None
+        if status.action not in self.domain.actions:
+            known = ", ".join(self.domain.actions)
+            raise UsageError(f"action '{status.action}' is recorded, expected those of {self.domain.robot}: {known}")
         said, action = self._newest.actions[0], self.domain.actions[status.action]
         return _Running(status.action_index, said, action, _goal(action, said))
 

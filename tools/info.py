@@ -103,10 +103,10 @@ def _show(told: dict[str, Any]) -> None:
     if told["actions"]:
         console.print(_actions(told["actions"]))
     for episode in told["episodes"]:
-        console.print(f"episode {episode['goal']}: {episode['result']}")
+        console.print(plain(f"episode {episode['goal']}: {episode['result']}"))
     for name, what in (("fault", told["faults"]), ("driver stopped", told["driver_stops"])):
         for reason in what:
-            console.print(f"{name}: {reason}")
+            console.print(plain(f"{name}: {reason}"))
     if told["modes"]:
         ticks = told["ticks"]
         console.print("ticks by mode: " + ", ".join(f"{mode} {count}" for mode, count in told["modes"].items()))

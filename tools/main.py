@@ -52,23 +52,30 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"tailor: unknown command '{name}' (expected one of: {', '.join(COMMANDS)})", file=sys.stderr)
         return 2
-    module = importlib.import_module(COMMANDS[name][0])
-    parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
-    module.configure(parser)
     try:
-        return int(module.run(parser.parse_args(rest)))
+        code = _call(name, rest)
+        if sys.stdout:
+            sys.stdout.flush()  # here, where a reader that has left is no error
+        return code
     except UsageError as error:
         print(f"tailor {name}: {plain(str(error))}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
+        sys.stdout = None  # the interpreter would flush it once more at its end, and complain
         return 1
-    except OSError as error:
-        if error.filename is None:
-            raise
-        print(f"tailor {name}: {error.filename}: {error.strerror}", file=sys.stderr)
-        return 2
+    except OSError as error:  # of a path that was named, or of standard output, which has no name
+        where = "" if error.filename is None else f"{error.filename}: "
+        print(f"tailor {name}: {plain(f'{where}{error.strerror or error}')}", file=sys.stderr)
+        return 1 if error.filename is None else 2
+
+
+def _call(name: str, rest: Sequence[str]) -> int:
+    module = importlib.import_module(COMMANDS[name][0])
+    parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
+    module.configure(parser)
+    return int(module.run(parser.parse_args(rest)))
 
 
 class _Parser(argparse.ArgumentParser):

@@ -39,13 +39,18 @@ def to_dot(plan: Plan) -> str:
     def name(step: int) -> str:
         return "goal" if step == GOAL else f"s{step}"
 
-    lines = [f'digraph "{plan.problem}" {{', "  rankdir=LR; node [shape=box, fontname=Helvetica];"]
-    lines += [f'  {name(step)} [label="{label}"];' for step, label in _labels(plan).items()]
+    lines = [f"digraph {_quoted(plan.problem)} {{", "  rankdir=LR; node [shape=box, fontname=Helvetica];"]
+    lines += [f"  {name(step)} [label={_quoted(label)}];" for step, label in _labels(plan).items()]
     for (producer, consumer), literals in _links(plan).items():
-        label = "\\n".join(literals)
-        lines.append(f'  {name(producer)} -> {name(consumer)} [label="{label}", fontsize=10];')
+        label = _quoted("\n".join(literals))
+        lines.append(f"  {name(producer)} -> {name(consumer)} [label={label}, fontsize=10];")
     lines += [f"  {name(i)} -> {name(j)} [style=dashed, color=gray50];" for i, j in bare_orderings(plan)]
     return "\n".join([*lines, "}"]) + "\n"
+
+
+def _quoted(text: str) -> str:
+    """A string of Graphviz, whatever characters the names have."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 # --- SVG -----------------------------------------------------------------------------------------

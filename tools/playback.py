@@ -17,6 +17,9 @@ def _same(recorded: Recorded) -> Recorded:
     return recorded
 
 
+NOTHING_BARRED = Selection()
+
+
 @dataclass(frozen=True, slots=True)
 class Passage:
     """A part of a recording."""
@@ -26,6 +29,7 @@ class Passage:
     remap: Mapping[str, str] = field(default_factory=dict)  # old key -> new key
     start_s: float = 0.0  # after the recording's first message, wanted or not
     duration_s: float = 0.0  # 0: to the end
+    barred: Selection = NOTHING_BARRED  # new keys that are left out all the same
     rewrite: Callable[[Recorded], Recorded] = _same
 
     def messages(self) -> Iterator[Recorded]:
@@ -34,7 +38,9 @@ class Passage:
         start_ns = start_ns if self.start_s else 0  # what comes first need not be earliest
         for recorded in self.recording.messages():
             if start_ns <= recorded.log_ns < end_ns and self.wanted.wants(recorded.key, recorded.ros_type):
-                yield self.rewrite(replace(recorded, key=self.remap.get(recorded.key, recorded.key)))
+                key = self.remap.get(recorded.key, recorded.key)
+                if self.barred.allows(key):
+                    yield self.rewrite(replace(recorded, key=key))
 
     def bounds_ns(self) -> tuple[int, int]:
         """Log times of the passage, the second one exclusive.
@@ -49,8 +55,15 @@ class Passage:
         return start_ns, start_ns + round(self.duration_s * 1e9) if self.duration_s else 2**63
 
     def places(self) -> set[tuple[str, str]]:
-        """Keys and ROS types that it will publish."""
-        return {(recorded.key, recorded.ros_type) for recorded in self.messages()}
+        """Keys and ROS types that it will publish.
+
+        Raises:
+          UsageError: Nothing is left to play.
+        """
+        places = {(recorded.key, recorded.ros_type) for recorded in self.messages()}
+        if not places:
+            raise UsageError(f"{self.recording.path}: no message of these topics and times, expected something to play")
+        return places
 
 
 class Outlets:

@@ -10,7 +10,7 @@ from typing import Any
 
 from executive.core.state import Inputs
 from executive.replay import RecordedTick
-from runtime.recording import Recorded, open_recording
+from runtime.recording import Recorded, Recording, open_recording
 from schemas.codec import decode, encode
 from schemas.errors import Rejected, UsageError
 from schemas.json_text import table_of
@@ -19,6 +19,7 @@ from schemas.topics import TOPICS
 from schemas.typesystem import type_of
 
 TICK_KEY = TOPICS["tick"].key
+MOST_BYTES = 1_000_000_000  # a run has some 10 MB a minute
 PROVENANCE_KEY = TOPICS["provenance"].key
 ANSWER_KEY = TOPICS["plan_answer"].key  # an executive's own, but an input of its core
 
@@ -41,7 +42,7 @@ class RecordedRuns:
         self.path = path
         self._heard: dict[tuple[str, str, int], Recorded] = {}
         recording = open_recording(path)
-        everything = list(recording.messages())
+        everything = list(_bounded(recording))
         executives = list(dict.fromkeys(m.sender for m in everything if m.key == TICK_KEY))
         if not executives:
             damage = f" ({recording.account.text()})" if recording.account.text() else ""
@@ -50,12 +51,18 @@ class RecordedRuns:
         by_sender = {run.sender: run for run in self.runs}
         for message in everything:
             if message.sender in by_sender and message.key != ANSWER_KEY:
-                _take(by_sender[message.sender], message)
+                self._take(by_sender[message.sender], message)
             else:
                 self._heard[message.key, message.sender, message.sequence] = message
         for run in self.runs:
             _in_order(run)
         _ready_codecs(everything)
+
+    def _take(self, run: RecordedRun, message: Recorded) -> None:
+        try:
+            _take(run, message)
+        except UsageError as error:
+            raise UsageError(f"{self.path}: {error}") from None
 
     def ticks(self, run: RecordedRun) -> Iterator[RecordedTick]:
         """What each tick of a run was given; raises UsageError where the recording lacks it."""
@@ -85,6 +92,20 @@ class RecordedRuns:
             raise UsageError(f"{self.path}: tick {tick} was given number {sequence} of {key}, which is not recorded")
         message = decoded(recorded)
         return Sample(key, message, arrival_ns, sequence, sender)
+
+
+def _bounded(recording: Recording) -> Iterator[Recorded]:
+    """The messages of our own types: all are kept in memory, and a small file may unpack to more than there is."""
+    size = 0
+    for message in recording.messages():
+        if type_of(message.ros_type) is None:
+            continue
+        size += len(message.data)
+        if size > MOST_BYTES:
+            raise UsageError(
+                f"{recording.path}: more than {MOST_BYTES} bytes of messages, expected a piece (`tailor cut`)"
+            )
+        yield message
 
 
 def decoded(recorded: Recorded) -> Message:

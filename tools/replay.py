@@ -10,6 +10,7 @@ import json
 import sys
 import time
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,7 @@ DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.pri
 LISTEN_S = 0.5  # for a live driver; they speak at 10 Hz
 LONGEST_S = 1e9  # a recording has no such length
 FASTEST_CLOCK_HZ = 10_000.0
+LAST_CLOCK_NS = (2**31 - 1) * 10**9  # ROS's clock ends in 2038
 TAIL_S = 0.2  # for the last messages to leave before the session closes
 
 
@@ -69,23 +71,26 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     with open_client(deployment(arguments).bus.endpoint) as session:
         codec.prime()
-        rewrite = {}
+        changes: dict[str, Any] = {}
         if arguments.substitute:
             wanted = Selection(wanted.include, wanted.exclude + SILENCED)
-            rewrite = {"rewrite": partial(armed_for, live_executive(session))}
+            changes = {"rewrite": partial(armed_for, live_executive(session))}
         elif not arguments.drive and _driver_is_live(session):
             _say("a driver is live: commands, arming requests and e-stops are left out (--drive sends them)")
             wanted = Selection(wanted.include, wanted.exclude + DRIVING)
-        passage = Passage(recording, wanted, remap, arguments.start, arguments.duration, **rewrite)
-        played = _play(arguments, session, passage, stop)
+            changes = {"barred": Selection(exclude=DRIVING)}
+        passage = Passage(recording, wanted, remap, arguments.start, arguments.duration, **changes)
+        outlets = Outlets(session, passage.places())
+        damage = recording.account.text()  # now that all of it was read once; what follows may end early
+        played = _play(arguments, session, passage, outlets, stop)
     _tell(played, arguments.json)
-    if recording.account.text():
-        _say(f"{recording.path}: {recording.account.text()}")
+    if damage:
+        _say(f"{recording.path}: {damage}")
     return 0
 
 
-def _play(arguments: argparse.Namespace, session: Session, passage: Passage, stop: Stop) -> Played:
-    outlets, clock = Outlets(session, passage.places()), MonotonicClock()
+def _play(arguments: argparse.Namespace, session: Session, passage: Passage, outlets: Outlets, stop: Stop) -> Played:
+    clock = MonotonicClock()
     deaf = outlets.wait(arguments.wait)
     if deaf:
         _say(f"nobody listens to: {', '.join(deaf)}")
@@ -95,7 +100,7 @@ def _play(arguments: argparse.Namespace, session: Session, passage: Passage, sto
             return not stop.requested and _steer(pace, keyboard.pressed(), clock.now_ns())
 
         def tick(recorded_ns: int) -> None:
-            clock_outlet.publish(Clock(recorded_ns))
+            clock_outlet.publish(Clock(min(recorded_ns, LAST_CLOCK_NS)))
 
         clock_outlet = session.publisher("clock", "")
         tick_ns = round(1e9 / arguments.clock) if arguments.clock else 0

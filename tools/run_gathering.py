@@ -57,13 +57,14 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     """
     from joblib import Parallel, delayed
 
-    about = {
+    about: dict[str, Any] = {
         "source": "lock-step, refined choices",
         "seed": policy.seed,
         "scenarios": list(policy.scenarios),
         "models_sha256": models_hash(domains.load(policy.domain).robot, policy.zoo),
     }
-    prepare(policy.domain, policy.folder, {**about, "episodes": policy.runs}, policy.jobs, resume)
+    about["episodes"] = policy.runs
+    prepare(policy.domain, policy.folder, actions(policy.domain), about, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 
@@ -76,8 +77,10 @@ def models_hash(robot: str, zoo: str) -> str:
     return hashlib.sha256("\n".join(said).encode()).hexdigest()
 
 
-def prepare(domain: str, folder: Path, about: dict[str, Any], runs: Sequence[Any], resume: bool) -> None:
-    """Make a data set folder, with its manifest, for every action that has a duration model.
+def prepare(
+    domain: str, folder: Path, names: Sequence[str], about: dict[str, Any], runs: Sequence[Any], resume: bool
+) -> None:
+    """Make a data set folder, with its manifest, for each of some actions.
 
     Raises:
       UsageError: One of them holds other episodes, or the same ones without `resume`; nothing is written then.
@@ -94,7 +97,7 @@ def prepare(domain: str, folder: Path, about: dict[str, Any], runs: Sequence[Any
             "on_policy": True,
             **about,
         }
-        for action in actions(domain)
+        for action in names
     }
     for place, manifest in manifests.items():
         gathering.check_resumable(place, manifest, resume)
@@ -129,13 +132,13 @@ def cut_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dic
     if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
     about = {"source": "recordings", "recordings": [path.name for path in recordings]}
-    prepare(domain, folder, about, recordings, resume=False)
+    found = Counter(action for one in cut for action, _ in one)
+    prepare(domain, folder, sorted(found), about, recordings, resume=False)
     number = 0
     for one in cut:
         numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
         write(domain, folder, f"{number:06d}", numbered)
         number += len(one)
-    found = Counter(action for one in cut for action, _ in one)
     return {action: found[action] for action in actions(domain)}
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 
 from schemas.errors import UsageError
 from tools.figures.alternatives import draw_alternatives
@@ -81,12 +82,18 @@ def reasons_of(recording: Path, at_s: float | None = None, sender: str = "") -> 
     at = None if at_s is None else in_force(found.decisions, at_s)
     decisions = list(acted_on(found.decisions)) if at_s is None else [at] if at is not None else []
     if not decisions:
-        raise UsageError(f"{recording}: no decision{'' if at_s is None else f' before {at_s:g} s'}, expected a run")
+        raise UsageError(f"{recording}: {_no_decision(found.decisions, at_s)}")
     explainer = Explainer()
     explainer.learn(found.provenance)
     if explainer.missing:
         raise UsageError(f"{recording}: cannot load what it was made with: {explainer.missing}")
     return [_reason(explainer, decision) for decision in decisions]
+
+
+def _no_decision(decisions: Sequence[Decision], at_s: float | None) -> str:
+    if at_s is None or not decisions:
+        return "no decision, expected a run"
+    return f"no decision before {at_s:g} s, expected --at from {decisions[0].at_s:.1f} s on"
 
 
 def _reason(explainer: Explainer, decision: Decision) -> Reason:
@@ -97,7 +104,7 @@ def _reason(explainer: Explainer, decision: Decision) -> Reason:
 
 
 def _show(reasons: Sequence[Reason]) -> None:
-    console = Console()
+    console = Console(soft_wrap=True)
     for reason in reasons:
         if reason.explanation is None:
             console.print(f"[bold]{reason.title}[/bold]\n  nothing was free to choose\n", highlight=False)
@@ -108,6 +115,8 @@ def _show(reasons: Sequence[Reason]) -> None:
             console.print(f"  {in_words(of)}", highlight=False)
         for situation in reason.explanation.situations:
             console.print(f"  {seen(situation)}", highlight=False)
+            if situation.rule:
+                console.print(f"    {escape(situation.rule)}", highlight=False)
         console.print(f"  {nearness(reason.explanation.chosen_cost, reason.best_cost)}", highlight=False)
         console.print(f"  {proven(reason.decision.report)}", highlight=False)
         if reason.decision.report is not None and (advised := advice(reason.decision.report)):
@@ -121,6 +130,7 @@ def _told(reason: Reason) -> dict[str, Any]:
         "at_s": decision.at_s,
         "actions": [action.action for action in decision.subgoals.actions],
         "explanation": None if reason.explanation is None else fields_of(reason.explanation),
+        "rules": [] if reason.explanation is None else [seen.rule for seen in reason.explanation.situations],
         "best_cost": number(reason.best_cost),
         "search": None
         if report is None
@@ -145,8 +155,7 @@ def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
         with tempfile.TemporaryDirectory() as folder:
             picture = Path(folder) / "alternatives.png"
             draw_alternatives(explained, picture)
-            lines = "Full line: chosen. Dashed: greedy. Dotted: predicted to fail, or beyond the limit of risk."
-            body = [f"<p>{lines}</p>", image(picture, "predicted durations over the free parameters")]
+            body = [image(picture, "predicted durations over the free parameters")]
         output.parent.mkdir(parents=True, exist_ok=True)
         output.write_text(page("Why these subgoals", body), encoding="utf-8")
     print(output, file=sys.stderr)  # stdout may be read by a program

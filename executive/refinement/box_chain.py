@@ -18,7 +18,6 @@ from executive.refinement.boxes import NOWHERE, Boxes, joined
 from executive.refinement.chain import forward_costs, through_costs, traced
 
 Places = NDArray[np.intp]
-PIECES = 16  # that the boxes chosen are cut into at a time, at least
 
 
 class PairBound(Protocol):
@@ -54,10 +53,12 @@ class BoxChain:
       bounds: What a pair of boxes costs at least, action by action.
       boxes: The first boxes of each subgoal.
       effort: Elementary comparisons in one step, roughly.
+      pieces: That the boxes chosen are cut into at a time, at least.
     """
 
-    def __init__(self, bounds: Sequence[PairBound], boxes: Sequence[Boxes], effort: int) -> None:
+    def __init__(self, bounds: Sequence[PairBound], boxes: Sequence[Boxes], effort: int, pieces: int) -> None:
         self.boxes = list(boxes)
+        self._pieces = pieces
         self._bounds = bounds
         self._effort = effort
         self._tables = [np.full((len(a), len(b)), -np.inf) for a, b in zip([NOWHERE, *boxes], boxes, strict=False)]
@@ -91,7 +92,7 @@ class BoxChain:
         Pieces inherit their box's bounds; those on chains that cost less than `limit` are bounded anew.
         """
         children, parents = self.boxes[index].part(chosen), chosen
-        while len(parents) < PIECES:
+        while len(parents) < self._pieces:
             children, parents = children.halves(weight), np.tile(parents, 2)
         parents = np.concatenate([kept, parents])
         new = np.arange(len(kept), len(parents))

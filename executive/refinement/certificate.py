@@ -22,13 +22,14 @@ from executive.refinement.settings import RefinementSettings
 from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
 from executive.refinement.stalling import Stalling
 
-EFFORT = 200_000  # comparisons of boxes and leaves in one check: about 1 ms
+EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 while boxes are wide
 CUT_AT_ONCE = 4  # boxes of a subgoal
 HOPELESS = 0.3  # of the checks just to begin: what is left will not get far
 LOOK_EVERY = 4  # turns of cutting
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
 FIRST_CUTS = 6, 4  # before anything is bounded: of the only subgoal that has free parameters, of each of several
+PIECES = 32, 16  # that the boxes chosen are cut into at a time, likewise: pairs of boxes take longer
 
 
 class Certificate:
@@ -109,9 +110,10 @@ class Certificate:
             bounds.append(bound.within(*ends))
             yield
         free = [i for i, block in enumerate(self._blocks) if len(block)]
-        for i in free * FIRST_CUTS[len(free) > 1]:
+        several = len(free) > 1
+        for i in free * FIRST_CUTS[several]:
             boxes[i] = boxes[i].halves(weight[self._blocks[i]])
-        return BoxChain(bounds, boxes, EFFORT)
+        return BoxChain(bounds, boxes, EFFORT, PIECES[several])
 
     def _note(self, costs: Costs) -> bool:
         """Take up what is proven; whether it is good enough."""

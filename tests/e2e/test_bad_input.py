@@ -97,3 +97,31 @@ def test_altered_model_file(zoo):
     path.write_bytes(data)
     line = refused("up", "soccer", "--zoo", zoo)
     assert "dribbleBall/duration" in line
+
+
+GOLDEN = ROOT / "tests" / "data" / "golden" / "soccer-approach.mcap"
+
+
+def test_output_that_cannot_be_written_is_told_in_one_line():
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            tailor("info", str(GOLDEN)),
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=ROOT,
+        )
+    assert (done.returncode, done.stderr) == (1, "tailor info: No space left on device\n")
+
+
+def test_a_reader_that_leaves_early_is_no_error_to_tell_of():
+    told = subprocess.Popen(
+        tailor("info", "--json", str(GOLDEN)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+    )
+    told.stdout.close()
+    assert told.stderr.read() == ""
+    assert told.wait(timeout=30) == 1

@@ -191,3 +191,13 @@ def test_help_teaches():
     ).stdout
     for word in ("DOMAIN", "--links", "MW-Loc", "ADDR", "Exit codes", "Figure 10"):
         assert word in told
+
+
+def test_a_graph_is_sound_whatever_characters_names_have(capsys, tmp_path):
+    domain, problem = tmp_path / "d.pddl", tmp_path / "p.pddl"
+    domain.write_text('(define (domain d) (:predicates (p ?x)) (:action a"b\\\\ :parameters (?x) :effect (p ?x)))')
+    problem.write_text('(define (problem "q) (:domain d) (:objects o"1) (:init) (:goal (p o"1)))')
+    code, dot, _ = plan(capsys, str(domain), str(problem), "--dot")
+    assert code == 0
+    for line in dot.splitlines():
+        assert line.replace("\\\\", "").replace('\\"', "").count('"') % 2 == 0, line

@@ -54,7 +54,12 @@ def test_keys_step_pause_and_end_a_replay(recording):
         ours, theirs = pty.openpty()
         options = ("--paused", "--topics", "odom")
         player = subprocess.Popen(
-            command(recording, endpoint, *options), stdin=theirs, stdout=subprocess.DEVNULL, cwd=ROOT
+            command(recording, endpoint, *options),
+            stdin=theirs,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            cwd=ROOT,
+            text=True,
         )
         wait_until(lambda: not termios.tcgetattr(theirs)[3] & termios.ICANON, 30.0, "single keys")
         time.sleep(0.3)
@@ -73,6 +78,7 @@ def test_keys_step_pause_and_end_a_replay(recording):
         assert odometry()[-1].sequence == paused_at < 20
         os.write(ours, b"q")
         assert player.wait(5.0) == 0
+        assert "footer" not in player.stderr.read(), "what was not played is not damaged"
         os.close(ours)
         os.close(theirs)
 

@@ -155,3 +155,22 @@ def test_dask_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
 def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> None:
     assert gather(tmp_path, "--jobs", "2") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
+
+
+RECORDING = Path(__file__).parents[1] / "data" / "golden" / "soccer-approach-dribble.mcap"
+
+
+def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_path: Path, capsys) -> None:
+    cut = ["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]
+    assert main(cut) == 0
+    counts = json.loads(capsys.readouterr().out)
+    assert counts["approachBall"] == 1
+    assert {path.name for path in tmp_path.iterdir()} == {action for action, count in counts.items() if count}
+    assert main(cut) == 2  # what is there is not overwritten
+    assert "holds episodes already" in capsys.readouterr().err
+
+
+def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:
+    assert main(["gather", "powercube", "--from", str(RECORDING), "--out", str(tmp_path / "x")]) == 2
+    assert "is recorded, expected those of powercube: reach" in capsys.readouterr().err
+    assert not (tmp_path / "x").exists()

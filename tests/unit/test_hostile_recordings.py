@@ -10,18 +10,23 @@ import pytest
 from mcap.writer import Writer
 
 from executive.composition import recompose
+from runtime.attachment import Origin, pack
 from runtime.mcap_scan import MAGIC
 from runtime.recording import open_recording
+from runtime.selection import Selection
 from schemas.codec import decode, encode
 from schemas.errors import UsageError
 from schemas.messages import Provenance
 from schemas.topics import TOPICS
+from tests.e2e.bus_system import bus_system
 from tests.unit.test_tape import chunk_bounds, write_tape
 from tools import recorded_run
 from tools.main import main
+from tools.playback import Passage
 from tools.recorded_run import RecordedRuns
 from tools.survey import survey
 
+NOTHING = Selection(("no/such/key",))
 GOLDEN = Path(__file__).parents[1] / "data" / "golden" / "soccer-approach.mcap"
 
 
@@ -143,3 +148,45 @@ def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):
     path.write_bytes(GOLDEN.read_bytes()[:10_000])
     assert main(["verify", str(path)]) == 2
     assert "no footer" in capsys.readouterr().err
+
+
+def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch):
+    """A recording of 0.2 MB can hold 2.5 GB of zeros."""
+    monkeypatch.setattr(recorded_run, "MOST_BYTES", 10_000)
+    with pytest.raises(UsageError, match="more than 10000 bytes of messages"):
+        RecordedRuns(GOLDEN)
+
+
+# --- replay --------------------------------------------------------------------------------------
+def test_what_a_sender_cannot_be_counts_as_unsigned(tmp_path):
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2", library="other")
+        for n, sender in enumerate(("zz", "ab", "g" * 32, "é" * 16, "ab" * 16)):
+            channel = writer.register_channel(f"x{n}", "cdr", 0, {"sender": sender})
+            writer.add_message(channel, 10, b"", 2**64 - 1)
+        writer.finish()
+    found = list(open_recording(path).messages())
+    assert [m.sender for m in found] == ["", "", "", "", "ab" * 16]
+    for message in found:
+        pack(Origin(message.sequence, message.publish_ns, message.sender or "00" * 16))
+
+
+def test_nothing_to_play_is_a_mistake_and_no_endless_loop(tmp_path):
+    path = foreign(tmp_path / "a.mcap")
+    for passage in (Passage(open_recording(path), Selection(), start_s=99.0), Passage(open_recording(path), NOTHING)):
+        with pytest.raises(UsageError, match="something to play"):
+            passage.places()
+
+
+def test_what_is_barred_is_barred_under_its_new_key_as_well(tmp_path):
+    recording = open_recording(foreign(tmp_path / "a.mcap", [(1, "x"), (2, "y")]))
+    passage = Passage(recording, Selection(), {"x": "agilo/cmd_vel"}, barred=Selection(exclude=("cmd_vel",)))
+    assert [m.key for m in passage.messages()] == ["y"]
+
+
+@pytest.mark.parametrize("key", ["", "/", "a/", "**", "agilo/*", "a#b", "x" * 70_000])
+def test_a_key_that_is_none_or_a_pattern_is_not_played(key):
+    with bus_system() as (session, _, _), pytest.raises(UsageError, match="expected one that the bus can carry"):
+        session.player(key, "std_msgs/msg/Bool")

@@ -141,3 +141,6 @@ def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) 
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert sorted(row["action"] for row in rows) == ["approachBall", "dribbleBall", "goToPose"]
     assert all(row["relative_pct"] < 25 for row in rows)
+    promised = {"robot", "action", "episodes", "mean_duration_s", "mae_s", "mae_ci95", "paper_mae_s"}
+    assert all(promised <= row.keys() for row in rows)  # null where the paper has none
+    assert [row["paper_mae_s"] for row in rows if row["action"] == "goToPose"] == [0.22]

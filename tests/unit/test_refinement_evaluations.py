@@ -81,6 +81,15 @@ def test_finished_episodes_survive_a_break_and_a_torn_line(tmp_path):
     assert sorted(Journal(tmp_path, task, variant, ["a"]).known) == [1, 3]
 
 
+@pytest.mark.parametrize("damage", [b'{"seed": 5}\n', b"[1, 2]\n", b"7\n", b'\xff\xfe"\n'])
+def test_a_damaged_line_costs_its_own_episode_and_no_other(tmp_path, damage):
+    task, variant = Task("soccer", "approach-dribble"), Variant("h1")
+    Journal(tmp_path, task, variant, ["a"]).note(DONE)
+    path = next(tmp_path.iterdir())
+    path.write_bytes(damage + path.read_bytes())
+    assert Journal(tmp_path, task, variant, ["a"]).known == {1: DONE}
+
+
 def test_other_models_or_settings_are_other_episodes(tmp_path):
     task, variant = Task("soccer", "approach-dribble"), Variant("h1")
     Journal(tmp_path, task, variant, ["a"]).note(DONE)

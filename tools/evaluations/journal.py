@@ -24,7 +24,7 @@ class Journal:
         folder.mkdir(parents=True, exist_ok=True)
         self._path = folder / name
         if self._path.exists():
-            text = self._path.read_text()
+            text = self._path.read_text(errors="replace")
             if text and not text.endswith("\n"):
                 self._path.write_text(text + "\n")  # a line was cut off; the next one shall not hang on to it
             for line in text.splitlines():
@@ -40,12 +40,11 @@ class Journal:
 
 
 def _read(line: str) -> Outcome | None:
-    """An outcome from its line; None for a line that was cut off."""
+    """An outcome from its line; None for a line that was cut off or damaged: its episode is run again."""
     try:
-        table = json.loads(line)
-    except json.JSONDecodeError:
+        return Outcome(**{key: _frozen(value) for key, value in json.loads(line).items()})
+    except (ValueError, TypeError, AttributeError):
         return None
-    return Outcome(**{key: _frozen(value) for key, value in table.items()})
 
 
 def _frozen(value: Any) -> Any:

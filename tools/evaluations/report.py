@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import html
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -54,7 +55,7 @@ def tell(report: Report, as_json: bool, folder: Path | None) -> None:
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
         body = [table(report.title, *_tabled(report.rows))]
-        body += [f"<p>{remark}</p>" for remark in report.remarks]
+        body += [f"<p>{html.escape(remark)}</p>" for remark in report.remarks]
         body += [image(path, description) for description, path in report.plots.items()]
         (folder / f"{report.name}.html").write_text(page(report.title, body))
         (folder / f"{report.name}.json").write_text(text + "\n")  # last: where it is, the page is whole
@@ -66,6 +67,8 @@ def shown(value: object) -> str:
         if value != 0 and abs(value) < 0.001:
             return f"{value:.1e}"
         return f"{value:.3f}" if abs(value) < 0.1 else f"{value:.2f}"
+    if value is None:
+        return ""
     if isinstance(value, tuple | list):
         return " .. ".join(shown(part) for part in value)
     return str(value)

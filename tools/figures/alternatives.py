@@ -15,6 +15,7 @@ from tools.viewer.explanation import Explanation, FreeParameter
 
 SIZE_IN = 2.9  # of one plot
 SUM = "#2f8f6b"
+LEGEND = "Seconds predicted. Full line: chosen. Dashed: greedy. Dotted: predicted to fail, or beyond the limit of risk."
 
 
 def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Path) -> None:
@@ -35,6 +36,7 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
             _draw(axis, of, seconds, colour)
             head = f"{title}\n{of.variable.quantity} at {of.variable.label}\n" if column == 0 else "\n\n"
             axis.set_title(f"{head}{name}", fontsize="small")
+    figure.supxlabel(LEGEND, fontsize="small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=120)
 
@@ -56,6 +58,9 @@ def _draw(axis: Any, of: FreeParameter, seconds: Any, colour: str) -> None:
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
     predicted = np.interp(of.chosen, values, seconds)
     axis.plot([of.chosen], [predicted], "o", color="black", markersize=4)
-    axis.set_xlabel(f"chosen: {predicted:.1f} s", fontsize="small")
+    unit = "" if of.variable.periodic else f"{of.variable.quantity} [{of.variable.unit}], "
+    axis.set_xlabel(f"{unit}chosen: {predicted:.1f} s", fontsize="small")
+    if not of.variable.periodic:
+        axis.set_ylabel("time [s]", fontsize="small")
     axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +15,14 @@ from models.card import UNITS, Card
 from models.episodes import UNOBSERVED, Episode, read_data_set
 from models.examples import Examples, success_examples
 from models.runtime import OnnxDuration, OnnxSuccess
-from tools.figures import learned_shapes
+from tools.figures import learned_regions, learned_shapes
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.ticker import MaxNLocator
 
 Model = OnnxDuration | OnnxSuccess
+AREA = 300.0  # of the largest marker, in square points
 
 
 def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
@@ -36,24 +38,30 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
     episodes = read_data_set(folder).episodes if (folder / "manifest.json").exists() else ()
     pictures: dict[str, Callable[[Any], None]] = {}
     if isinstance(model, OnnxDuration):
-        pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model)}
-        pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
+        region = learned_regions.region_of(card)
+        if region is not None:
+            pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model, region)}
+        if "learning_curve" in card["test"]:
+            pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
         amount = AMOUNTS[card["kind"]]
         told = [episode for episode in episodes if episode.finished and amount.told(episode)]
         if told:
             rows = amount.examples(told, 1)
             pictures |= {"predicted-observed": lambda figure: _predicted_observed(figure, model, rows)}
-            pictures |= {"error-by-region": lambda figure: learned_shapes.error_by_region(figure, model, rows)}
+            if region is not None:
+                pictures |= {"error-by-region": lambda f: learned_regions.error_by_region(f, model, rows, region)}
     else:
         pictures |= {"figure8": lambda figure: learned_shapes.figure8(figure, model)}
         if episodes:
             pictures |= {"reliability": lambda figure: _reliability(figure, model, episodes)}
     out.mkdir(parents=True, exist_ok=True)
-    return [_save(out / f"{card['action']}-{card['kind']}-{name}.png", fill) for name, fill in pictures.items()]
+    name = "-".join(card[key] for key in ("robot", "action", "kind"))
+    return [_save(out / f"{name}-{each}.png", name.replace("-", "/"), fill) for each, fill in pictures.items()]
 
 
-def _save(path: Path, fill: Callable[[Any], None]) -> Path:
+def _save(path: Path, title: str, fill: Callable[[Any], None]) -> Path:
     figure = plt.figure(figsize=(9, 4.5), layout="constrained")
+    figure.suptitle(title, fontsize="medium", fontweight="bold")
     fill(figure)
     figure.savefig(path, dpi=110)
     plt.close(figure)
@@ -68,35 +76,50 @@ def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> Non
     axes.plot([0, limit], [0, limit], color="black", lw=1)
     unit = UNITS[model.card["kind"]]
     axes.set(xlabel=f"predicted [{unit}]", ylabel=f"observed [{unit}]", xlim=(0, limit), ylim=(0, limit))
-    axes.set_title("first ticks of the episodes it was fitted to")
+    axes.set_title("first ticks of the episodes it was fitted to", fontsize="medium")
     right.scatter(spread, np.abs(predicted - rows.targets), s=5, alpha=0.4)
     top = 1.05 * float(np.quantile(spread, 0.995))
     right.plot([0, top], [0, top], color="black", lw=1)
     right.set(xlabel=f"spread [{unit}]", ylabel=f"|error| [{unit}]", xlim=(0, top), ylim=(0, 4 * top))
-    right.set_title("is it sure when right?")
+    right.set_title("is it sure when right?", fontsize="medium")
+    right.xaxis.set_major_locator(MaxNLocator(5))
 
 
 def _learning_curve(figure: Any, card: Card) -> None:
     axes, test = figure.subplots(), card["test"]
     count, error = zip(*test["learning_curve"], strict=True)
-    axes.plot(count, error, marker="o")
     low, high = test["mae_ci95"]
-    axes.errorbar([count[-1]], [error[-1]], [[error[-1] - low], [high - error[-1]]], capsize=4, color="tab:blue")
+    axes.axhspan(low, high, alpha=0.15, label="95 % interval of the last")
+    axes.plot(count, error, marker="o", label="model")
+    flat = flat_from(test["learning_curve"], high)
+    axes.axvline(flat, color="black", lw=1, ls=":", label=f"flat from {flat}" if flat < count[-1] else "not flat yet")
     axes.set(xlabel="training episodes", ylabel=f"MAE on test episodes [{UNITS[card['kind']]}]", ylim=(0, None))
-    axes.set_title("learning curve, 95 % interval at its end")
+    axes.set_title("learning curve", fontsize="medium")
+    axes.legend()
+
+
+def flat_from(curve: Sequence[Sequence[float]], high: float) -> int:
+    """Training episodes from which on no error leaves the last one's interval, whose upper end is `high`."""
+    flat = curve[-1][0]
+    for count, error in reversed(curve):
+        if error > high:
+            break
+        flat = count
+    return int(flat)
 
 
 def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
     rows = success_examples([e for e in episodes if e.failure != UNOBSERVED], 1)
-    said, seen, count = zip(*model.card["test"]["reliability"], strict=True)
+    said, seen, count = zip(*model.card["test"].get("reliability", [(0.0, 0.0, 1)]), strict=True)
     probability = model.probability(rows.arguments)
     axes, right = figure.subplots(1, 2)
     axes.plot([0, 1], [0, 1], color="black", lw=1)
-    axes.scatter(said, seen, s=np.array(count), label="test episodes (area: how many)")
+    axes.scatter(said, seen, s=AREA * np.array(count) / max(count), zorder=3)
+    axes.scatter([], [], s=AREA / 10, color="tab:blue", label="test episodes (area: how many)")
     fitted = scores.reliability(probability, rows.targets > 0.5)
     axes.plot([row[0] for row in fitted], [row[1] for row in fitted], color="tab:orange", label="episodes fitted to")
     axes.set(xlabel="predicted probability of success", ylabel="share that succeeded")
-    axes.legend()
+    axes.legend(loc="lower right", fontsize="small")
     right.hist(
         [probability[rows.targets < 0.5], probability[rows.targets > 0.5]], bins=20, label=["failed", "succeeded"]
     )

@@ -11,7 +11,8 @@ from tools.figures.track import Track
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
-img { max-width: 100% } table { border-collapse: collapse; margin: 1rem 0 }
+figure { margin: 1rem 0 } figcaption { color: #555 } img { max-width: 100% }
+table { border-collapse: collapse; margin: 1rem 0 }
 td, th { padding: .25rem .9rem; border-bottom: 1px solid #ddd; text-align: right }
 td:first-child, th:first-child { text-align: left } caption { text-align: left; font-weight: 600; padding: .4rem 0 }
 """
@@ -25,9 +26,9 @@ def table(caption: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> s
 
 
 def image(path: Path, description: str) -> str:
-    """An image that travels inside the page."""
-    data = base64.b64encode(path.read_bytes()).decode()
-    return f'<img alt="{html.escape(description)}" src="data:image/png;base64,{data}">'
+    """An image that travels inside the page, with what it shows beneath it."""
+    data, said = base64.b64encode(path.read_bytes()).decode(), html.escape(description)
+    return f'<figure><img alt="{said}" src="data:image/png;base64,{data}"><figcaption>{said}</figcaption></figure>'
 
 
 def page(title: str, body: Sequence[str]) -> str:

@@ -9,7 +9,9 @@ import numpy as np
 
 from executive.library import Models
 from executive.refinement.sequence import ActionSequence, InstantiatedAction
+from models.card import UNITS
 from models.features import SPACES, Quantity
+from models.leaf_rules import applied
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +22,7 @@ class Situation:
     features: tuple[Quantity, ...]
     chosen: tuple[float, ...]
     greedy: tuple[float, ...]
+    rule: str = ""  # that applied to the chosen values; empty where the model's trees cannot be read
 
 
 def situations_of(
@@ -35,12 +38,15 @@ def situations_of(
     """
     found = []
     for action in actions:
-        card = getattr(models.durations[action.action.duration_model], "card", {})
+        model = models.durations[action.action.duration_model]
+        card, bounds = getattr(model, "card", {}), getattr(model, "bounds", None)
         space = SPACES.get(card.get("features", ""))
         if space is not None:
             both = np.array([_parameters(action, sequence) for sequence in (chosen, greedy)])
-            seen = space(action.action.arguments(both)).astype(float)
-            found.append(Situation(action.action.name, space.features, tuple(seen[0]), tuple(seen[1])))
+            seen = space(action.action.arguments(both))
+            rule = "" if bounds is None else applied(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
+            chose, alone = (tuple(row.astype(float)) for row in seen)
+            found.append(Situation(action.action.name, space.features, chose, alone, rule))
     return tuple(found)
 
 

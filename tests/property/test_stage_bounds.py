@@ -1,0 +1,59 @@
+"""Bounds of actions with the models that ship: no values in a pair of boxes cost less, however wide or narrow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from executive.library import Models
+from executive.refinement.boxes import NOWHERE, Boxes, box_of
+from executive.refinement.chain import blocks_of, links_of
+from executive.refinement.settings import RefinementSettings
+from executive.refinement.stage_bounds import StageBound, stage_bound
+from models.runtime import load_robot
+from tools.benchmarks.refine_cases import Case, cases
+
+TASKS = 2
+
+
+@pytest.fixture(scope="module")
+def models() -> Models:
+    return Models(*load_robot("agilo"))
+
+
+@pytest.fixture(scope="module")
+def tasks(models) -> list[Case]:
+    drawn = cases(models, TASKS)
+    return [task for name in ("2 free", "4 free", "5 free, detour") for task in drawn[name]]
+
+
+def drawn_boxes(ranges, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of a box anywhere in the ranges, each side from a hundred-thousandth to all of its range, or a point."""
+    centre = ranges.draw(1, rng)[0]
+    half = ranges.width * 10.0 ** rng.uniform(-5, 0, ranges.count) * rng.choice([0.0, 0.5, 0.5], ranges.count)
+    return np.clip(centre - half, ranges.lower, ranges.upper), np.clip(centre + half, ranges.lower, ranges.upper)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 3 * TASKS - 1), st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.5, 1.0, 2.0]), st.booleans())
+def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, task, seed, k_std, exact):
+    rng = np.random.default_rng(seed)
+    chosen = replace(RefinementSettings(), k_std=k_std, **({"arrival_spread": ()} if exact else {}))
+    cost = tasks[task].objective(models, chosen)
+    blocks = blocks_of(cost.stages)
+    assert blocks is not None
+    lower, upper = drawn_boxes(cost.ranges, rng)
+    share = rng.choice([0.0, 1.0, 0.5, np.nan], (400, cost.ranges.count))
+    inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
+    whole, before = NOWHERE, NOWHERE
+    for stage, link, block in zip(cost.stages, links_of(cost.stages, blocks), blocks, strict=True):
+        everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
+        bound = stage_bound(stage, link, chosen)
+        assert isinstance(bound, StageBound)
+        least = bound.within(whole, everywhere).least(before, own).item()
+        assert least <= stage.cost(inside[:, stage.columns]).min()
+        whole, before = everywhere, own
