@@ -24,10 +24,10 @@ def least_of_bag(least: Floats, most: Floats, k_std: float) -> Floats:
         mean, spread = _moments(said)
         said = np.maximum(least, np.minimum(most, mean - spread / np.float32(k_std)))
     mean, spread = _moments(said)
-    scores = (said - mean) / np.maximum(spread, LEAST_SPREAD)
+    scores = np.asarray((said - mean) / np.maximum(spread, LEAST_SPREAD), np.float32)
     scores -= _mean(scores)  # where all agree but for rounding, they are not yet
     scores /= np.maximum(np.sqrt(_mean(scores * scores)), 1)
-    weights = 1 + np.float32(k_std) * scores
+    weights: Floats = 1 + np.float32(k_std) * scores
     return _mean(weights * np.where(weights >= 0, least, most))
 
 

@@ -39,8 +39,17 @@ class TreeBoxes:
     def part(self, leaves: NDArray[np.bool_]) -> TreeBoxes:
         """The same trees with some of their leaves only, (l,): at least one of each."""
         counts = np.add.reduceat(leaves, self.first, dtype=np.int64)
-        ends = (side[leaves] for side in (self.lower, self.upper, self.slopes, self.intercept, self.low, self.high))
-        return TreeBoxes(np.cumsum(counts) - counts, *ends, None if self.spread is None else self.spread[leaves])
+        return replace(
+            self,
+            first=np.cumsum(counts) - counts,
+            lower=self.lower[leaves],
+            upper=self.upper[leaves],
+            slopes=self.slopes[leaves],
+            intercept=self.intercept[leaves],
+            low=self.low[leaves],
+            high=self.high[leaves],
+            spread=None if self.spread is None else self.spread[leaves],
+        )
 
     def inside(self, lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> TreeBoxes:
         """The same for features between these, (f,): sides beyond them become infinite, for they decide nothing."""

@@ -32,7 +32,7 @@ class RefinementSettings:
     k_std: float = 1.0  # durations count as mean + k standard deviations: guards against the optimiser's curse
     p_fail_max: float = 0.05  # above it an action after a detour is INVALID (Algorithm 4), wherever it may arrive
     p_fail_assert: float = 0.06  # above it an action is predicted to fail and gets a detour; a little wider, so that a
-    # robot that has arrived beside its subgoal is not sent around again; on training seeds 0.2 bumps more, gains nothing
+    # robot that has arrived beside its subgoal is not sent around again; 0.2 bumped more on training seeds
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
     risk_cost_s: float = 6.0  # seconds that a failure costs; on training seeds 3 bumps more balls and 10 gains less
     gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,9 +44,15 @@ class BumpRisk:
         radius = np.maximum(self.ways.radius_m, detours[:, VG] / self.ways.bend_radps)
         radius = np.maximum(self.ways.tightest_m, np.minimum(radius, self.ways.inside * (x**2 + y**2) / (2 * y)))
         distance = np.maximum(radius, np.hypot(x, radius - y))
-        heading = np.arctan2(radius - y, -x) - np.arcsin(radius / distance)
-        straight = POINTS * np.sqrt(distance**2 - radius**2)
+        straight = np.sqrt(distance**2 - radius**2)
+        heading = _angles((radius - y) * straight + x * radius, radius * (radius - y) - x * straight)
+        straight = POINTS * straight
         turned = heading + POINTS * (-heading % (2 * np.pi))
         ahead = np.concatenate([x + straight * np.cos(heading), radius * np.sin(turned)]) - self.ways.run_in_m
         left = side * np.concatenate([y + straight * np.sin(heading), radius * (1 - np.cos(turned))])
         return np.stack([detours[:, XG] + c * ahead - s * left, detours[:, YG] + s * ahead + c * left], axis=2)
+
+
+def _angles(sines: Array, cosines: Array) -> Array:
+    """Angles (rad) of directions of any length; numpy's own would differ in a last bit from CPU to CPU."""
+    return np.array([math.atan2(sine, cosine) for sine, cosine in zip(sines, cosines, strict=True)])
