@@ -78,6 +78,11 @@ class Session:
         self.sender = secrets.token_hex(SENDER_BYTES)
         self._zenoh = opened
 
+    @property
+    def connected(self) -> bool:
+        """Whether a client has its router; it looks for a lost one by itself until it is back."""
+        return bool(self._zenoh.info.routers_zid())
+
     def publisher(self, name: str, robot: str) -> Publisher:
         """An outlet for a topic of schemas.topics."""
         topic, key = TOPICS[name], key_of(name, robot)

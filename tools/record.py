@@ -23,7 +23,7 @@ from runtime.intake import Intake
 from runtime.questions import Questions
 from runtime.recorder import Health, Limits, Recorder
 from runtime.selection import selection
-from runtime.session import open_client
+from runtime.session import Session, open_client
 from runtime.snapshot import Ring
 from runtime.snapshot_recorder import SnapshotRecorder
 from runtime.stopping import Stop, stop_on_signals
@@ -32,6 +32,8 @@ from tools.deployment import configure_bus, deployment
 
 TURN_S = 0.02
 MOST = 1e9  # MB or seconds: no disk and no run is so large
+GONE = "the bus is gone: nothing is recorded until it is back"
+BACK = "the bus is back: recording goes on"
 SNAPSHOT_KEY = "recorder/snapshot"
 
 
@@ -63,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         recorder = _recorder(arguments, intake)
         questions = session.questions(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
         tap = session.tap("**", intake.put)
-        _record(recorder, questions, stop_on_signals(), quiet=arguments.quiet)
+        _record(recorder, questions, stop_on_signals(), session, quiet=arguments.quiet)
         tap.undeclare()
         health = recorder.close()
     if not arguments.quiet or health.drops or health.trouble:
@@ -87,11 +89,17 @@ def _recorder(arguments: argparse.Namespace, intake: Intake) -> Recorder | Snaps
         raise UsageError(f"{path}: {error.strerror}, expected a place to write to") from error
 
 
-def _record(recorder: Recorder | SnapshotRecorder, questions: Questions | None, stop: Stop, quiet: bool) -> None:
+def _record(
+    recorder: Recorder | SnapshotRecorder, questions: Questions | None, stop: Stop, session: Session, quiet: bool
+) -> None:
     shown = Live(console=Console(stderr=True), refresh_per_second=4, transient=True)
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
+        connected = True
         while not stop.requested:
             recorder.turn(time.monotonic_ns())
+            if session.connected != connected:
+                connected = not connected
+                print(BACK if connected else GONE, file=sys.stderr, flush=True)
             if questions is not None and isinstance(recorder, SnapshotRecorder):
                 _answer(recorder, questions)
             if live is not None:

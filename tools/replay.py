@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Play until the end; 0."""
+    """Play until the end; 0, or 1 when the bus went away."""
     if not SLOWEST <= arguments.rate <= FASTEST:
         raise UsageError(f"--rate is {arguments.rate:g}, expected {SLOWEST:g} to {FASTEST:g}")
     for name, most in (("start", LONGEST_S), ("duration", LONGEST_S), ("wait", LONGEST_S), ("clock", FASTEST_CLOCK_HZ)):
@@ -83,10 +83,13 @@ def run(arguments: argparse.Namespace) -> int:
         outlets = Outlets(session, passage.places())
         damage = recording.account.text()  # now that all of it was read once; what follows may end early
         played = _play(arguments, session, passage, outlets, stop)
+        gone = not session.connected
     _tell(played, arguments.json)
     if damage:
         _say(f"{recording.path}: {damage}")
-    return 0
+    if gone:
+        _say("the bus is gone: the replay ended early")
+    return int(gone)
 
 
 def _play(arguments: argparse.Namespace, session: Session, passage: Passage, outlets: Outlets, stop: Stop) -> Played:
@@ -97,7 +100,7 @@ def _play(arguments: argparse.Namespace, session: Session, passage: Passage, out
     with Keyboard() as keyboard:
 
         def watch(pace: Pace) -> bool:
-            return not stop.requested and _steer(pace, keyboard.pressed(), clock.now_ns())
+            return session.connected and not stop.requested and _steer(pace, keyboard.pressed(), clock.now_ns())
 
         def tick(recorded_ns: int) -> None:
             clock_outlet.publish(Clock(min(recorded_ns, LAST_CLOCK_NS)))

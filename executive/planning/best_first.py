@@ -17,7 +17,7 @@ from executive.planning.settings import FlawOrder, Settings
 
 FIRST_TURN = 1000  # plans that a flaw order has generated when the next one's turn comes; doubles with every round
 
-MAX_ENTRIES = 40_000_000  # of all waiting plans' orderings, 10 to 20 bytes each: half a gigabyte, seldom more
+MAX_ENTRIES = 40_000_000  # of the orderings of a queue's plans, 10 to 20 bytes each: half a gigabyte, seldom more
 
 Ranked = tuple[Any, ...]  # a rank with its plan as one more item: one flat tuple is compared faster than two nested
 
@@ -45,7 +45,6 @@ class BestFirst(Generic[P]):
         self._steps = settings.step_limit
         self._too_long = False  # whether a plan was left out for its length: then running dry proves nothing
         self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
-        self._entries = 0  # of the orderings of all plans that wait
         self.generated = 0
         self.visited = 0
 
@@ -58,7 +57,6 @@ class BestFirst(Generic[P]):
             return
         limits = [math.inf if order.limit is None else order.limit for order in self._orders]
         queues = [_Queue(n, limit, [(*rank, start)]) for n, limit in enumerate(limits)]
-        self._entries = len(queues) * self._space.entries(start)
         turn = FIRST_TURN
         while queues:
             for queue in list(queues):
@@ -82,11 +80,10 @@ class BestFirst(Generic[P]):
             if self.generated >= self._limit:
                 yield self._limited(f"{self._limit} plans generated")
                 return
-            if self._entries > MAX_ENTRIES:
+            plan: P = heapq.heappop(plans)[-1]
+            if len(plans) * space.entries(plan) > MAX_ENTRIES:  # the others are about as large
                 yield self._limited("the plans that wait take too much memory")
                 return
-            plan: P = heapq.heappop(plans)[-1]
-            self._entries -= space.entries(plan)
             if space.length(plan) > self._steps:
                 self._too_long = True
                 continue
@@ -104,7 +101,6 @@ class BestFirst(Generic[P]):
             ranked = rank(child, number)
             if ranked is not None:
                 heapq.heappush(plans, (*ranked, child))
-                self._entries += self._space.entries(child)
                 number += 1
         pushed = number - self.generated
         self.generated = number

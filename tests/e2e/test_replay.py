@@ -11,10 +11,10 @@ from dataclasses import replace
 
 import pytest
 
-from runtime.session import open_client
+from runtime.session import open_client, open_router
 from schemas.messages import ArmRequest, DriverState, ExecStatus, Odometry, VelocityCommand
 from schemas.own import example
-from tests.e2e.bus_system import ROOT, bus_system, wait_until
+from tests.e2e.bus_system import ROOT, bus_system, free_endpoint, wait_until
 from tests.unit.test_comparison import Script
 
 DRIVER, EXECUTIVE = "cd" * 16, "ab" * 16
@@ -137,3 +137,19 @@ def test_the_clock_of_a_replay_tells_recorded_time(recording):
         assert 0.99 < times[0] < 1.1
         assert 1.8 < times[-1] < 2.0
         assert len(times) > 15
+
+
+def test_a_replay_ends_when_the_bus_goes_away(recording):
+    endpoint = free_endpoint()
+    with open_router(endpoint) as session:
+        odometry = heard(session, ["odom"])
+        player = subprocess.Popen(
+            command(recording, endpoint, "--loop"),
+            stdin=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=ROOT,
+        )
+        wait_until(odometry, 30.0, "the first message")
+    said = player.communicate(timeout=20)[1]
+    assert (player.returncode, said.splitlines()[-1]) == (1, "the bus is gone: the replay ended early")
