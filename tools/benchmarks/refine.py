@@ -6,9 +6,11 @@ all call the same objective: sequences of AGILO with its learned models. Then ho
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 
 from executive.library import Models
 from models.runtime import load_robot
@@ -57,7 +59,10 @@ def _at(found: Found, moment_ms: float) -> float:
 
 def run(console: Console, quick: bool) -> None:
     """Print the table."""
-    table = Table("case", "solver", title="refinement: mean gap to the best known value after CPU time")
+    table = Table(
+        *(Column(name, no_wrap=True) for name in ("case", "solver")),
+        title="refinement: mean gap to the best known value after CPU time",
+    )
     for moment in MOMENTS_MS:
         table.add_column(f"{moment} ms", justify="right")
     table.add_column("worst at 60 ms", justify="right")
@@ -65,5 +70,7 @@ def run(console: Console, quick: bool) -> None:
         gaps = [f"{row[f'gap_pct_at_{moment}_ms']:.2f} %" for moment in MOMENTS_MS]
         table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
     console.print(table)
+    if importlib.util.find_spec("cma") is None:
+        console.print("CMA-ES is left out: the package cma is not installed (pip install cma)")
     models = Models(*load_robot("agilo"))
     certificates.show(console, models, cases(models, 3 if quick else 9))
