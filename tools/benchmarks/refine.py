@@ -71,6 +71,6 @@ def run(console: Console, quick: bool) -> None:
         table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
     console.print(table)
     if importlib.util.find_spec("cma") is None:
-        console.print("CMA-ES is left out: the package cma is not installed (it comes with the extra "test")")
+        console.print("CMA-ES is left out: the package cma is not installed (it comes with the extra `test`)")
     models = Models(*load_robot("agilo"))
     certificates.show(console, models, cases(models, 3 if quick else 9))
