@@ -25,6 +25,12 @@ def checked(value: int, least: int, flag: str) -> int:
     return value
 
 
+def check_within(value: float, most: float, flag: str) -> None:
+    """Raises UsageError naming the flag where a value is not from 0 to `most`, as NaN is not."""
+    if not 0 <= value <= most:
+        raise UsageError(f"{flag} is {value:g}, expected 0 to {most:g}")
+
+
 def processes(text: str) -> int:
     """A `type` for --jobs: from 1 up, or -1 for every core, as joblib counts them; raises UsageError."""
     value = _whole(text, "--jobs", "a number of processes")

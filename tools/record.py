@@ -28,6 +28,7 @@ from runtime.snapshot import Ring
 from runtime.snapshot_recorder import SnapshotRecorder
 from runtime.stopping import Stop, stop_on_signals
 from schemas.errors import UsageError
+from tools.asked import check_within
 from tools.deployment import configure_bus, deployment
 
 TURN_S = 0.02
@@ -54,8 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Record until told to stop; 0, or 1 when something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
-        if not 0 <= getattr(arguments, name) <= MOST:
-            raise UsageError(f"--{name.replace('_', '-')} is {getattr(arguments, name):g}, expected 0 to {MOST:g}")
+        check_within(getattr(arguments, name), MOST, f"--{name.replace('_', '-')}")
     intake = Intake()
     with open_client(deployment(arguments).bus.endpoint) as session:
         if arguments.write:

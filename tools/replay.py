@@ -26,6 +26,7 @@ from schemas import codec
 from schemas.errors import UsageError
 from schemas.messages import Clock
 from schemas.topics import TOPICS
+from tools.asked import check_within
 from tools.deployment import configure_bus, deployment
 from tools.keyboard import Keyboard
 from tools.playback import Outlets, Passage, remapping
@@ -64,8 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not SLOWEST <= arguments.rate <= FASTEST:
         raise UsageError(f"--rate is {arguments.rate:g}, expected {SLOWEST:g} to {FASTEST:g}")
     for name, most in (("start", LONGEST_S), ("duration", LONGEST_S), ("wait", LONGEST_S), ("clock", FASTEST_CLOCK_HZ)):
-        if not 0 <= getattr(arguments, name) <= most:
-            raise UsageError(f"--{name} is {getattr(arguments, name):g}, expected 0 to {most:g}")
+        check_within(getattr(arguments, name), most, f"--{name}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
     stop = stop_on_signals()

@@ -90,7 +90,7 @@ class DribbleBall:
         return self._push(memory, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
-        paths = DribblePath(self.v_max_mps, self.bend_radps, self.grip.in_rail_m)
+        paths = DribblePath(self.v_max_mps, self.bend_radps, self.grip.in_rail_m, self.braking_mps2)
         return Progress(paths.quickest(pose, v, goal), 0.0)
 
     def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:

@@ -21,9 +21,9 @@ class DribblePath:
     v_max_mps: float
     bend_radps: float  # how fast bends are driven
     ahead_m: float  # axle to ball
+    braking_mps2: float  # on the run-in
     radii_m: tuple[float, ...] = (0.48, 0.65)  # of bends: the tighter, the slower
     run_in_m: float = 0.12  # the ball is to lie in the rail before the first bend
-    braking_mps2: float = 0.35  # on the run-in
     run_out_m: float = 0.15
     slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3, 0.6, -0.6)  # a path may end so far off the goal's heading
     asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it

@@ -9,6 +9,8 @@ from executive.actions.dubins import DubinsPath
 from executive.belief.angles import difference
 from executive.belief.planar_ekf import Pose
 
+BEND_RESERVE_M = 0.15  # braking ends so far before a bend
+
 
 @dataclass(frozen=True, slots=True)
 class Progress:
@@ -64,7 +66,6 @@ class Pace:
     v_bend: float
     straight_braking: float
     bend_braking: float
-    reserve_m: float = 0.15  # braking ends so far before a bend
 
 
 def speed_limit(progress: Progress, v_end: float, pace: Pace) -> float:
@@ -81,6 +82,6 @@ def speed_limit(progress: Progress, v_end: float, pace: Pace) -> float:
         begin += length
     limit = min(pace.v_max, math.sqrt(energy_end))
     if to_bend is not None:
-        room = max(0.0, to_bend - pace.reserve_m)
+        room = max(0.0, to_bend - BEND_RESERVE_M)
         limit = min(limit, math.sqrt(pace.v_bend**2 + 2.0 * room * pace.straight_braking))
     return limit

@@ -14,7 +14,7 @@ from simnodes.agilo.body import AgiloBody
 from tools.lockstep import new_body, run_action, sample_arguments
 
 GRIP = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
-PATHS = DribblePath(0.75, 0.6, robot.IN_RAIL_M)
+PATHS = DribblePath(0.75, 0.6, robot.IN_RAIL_M, braking_mps2=0.35)
 SOCCER = domains.load("soccer")
 
 
