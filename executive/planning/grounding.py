@@ -29,7 +29,7 @@ from executive.planning.ground_formula import (
 from executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
 from executive.planning.problem import Problem
 
-MAX_ACTIONS = 20_000  # of a ground task; the competition problems at hand have 756 at most
+MAX_ACTIONS = 10_000  # of a ground task; the competition problems at hand have 756 at most
 MAX_WAYS = 64  # to escape the additions of the same action: they double with each that looks at two moments
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
 

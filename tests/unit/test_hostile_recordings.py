@@ -2,7 +2,6 @@
 
 import json
 import struct
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from schemas.codec import decode, encode
 from schemas.errors import UsageError
 from schemas.messages import Provenance
 from schemas.topics import TOPICS
+from tests.cpu_time import least_cpu_s
 from tests.e2e.bus_system import bus_system
 from tests.unit.test_tape import chunk_bounds, write_tape
 from tools import recorded_run
@@ -66,9 +66,9 @@ def test_info_prints_topics_as_they_are_and_obeys_none(tmp_path, capsys):
 
 def test_info_of_thousands_of_topics_ends_soon(tmp_path, capsys):
     path = foreign(tmp_path / "a.mcap", [(k, f"t{k}") for k in range(5000)])
-    began = time.process_time()
-    assert main(["info", str(path)]) == 0
-    assert time.process_time() - began < 5.0
+    codes = []
+    assert least_cpu_s(lambda: codes.append(main(["info", str(path)])), 5.0) < 5.0
+    assert set(codes) == {0}
     assert "and 4500 topics more" in capsys.readouterr().out
 
 
@@ -101,9 +101,8 @@ def test_a_file_with_a_hole_of_200_mb_is_read_at_once(tmp_path, opcode):
     with path.open("wb") as file:
         file.write(MAGIC + struct.pack("<BQ", opcode, 50_000_000))
         file.truncate(200_000_000)
-    began = time.process_time()
     assert list(open_recording(path).messages()) == []
-    assert time.process_time() - began < 2.0
+    assert least_cpu_s(lambda: list(open_recording(path).messages()), 2.0) < 2.0
 
 
 def test_recover_says_by_its_exit_code_that_nothing_was_left(tmp_path, capsys):
