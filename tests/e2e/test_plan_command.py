@@ -145,7 +145,7 @@ def test_pddl_outside_the_language_is_told_with_its_place(capsys, tmp_path):
         ([DOMAIN, PROBLEM, "-w", "inf"], "expected a finite weight"),
         ([DOMAIN, PROBLEM, "-S", "-1"], "expected a seed of at least 0"),
         ([DOMAIN, PROBLEM, "-t", "1e-9"], "expected a tolerance in [1e-6, 1000] s"),
-        ([DOMAIN, "/dev/zero"], "/dev/zero: more than the 4000000 bytes"),
+        ([DOMAIN, "/dev/zero"], "/dev/zero: more than the 1000000 bytes"),
         ([DOMAIN, PROBLEM, "--planner", "no-such-planner"], "planner command 'no-such-planner': cannot be started"),
     ],
 )
