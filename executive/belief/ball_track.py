@@ -7,12 +7,13 @@ A ball that is not seen rolls on and its uncertainty grows.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 VELOCITY_MEMORY = 0.8  # weight of the old velocity at a percept: steps of 80 ms, so about 0.4 s
 GROWTH_M2_PER_S = 4e-4  # a resting ball out of sight: 2 cm after 1 s
 CARRIED_GROWTH_M2_PER_S = 1e-3  # a ball in the grip may slide in it
 MOVING_GROWTH_M2_PER_S = 9e-3  # at 1 m/s; proportional to its speed
+MOVED_PERCEPTS = 2  # so many far off in a row, and somebody moved the ball; a single one is an outlier
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class BallTrack:
     vy: float
     variance: float  # m², of either axis
     seen_ns: int  # when it was last seen
+    doubted: int = 0  # percepts in a row that were far off
 
 
 def move(track: BallTrack, v: float, turn: float, phi: float, duration_s: float, rolling_mps2: float) -> BallTrack:
@@ -53,6 +55,7 @@ def move(track: BallTrack, v: float, turn: float, phi: float, duration_s: float,
         track.vy * kept,
         track.variance + growth,
         track.seen_ns,
+        track.doubted,
     )
 
 
@@ -67,12 +70,18 @@ def carry(track: BallTrack, v: float, omega: float, phi: float, duration_s: floa
         s * forward + c * sideways,
         track.variance + CARRIED_GROWTH_M2_PER_S * duration_s,
         track.seen_ns,
+        track.doubted,
     )
 
 
 def see(track: BallTrack | None, ahead: float, left: float, variance: float, phi: float, now_ns: int) -> BallTrack:
-    """Fuse a percept (m, robot's frame, m² of either axis); one far off what was believed starts a new track."""
-    if track is None or _surprising(track, ahead, left, variance):
+    """Fuse a percept (m, robot's frame, m² of either axis); a second one far off in a row starts a new track."""
+    if track is None:
+        return BallTrack(ahead, left, 0.0, 0.0, variance, now_ns)
+    if _surprising(track, ahead, left, variance):
+        doubted = track.doubted + 1
+        if doubted < MOVED_PERCEPTS:
+            return replace(track, doubted=doubted)
         return BallTrack(ahead, left, 0.0, 0.0, variance, now_ns)
     gain = track.variance / (track.variance + variance)
     d_ahead, d_left = gain * (ahead - track.ahead), gain * (left - track.left)
@@ -90,6 +99,6 @@ def see(track: BallTrack | None, ahead: float, left: float, variance: float, phi
 
 
 def _surprising(track: BallTrack, ahead: float, left: float, variance: float) -> bool:
-    """Beyond four standard deviations, and 10 cm: somebody moved the ball."""
+    """Beyond four standard deviations, and 10 cm."""
     off_squared = (ahead - track.ahead) ** 2 + (left - track.left) ** 2
     return off_squared > 16.0 * (track.variance + variance) and off_squared > 0.01

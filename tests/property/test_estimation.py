@@ -95,10 +95,22 @@ def test_resting_ball_stays_where_it_is_while_the_robot_drives(ahead, left, v, t
     assert math.dist(was, now) < 0.2 * abs(turn) * abs(v) + 1e-9  # the step drives along the middle heading
 
 
-def test_ball_put_elsewhere_is_believed_at_once():
-    track = BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0)
-    moved = ball_track.see(track, 1.5, 0.4, 1e-3, 0.0, 80_000_000)
+def seen(track, ahead, left, percept):
+    return ball_track.see(track, ahead, left, 1e-3, 0.0, percept * 80_000_000)
+
+
+def test_a_ball_put_elsewhere_is_believed_at_second_sight():
+    track = seen(BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0), 1.5, 0.4, 1)
+    assert (track.ahead, track.left) == (1.0, 0.0)
+    moved = seen(ball_track.move(track, 0.0, 0.0, 0.0, 0.08, 0.53), 1.5, 0.4, 2)
     assert (moved.ahead, moved.left) == (1.5, 0.4)
+
+
+def test_outliers_between_good_percepts_move_no_ball():
+    track = BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0)
+    for percept in range(1, 20):
+        track = seen(track, *((1.5, 0.4) if percept % 2 else (1.0, 0.0)), percept)
+        assert (track.ahead, track.left) == (1.0, 0.0)
 
 
 def test_rolling_ball_is_tracked_with_its_speed():
