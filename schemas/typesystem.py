@@ -1,7 +1,7 @@
 """The ROS 2 types behind our messages: names, definition texts, hashes, and the bytes of one value.
 
-The only module that knows rosbags. Which dataclass becomes which ROS type is decided here; how its fields are
-filled is conversion.py's business.
+The only module that knows rosbags, but for the name of its error in codec.py. Which dataclass becomes which ROS type is
+decided here; how its fields are filled is the business of standard.py and own.py.
 """
 
 from __future__ import annotations

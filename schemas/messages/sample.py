@@ -1,0 +1,47 @@
+"""Any message, and a message as it arrived."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from schemas.messages.driving import ArmRequest, DriverState, EStop, JointCommand, VelocityCommand
+from schemas.messages.executing import ActionFinished, ExecStatus
+from schemas.messages.planning import PlanAnswer, PlanReport, PlanRequest
+from schemas.messages.recording import Clock, Provenance, SimTruth, TickReport
+from schemas.messages.refining import RefinementReport, Subgoals
+from schemas.messages.sensing import BallPercept, JointState, MotorCurrents, Odometry, PoseEstimate
+
+Message = (
+    VelocityCommand
+    | Odometry
+    | PoseEstimate
+    | EStop
+    | Clock
+    | JointState
+    | JointCommand
+    | MotorCurrents
+    | BallPercept
+    | DriverState
+    | ArmRequest
+    | SimTruth
+    | ExecStatus
+    | ActionFinished
+    | PlanReport
+    | PlanRequest
+    | PlanAnswer
+    | Subgoals
+    | RefinementReport
+    | TickReport
+    | Provenance
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A message as it arrived: who sent it, as which number of theirs, and when, by the receiver's clock."""
+
+    key: str
+    message: Message
+    arrival_ns: int  # receiver's monotonic clock
+    sequence: int
+    sender: str = ""  # 32 hex digits
