@@ -20,6 +20,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from models.json_shape import arguments_error
 from schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -108,14 +109,7 @@ def _manifest_error(manifest: Any) -> str:
     for key in ("robot", "action"):
         if not isinstance(manifest.get(key), str):
             return f"{key} is {manifest.get(key)!r}, expected a name"
-    said = manifest.get("arguments")
-    parts = {"name": str, "unit": str, "lower": (int, float), "upper": (int, float)}
-    if not isinstance(said, list) or not said:
-        return f"arguments is {said!r}, expected a list of {', '.join(parts)}"
-    for each in said:
-        if not isinstance(each, dict) or not all(isinstance(each.get(key), kind) for key, kind in parts.items()):
-            return f"argument {each!r}, expected {', '.join(parts)}"
-    return ""
+    return arguments_error(manifest.get("arguments"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,7 +88,9 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         ("robot", 1, "robot is 1, expected a name"),
         ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
         ("arguments", [], "arguments is"),
-        ("arguments", [{"name": "x"}], "argument {'name': 'x'}, expected name, unit, lower, upper"),
+        ("arguments", [{"name": "x"}], "argument {'name': 'x'}, expected name, unit, and numbers lower <= upper"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": 1, "upper": 0}], "expected name, unit, and numbers lower"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),
     ],
 )
 def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, said: str) -> None:
