@@ -10,12 +10,12 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from schemas.errors import UsageError
 from schemas.messages import ActionFinished, PlanReport
 from tools.comparison import Run, chosen, commands_apart, compared_run
+from tools.terminal import table_console
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -73,8 +73,7 @@ def _action(action: ActionFinished) -> dict[str, Any]:
 
 
 def _show(a: Run, b: Run, told: dict[str, Any]) -> None:
-    console = Console(markup=False, highlight=False)  # what was recorded is no markup
-    console.width = max(console.width, 120)  # a file or a pipe has no width of its own
+    console = table_console()
     actions = [[_brief(action) for action in run.actions] for run in (a, b)]
     console.print(_side_by_side("action, predicted → actual s", a, b, *actions))
     console.print(_side_by_side("subgoals, free parameters", a, b, *[_changes(run) for run in (a, b)]))

@@ -7,7 +7,6 @@ import json
 from datetime import UTC, datetime
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from runtime.recording import Recording, open_recording
@@ -15,6 +14,7 @@ from schemas.errors import Rejected
 from schemas.json_text import table_of
 from tools.plain_text import plain
 from tools.survey import Stream, Survey, percentiles, survey
+from tools.terminal import table_console
 
 MOST_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
 
@@ -89,8 +89,7 @@ def _parsed(text: str) -> Any:
 
 
 def _show(told: dict[str, Any]) -> None:
-    console = Console(markup=False, highlight=False)  # what stands in a file is no markup
-    console.width = max(console.width, 120)  # a file or a pipe has no width of its own
+    console = table_console()
     size, since = told["bytes"] / 1e6, f" from {told['start']}" if told["start"] else ""
     console.print(f"{told['file']}: {told['messages']} messages, {told['duration_s']:.1f} s{since}, {size:.2f} MB")
     if told["damage"]:
