@@ -11,12 +11,6 @@ ROOT = Path(__file__).resolve().parents[2]
 OURS = {"schemas", "runtime", "executive", "simnodes", "models", "tools"}
 IMPURE = {"zenoh", "time", "os", "threading", "logging", "random", "subprocess", "socket", "asyncio", "signal"}
 SHELL = ("executive/shell.py",)
-BOUNDS = ("onnx_wire", "tree_boxes", "spans", "feature_spans", "leaf_bounds", "model_bounds")
-MODELS_RUNTIME = (
-    *("models/runtime.py", "models/features.py", "models/card.py", "models/__init__.py"),
-    *(f"models/{name}.py" for name in BOUNDS),
-)
-PURE_MODELS = {"numpy", "onnxruntime"}
 STANDARD_ONLY = ("simnodes/guard.py",)
 PROJECT_FILES = sorted(p.relative_to(ROOT).as_posix() for f in OURS for p in (ROOT / f).rglob("*.py"))
 
