@@ -8,8 +8,8 @@ from sklearn.tree import DecisionTreeRegressor
 
 from models.card import Card
 from models.distilling import distil
-from models.failure_tree import splits_of
 from models.features import SPACES, FeatureSpace
+from models.grown_tree import means_of, splits_of
 from models.linear_tree import LinearTree
 from models.runtime import OnnxDuration, OnnxSuccess
 from models.split_tree import SplitTree
@@ -43,7 +43,6 @@ def distilled_success(model: OnnxSuccess, rng: np.random.Generator) -> tuple[Spl
     arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
     grown = DecisionTreeRegressor(max_leaf_nodes=24, min_samples_leaf=100, random_state=0)
     grown.fit(space(arguments), model.probability(arguments))
-    splits = splits_of(grown)
-    success = grown.tree_.value[grown.tree_.children_left == -1, 0, 0].astype(np.float32)
+    splits, success = splits_of(grown), means_of(grown)
     off = np.abs(success[splits.leaf_of(space(fresh))] - model.probability(fresh))
     return splits, success, float(np.nanmean(off))

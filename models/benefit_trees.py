@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.tree import DecisionTreeClassifier
 
-from models.failure_tree import Step, splits_of
+from models.grown_tree import Step, shares_of, splits_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -26,7 +26,7 @@ RULES = 4  # of the single tree, as in the paper
 class RiskTrees:
     """Trees whose mean is the risk, 0..1."""
 
-    steps: Sequence[Step]
+    steps: Sequence[Step]  # a leaf says the weighted share of slower pairs
 
     @property
     def leaves(self) -> list[int]:
@@ -49,14 +49,15 @@ def grow_forest(situations: Array, slower: Bools, stakes: Array, rng: np.random.
         tree = DecisionTreeClassifier(
             min_samples_leaf=_least(count), max_features=0.5, random_state=int(rng.integers(2**31))
         ).fit(situations[drawn], slower[drawn], (stakes * times)[drawn])
-        steps.append(_step(tree))
+        steps.append((splits_of(tree), shares_of(tree)))
     return RiskTrees(steps)
 
 
 def grow_tree(situations: Array, slower: Bools, stakes: Array, rng: np.random.Generator) -> RiskTrees:
     """One tree of four rules; nothing in it is drawn."""
     tree = DecisionTreeClassifier(max_leaf_nodes=RULES, min_samples_leaf=_least(len(slower)), random_state=0)
-    return RiskTrees([_step(tree.fit(situations, slower, stakes))])
+    tree.fit(situations, slower, stakes)
+    return RiskTrees([(splits_of(tree), shares_of(tree))])
 
 
 Grower = Callable[[Array, Bools, Array, np.random.Generator], RiskTrees]
@@ -65,10 +66,3 @@ LEARNERS: Mapping[str, Grower] = {"forest": grow_forest, "tree": grow_tree}
 
 def _least(count: int) -> int:
     return max(1, round(LEAF_SHARE * count))
-
-
-def _step(tree: DecisionTreeClassifier) -> Step:
-    """Splits, and the weighted share of slower pairs in each leaf."""
-    value = tree.tree_.value[tree.tree_.children_left == -1, 0, :]
-    share = value[:, 1] / value.sum(axis=1) if value.shape[1] == 2 else np.full(len(value), float(tree.classes_[0]))
-    return splits_of(tree), share.astype(np.float32)

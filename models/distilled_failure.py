@@ -9,7 +9,8 @@ from sklearn.tree import DecisionTreeRegressor
 
 from models.distilling import between
 from models.failure_forest import FailureForest
-from models.failure_tree import FailureModel, splits_of
+from models.failure_tree import FailureModel
+from models.grown_tree import means_of, splits_of
 
 ROWS = 40_000  # asked of the forest, at most
 ROWS_EACH = 40  # for each row of the examples
@@ -50,6 +51,5 @@ class DistilledFailureTree(FailureModel):
         said = forest.predict_proba(asked)[:, -1]
         grown = DecisionTreeRegressor(max_leaf_nodes=self.leaves, min_samples_leaf=LEAST_ROWS, random_state=0)
         grown.fit(asked, said)
-        success = grown.tree_.value[grown.tree_.children_left == -1, 0, 0].astype(np.float32)
-        self.steps_ = [(splits_of(grown), success)]
+        self.steps_ = [(splits_of(grown), means_of(grown))]
         return self

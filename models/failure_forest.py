@@ -7,7 +7,9 @@ from typing import Any, Self
 import numpy as np
 from sklearn.tree import DecisionTreeClassifier
 
-from models.failure_tree import FailureModel, splits_of
+from models.episode_rows import resampled
+from models.failure_tree import FailureModel
+from models.grown_tree import shares_of, splits_of
 
 
 class FailureForest(FailureModel):
@@ -39,22 +41,13 @@ class FailureForest(FailureModel):
         """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
         features, success, episodes = self._checked(X, y, groups)
         rng = np.random.default_rng(self.random_state or 0)
-        count = int(episodes.max()) + 1
         least = min(self.min_rows, max(1, len(success) // 20))
         self.steps_ = []
         for _ in range(self.trees):
-            weights = np.bincount(rng.integers(0, count, count), minlength=count)[episodes].astype(np.float64)
+            weights = resampled(episodes, rng)
             drawn = np.flatnonzero(weights)
             tree = DecisionTreeClassifier(
                 min_samples_leaf=least, max_features=self.feature_share, random_state=int(rng.integers(2**31))
             ).fit(features[drawn], success[drawn], weights[drawn])
-            self.steps_.append((splits_of(tree), _shares(tree)))
+            self.steps_.append((splits_of(tree), shares_of(tree)))
         return self
-
-
-def _shares(tree: DecisionTreeClassifier) -> np.ndarray[Any, np.dtype[np.float32]]:
-    """Weighted share of successes in each leaf, in the order of leaf numbers."""
-    leaf = tree.tree_.children_left == -1
-    value = tree.tree_.value[leaf, 0, :]
-    share = value[:, 1] / value.sum(axis=1) if value.shape[1] == 2 else np.full(len(value), float(tree.classes_[0]))
-    return share.astype(np.float32)

@@ -7,15 +7,16 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, ClassifierMixin
-from sklearn.tree import BaseDecisionTree, DecisionTreeClassifier
+from sklearn.tree import DecisionTreeClassifier
 from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from models.split_tree import LEAF, SplitTree
+from models.episode_rows import held_out, numbered
+from models.grown_tree import Step, splits_of
+from models.split_tree import SplitTree
 
 Ints = NDArray[np.int64]
-Step = tuple[SplitTree, NDArray[np.float32]]  # a tree, and the probability of success in each of its leaves
 
 
 class FailureModel(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
@@ -33,8 +34,7 @@ class FailureModel(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.classes_, success = np.unique(y, return_inverse=True)
         if len(self.classes_) > 2:
             raise ValueError("Only binary classification is supported. The type of the target is multiclass.")
-        labels = np.arange(len(y)) if groups is None else np.asarray(groups)
-        return X.astype(np.float32), success, np.unique(labels, return_inverse=True)[1]
+        return X.astype(np.float32), success, numbered(groups, len(y))
 
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()
@@ -89,15 +89,10 @@ class FailureTree(FailureModel):
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
         """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
         features, success, episodes = self._checked(X, y, groups)
-        held = self._held_out(episodes)
+        held = held_out(episodes, self.held_out, self.random_state)
         splits = splits_of(self._pruned(features, success, held))
         self.steps_ = [(splits, _calibrated(splits, features, success, held))]
         return self
-
-    def _held_out(self, episodes: NDArray[np.int64]) -> NDArray[np.bool_]:
-        count = int(episodes.max()) + 1
-        chosen = np.random.default_rng(self.random_state or 0).permutation(count)[: int(self.held_out * count)]
-        return np.isin(episodes, chosen)
 
     def _pruned(
         self, features: NDArray[np.float32], success: NDArray[np.int64], held: NDArray[np.bool_]
@@ -130,18 +125,3 @@ def _calibrated(
     fresh = np.bincount(leaf[held], success[held], size), np.bincount(leaf[held], minlength=size)
     prior = (kept[0] + 0.5) / (kept[1] + 1)  # half a success and half a failure: no leaf is certain
     return ((fresh[0] + PRIOR_ROWS * prior) / (fresh[1] + PRIOR_ROWS)).astype(np.float32)
-
-
-def splits_of(grown: BaseDecisionTree) -> SplitTree:
-    """scikit-learn's tree in our form; its double thresholds rounded down are exact on single precision rows."""
-    tree = grown.tree_
-    inner = tree.children_left != LEAF
-    threshold = tree.threshold.astype(np.float32)
-    threshold = np.where(threshold > tree.threshold, np.nextafter(threshold, np.float32(-np.inf)), threshold)
-    return SplitTree(
-        np.where(inner, tree.feature, LEAF),
-        np.where(inner, threshold, np.float32(0)).astype(np.float32),
-        np.where(inner, tree.children_left, 0),
-        np.where(inner, tree.children_right, 0),
-        np.where(inner, -1, np.cumsum(~inner) - 1),
-    )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
+from models.episode_rows import held_out, numbered, resampled
 from models.linear_flavour import TreeSettings, fit_linear
 from models.linear_tree import LinearTree
 from models.m5_flavour import fit_m5
@@ -46,8 +47,7 @@ class _TreeRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
 
     def _checked(self, X: Any, y: Any, groups: Any) -> tuple[NDArray[np.float32], Array, NDArray[np.int64]]:
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64)
-        labels = np.arange(len(y)) if groups is None else np.asarray(groups)
-        return X.astype(np.float32), y.astype(np.float64), np.unique(labels, return_inverse=True)[1]
+        return X.astype(np.float32), y.astype(np.float64), numbered(groups, len(y))
 
     def _features(self, X: Any) -> NDArray[np.float32]:
         check_is_fitted(self)
@@ -88,17 +88,11 @@ class ModelTreeRegressor(_TreeRegressor):
         if self.flavour == "m5":
             self.tree_ = fit_m5(features, targets, self.clip)
         elif self.flavour == "linear":
-            self.tree_ = fit_linear(
-                features, targets, np.ones(len(targets)), self._held_out(episodes), self._settings(len(targets))
-            )
+            held = held_out(episodes, self.held_out, self.random_state)
+            self.tree_ = fit_linear(features, targets, np.ones(len(targets)), held, self._settings(len(targets)))
         else:
             raise ValueError(f"flavour '{self.flavour}' is unknown (expected: linear, m5)")
         return self
-
-    def _held_out(self, episodes: NDArray[np.int64]) -> NDArray[np.bool_]:
-        count = int(episodes.max()) + 1
-        chosen = np.random.default_rng(self.random_state or 0).permutation(count)[: int(self.held_out * count)]
-        return np.isin(episodes, chosen)
 
     def predict(self, X: Any) -> NDArray[np.float32]:
         """Seconds, shape (n,)."""
@@ -145,12 +139,10 @@ class BaggedModelTrees(_TreeRegressor):
         """Fit to features (n, f) and seconds (n,); `groups` (n,) says which rows are one episode."""
         features, targets, episodes = self._checked(X, y, groups)
         rng = np.random.default_rng(self.random_state or 0)
-        count = int(episodes.max()) + 1
         settings = self._settings(len(targets))
         self.trees_ = []
         for _ in range(self.trees):
-            drawn = np.bincount(rng.integers(0, count, count), minlength=count)
-            weights = drawn[episodes].astype(np.float64)
+            weights = resampled(episodes, rng)
             self.trees_.append(fit_linear(features, targets, weights, weights == 0, settings))
         return self
 
