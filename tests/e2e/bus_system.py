@@ -1,15 +1,18 @@
-"""A bus on a free loopback port, with child processes that end with the test."""
+"""A bus on a free loopback port, with child processes that end with the test; and a stand-in robot on it."""
 
 import sys
-import time
 from contextlib import contextmanager
 from pathlib import Path
 
 from runtime.processes import Child
 from runtime.session import open_router
+from tests.patience import wait_until
 from tools.system import free_endpoint
 
 ROOT = Path(__file__).resolve().parents[2]
+
+
+DRIVING = "tests.e2e.stand_in_executive"  # a module that drives at a speed
 
 
 @contextmanager
@@ -29,11 +32,22 @@ def bus_system():
                 child.kill()
 
 
-def wait_until(condition, timeout_s=10.0, what="condition"):
-    """Poll; fails the test after `timeout_s`."""
-    ends = time.monotonic() + timeout_s
-    while time.monotonic() < ends:
-        if found := condition():
-            return found
-        time.sleep(0.005)
-    raise AssertionError(f"{what}: not within {timeout_s} s")
+@contextmanager
+def guarded_robot(tmp_path):
+    """A bus with the stand-in simulator: yields (session, endpoint, start, trace of the guard's output)."""
+    with bus_system() as (session, endpoint, start):
+        trace = tmp_path / "trace"
+        start("tests.e2e.stand_in_sim", endpoint, trace)
+        wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
+        yield session, endpoint, start, trace
+
+
+def outputs(trace):
+    """The guard's output over time: [(monotonic s, speed)]."""
+    rows = [line.split() for line in trace.read_text().splitlines() if line.count(" ") == 1]
+    return [(int(at) / 1e9, float(v)) for at, v in rows]
+
+
+def moving(trace, speed):
+    """Whether the guard's output is that speed, as a function."""
+    return lambda: trace.exists() and outputs(trace) and outputs(trace)[-1][1] == speed

@@ -11,11 +11,12 @@ import pytest
 from models.runtime import ZOO
 from runtime.processes import tailor
 from tests.e2e.bus_system import ROOT, free_endpoint
+from tests.patience import PATIENCE_S
 
 
 def refused(*arguments):
     """The one line on stderr."""
-    done = subprocess.run(tailor(*map(str, arguments)), capture_output=True, text=True, timeout=30, cwd=ROOT)
+    done = subprocess.run(tailor(*map(str, arguments)), capture_output=True, text=True, timeout=PATIENCE_S, cwd=ROOT)
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
     lines = done.stderr.strip().splitlines()
@@ -124,4 +125,4 @@ def test_a_reader_that_leaves_early_is_no_error_to_tell_of():
     )
     told.stdout.close()
     assert told.stderr.read() == ""
-    assert told.wait(timeout=30) == 1
+    assert told.wait(timeout=PATIENCE_S) == 1

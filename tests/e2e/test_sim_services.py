@@ -5,37 +5,32 @@ import time
 
 import pytest
 
-from tests.e2e.bus_system import bus_system, wait_until
-from tests.e2e.test_guard_stops import EXECUTIVE, moving, outputs
+from tests.e2e.bus_system import DRIVING, guarded_robot, moving, outputs
+from tests.patience import in_one_try_of, wait_until
 
 
 @pytest.fixture
 def system(tmp_path):
-    with bus_system() as (session, endpoint, start):
-        trace = tmp_path / "trace"
-        start("tests.e2e.stand_in_sim", endpoint, trace)
-        wait_until(session.inbox(["driver"], "agilo").drain, what="driver state")
-        yield session, endpoint, start, trace
+    with guarded_robot(tmp_path) as robot:
+        yield robot
 
 
 def ask(session, name, what):
     return session.ask(f"agilo/sim/{name}", json.dumps(what))
 
 
-def newest(inbox, timeout_s=2.0):
-    return wait_until(inbox.drain, timeout_s)[-1].message
+def newest(inbox):
+    return wait_until(inbox.drain, "a message")[-1].message
 
 
 def test_reset_puts_the_world_back_and_disarms(system):
     session, endpoint, start, trace = system
     truth, driver = session.inbox(["truth"], "agilo"), session.inbox(["driver"], "agilo")
-    start(EXECUTIVE, endpoint, 0.5)
-    wait_until(moving(trace, 0.5), what="robot moves")
-    time.sleep(0.5)
-    assert newest(truth).x > 0.1
+    start(DRIVING, endpoint, 0.5)
+    wait_until(lambda: newest(truth).x > 0.1, "robot moves")
     assert ask(session, "reset", {"start": {"x": -3.0}}) == (True, "reset")
-    wait_until(lambda: newest(truth).x == -3.0, what="robot back at its start")
-    wait_until(lambda: newest(driver).reason == "the world was reset", what="disarmed")
+    wait_until(lambda: newest(truth).x == -3.0, "robot back at its start")
+    wait_until(lambda: newest(driver).reason == "the world was reset", "disarmed")
     time.sleep(0.3)
     assert outputs(trace)[-1][1] == 0.0
     assert newest(truth).x == -3.0
@@ -45,39 +40,54 @@ def test_in_a_pause_nothing_moves_and_steps_are_exact(system):
     session, *_ = system
     odometry = session.inbox(["odom"], "agilo")
     assert ask(session, "step", 1) == (False, "step: pause first")
-    first = wait_until(odometry.drain)
+    latest = wait_until(odometry.drain)
     assert ask(session, "pause", True) == (True, "paused")
-    time.sleep(0.2)
-    before = (odometry.drain() or first)[-1].sequence
-    time.sleep(0.3)
-    assert odometry.drain() == ()
+
+    def sequence():
+        nonlocal latest
+        latest = odometry.drain() or latest
+        return latest[-1].sequence
+
+    def stands_still():
+        before = sequence()
+        time.sleep(0.3)
+        return sequence() == before
+
+    wait_until(stands_still, "silence of a paused world")
+    before = sequence()
     assert ask(session, "step", 50) == (True, "50 periods")  # of 10 ms; odometry comes every 20 ms
-    wait_until(lambda: newest(odometry) and True)
-    time.sleep(0.2)
+    wait_until(lambda: sequence() == before + 25, "odometry of 50 periods")
     assert ask(session, "step", 2)[0]
-    assert wait_until(odometry.drain)[-1].sequence == before + 26
+    wait_until(lambda: sequence() == before + 26, "odometry of two more")
     assert ask(session, "pause", False) == (True, "running")
-    assert wait_until(odometry.drain)
+    wait_until(lambda: sequence() > before + 26, "a running world")
 
 
 def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
     session, endpoint, start, trace = system
-    start(EXECUTIVE, endpoint, 0.5)
-    wait_until(moving(trace, 0.5), what="robot moves")
     truth = session.inbox(["truth"], "agilo")
-    ask(session, "pause", True)
-    time.sleep(1.0)
-    truth.drain()
-    ask(session, "pause", False)
-    first = newest(truth)
-    time.sleep(0.3)
-    assert outputs(trace)[-1][1] == 0.5
-    assert newest(truth).x > first.x
+
+    def drives_on():
+        executive = start(DRIVING, endpoint, 0.5)
+        wait_until(moving(trace, 0.5), "robot moves")
+        ask(session, "pause", True)
+        time.sleep(1.0)
+        truth.drain()
+        ask(session, "pause", False)
+        first = newest(truth)
+        time.sleep(0.3)
+        speed, last = outputs(trace)[-1][1], newest(truth)
+        executive.kill()
+        wait_until(moving(trace, 0.0), "robot at rest")
+        assert speed == 0.5
+        assert last.x > first.x
+
+    in_one_try_of(3, drives_on)
 
 
 def test_things_can_be_placed_while_the_world_runs(system):
     session, *_ = system
     truth = session.inbox(["truth"], "agilo")
     assert ask(session, "place", {"ball_x": 4.5}) == (True, "placed")
-    wait_until(lambda: newest(truth).ball_x == 4.5, what="ball placed")
+    wait_until(lambda: newest(truth).ball_x == 4.5, "ball placed")
     assert ask(session, "place", {"ball_x": "far"})[0] is False

@@ -1,6 +1,5 @@
 """An external planner behaves, hangs, crashes, prints garbage or floods: nothing blocks, no process is left behind."""
 
-import os
 import subprocess
 import sys
 import time
@@ -11,10 +10,11 @@ import pytest
 from executive.planning import PlanTextError, parse_plan, validate
 from runtime.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from schemas.errors import UsageError
+from tests.patience import PATIENCE_S, first_line, gone, in_one_try_of, is_alive
 from tests.planning_problems import DATA, own, printed
 
 ROOT = Path(__file__).resolve().parents[2]
-LIMIT_S = 5.0
+LIMIT_S = 30.0  # for those that end by themselves
 POLL_LIMIT_S = 0.05  # half a tick; a poll takes microseconds, the rest is for a busy machine
 
 
@@ -29,7 +29,7 @@ def run(command, limit_s=LIMIT_S):
     """The answer, after polling as a tick would; and the longest poll in seconds."""
     domain, problem = ((DATA / "own" / name).read_text() for name in ("kitchen-domain.pddl", "kitchen-s1.pddl"))
     child = PlannerProcess(command, domain, problem, limit_s)
-    longest, give_up = 0.0, time.monotonic() + limit_s + 10
+    longest, give_up = 0.0, time.monotonic() + limit_s + PATIENCE_S
     while time.monotonic() < give_up:
         before = time.perf_counter()
         answer = child.poll()
@@ -40,31 +40,23 @@ def run(command, limit_s=LIMIT_S):
     raise AssertionError("the planner never ended")
 
 
-def is_alive(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    with open(f"/proc/{pid}/stat") as stat:  # a zombie that nobody has waited for yet is dead enough
-        return stat.read().rpartition(")")[2].split()[0] != "Z"
+def run_without_blocking(command, limit_s=LIMIT_S, longest_s=POLL_LIMIT_S):
+    """The child and its answer, after polls of which none took longer than it may."""
 
+    def attempt():
+        child, answer, longest = run(command, limit_s)
+        assert longest < longest_s
+        return child, answer
 
-def gone(pid, within_s=2.0):
-    end = time.monotonic() + within_s
-    while is_alive(pid):
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.01)
-    return True
+    return in_one_try_of(3, attempt)
 
 
 def test_a_planner_that_behaves_well_gets_its_plan_parsed_and_validated(tmp_path):
     text = printed("kitchen-s1.ground.links")
     body = f"assert len(sys.argv) == 4 and sys.argv[1] == '-g', sys.argv\nopen(sys.argv[2]); sys.stdout.write({text!r})"
-    _, answer, longest = run(program(tmp_path, body) + " -g")
+    _, answer = run_without_blocking(program(tmp_path, body) + " -g")
     assert answer.outcome == "answered"
     assert validate(parse_plan(answer.output), *own("kitchen-s1")) == ""
-    assert longest < POLL_LIMIT_S
 
 
 def test_a_planner_that_hangs_is_killed_with_its_whole_group(tmp_path):
@@ -72,13 +64,18 @@ def test_a_planner_that_hangs_is_killed_with_its_whole_group(tmp_path):
 grandchild = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
 print(";pids", os.getpid(), grandchild.pid, flush=True)
 time.sleep(60)"""
-    child, answer, longest = run(program(tmp_path, body), limit_s=1.5)
+    limits = iter((1.5, 6.0, 24.0))  # it needs time to start
+
+    def both_started():
+        child, answer = run_without_blocking(program(tmp_path, body), next(limits))
+        pids = [int(word) for word in answer.output.split()[1:]]
+        assert len(pids) == 2
+        return child, answer, pids
+
+    child, answer, pids = in_one_try_of(3, both_started)
     assert answer.outcome == "timeout"
-    pids = [int(word) for word in answer.output.split()[1:]]
-    assert len(pids) == 2
     assert all(gone(pid) for pid in pids)
     assert gone(child.pid)
-    assert longest < POLL_LIMIT_S
 
 
 def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
@@ -104,11 +101,11 @@ def test_a_planner_that_prints_garbage_has_no_plan(tmp_path):
 
 
 def test_a_planner_that_floods_is_stopped_at_a_limit(tmp_path):
-    child, answer, longest = run(program(tmp_path, "while True: sys.stdout.write('x' * 65536)"))
+    flood = program(tmp_path, "while True: sys.stdout.write('x' * 65536)")
+    child, answer = run_without_blocking(flood, longest_s=1.0)
     assert answer.outcome == "flood"
     assert len(answer.output) <= MAX_OUTPUT_BYTES
     assert gone(child.pid)
-    assert longest < 1.0
 
 
 def test_a_child_that_outlives_its_planner_is_killed(tmp_path):
@@ -121,7 +118,8 @@ print(grandchild.pid)"""
 
 
 def test_a_planner_that_eats_memory_runs_into_a_limit(tmp_path):
-    _, answer, _ = run(program(tmp_path, "time.sleep(0.2)\nheap = bytearray(4 << 30)\nprint('plenty')"))
+    limited = "while resource.getrlimit(resource.RLIMIT_AS)[0] < 0: time.sleep(0.01)"  # it is set from outside
+    _, answer, _ = run(program(tmp_path, f"import resource\n{limited}\nheap = bytearray(4 << 30)\nprint('plenty')"))
     assert answer.outcome in ("answered", "crashed")
     assert "plenty" not in answer.output
 
@@ -136,7 +134,7 @@ time.sleep(60)"""
     script = tmp_path / "asks.py"
     script.write_text(f"import time\n{body}\n")
     asking = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
-    pid = int(asking.stdout.readline())
+    pid = int(first_line(asking.stdout))
     time.sleep(0.5)
     assert is_alive(pid)
     asking.kill()

@@ -12,6 +12,7 @@ from runtime.processes import Child, stopped_in_order
 from runtime.restart import Restart
 from runtime.stopping import stop_on_signals
 from runtime.supervisor import STARTUP_NS, Charge, Supervisor
+from tests.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
 S = 1_000_000_000
 MS = 1_000_000
@@ -110,42 +111,26 @@ def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor
     assert FakeChild.made[0].killed
 
 
-def gone(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    with open(f"/proc/{pid}/stat") as stat:
-        return stat.read().split()[2] == "Z"
-
-
-def wait_gone(pid):
-    ends = time.monotonic() + 5
-    while not gone(pid) and time.monotonic() < ends:
-        time.sleep(0.01)
-    return gone(pid)
-
-
 def test_a_child_ends_when_its_parent_is_killed():
     parent = (
         "import sys; from runtime.processes import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
     )
     process = subprocess.Popen([sys.executable, "-c", parent], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    child = int(process.stdout.readline())
+    child = int(first_line(process.stdout))
     time.sleep(0.2)
-    assert not gone(child)
+    assert is_alive(child)
     process.kill()
     process.communicate()
-    assert wait_gone(child)
+    assert gone(child)
 
 
 def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path):
     order = []
 
     class Noted(Child):
-        def stop(self, timeout_s=0.3):
+        def stop(self, timeout_s=PATIENCE_S):
             order.append(self.name)
-            return super().stop(timeout_s)
+            return super().stop(0.3 if self.name == "deaf" else timeout_s)
 
     deaf = (
         "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('deaf', flush=True); time.sleep(60)"
@@ -154,8 +139,7 @@ def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path
         children.append(Noted("meek", ["sleep", "60"]))
         with (tmp_path / "out").open("w") as out:
             children.append(Noted("deaf", [sys.executable, "-c", deaf], out))
-        while "deaf" not in (tmp_path / "out").read_text():
-            time.sleep(0.01)
+        wait_until(lambda: "deaf" in (tmp_path / "out").read_text(), "deafness")
     assert order == ["deaf", "meek"]
     assert [child.exit_code() for child in children] == [-signal.SIGTERM, -signal.SIGKILL]
 
