@@ -14,6 +14,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from tests.patience import PATIENCE_S
+
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = (
     "--headless=new",
@@ -82,7 +84,7 @@ class Browser:
         os.close(self._answers)
         self._profile.cleanup()
 
-    def send(self, method: str, timeout_s: float = 20.0, **params: Any) -> Any:
+    def send(self, method: str, timeout_s: float = PATIENCE_S, **params: Any) -> Any:
         """One command of the debugging protocol; its result."""
         self._number += 1
         message = {"id": self._number, "method": method, "params": params}
@@ -108,7 +110,7 @@ class Browser:
         assert "exceptionDetails" not in result, result["exceptionDetails"]
         return result["result"].get("value")
 
-    def wait(self, condition: str, timeout_s: float = 15.0) -> None:
+    def wait(self, condition: str, timeout_s: float = PATIENCE_S) -> None:
         """Until a JavaScript expression holds."""
         deadline = time.monotonic() + timeout_s
         while not self.value(condition):

@@ -5,7 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from runtime.processes import Child
-from runtime.session import open_router
+from runtime.session import open_client, open_router
+from schemas.errors import UsageError
 from tests.patience import wait_until
 from tools.system import free_endpoint
 
@@ -40,6 +41,15 @@ def guarded_robot(tmp_path):
         start("tests.e2e.stand_in_sim", endpoint, trace)
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
         yield session, endpoint, start, trace
+
+
+def answers(endpoint):
+    """Whether a router is there."""
+    try:
+        with open_client(endpoint, timeout_s=0.5):
+            return True
+    except UsageError:
+        return False
 
 
 def outputs(trace):

@@ -9,6 +9,7 @@ import pytest
 
 from runtime.processes import tailor
 from tests.e2e.bus_system import ROOT
+from tests.patience import PATIENCE_S
 
 STARTS = 2
 
@@ -18,7 +19,7 @@ STARTS = 2
 def test_two_starts_live_and_in_lockstep_reach_the_goal_alike(tmp_path):
     flags = ("--episodes", STARTS, "--repeats", 5, "--store", tmp_path / "store", "--report", tmp_path, "--json")
     argv = tailor("evaluate", "live", *map(str, (*flags, "--recordings", tmp_path / "runs")))
-    done = subprocess.run(argv, capture_output=True, text=True, timeout=240, cwd=ROOT)
+    done = subprocess.run(argv, capture_output=True, text=True, timeout=5 * PATIENCE_S, cwd=ROOT)
     live, once_more = json.loads(done.stdout)["rows"]
     assert live["n"] == once_more["n"] == STARTS, done.stderr
     assert live["achieved_pct"] == live["achieved_lockstep_pct"] == 100
@@ -26,5 +27,5 @@ def test_two_starts_live_and_in_lockstep_reach_the_goal_alike(tmp_path):
     assert len(list((tmp_path / "runs").glob("*.mcap"))) == STARTS
     assert (tmp_path / "live.html").exists()
     assert (tmp_path / "index.html").exists()
-    again = subprocess.run(argv, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    again = subprocess.run(argv, capture_output=True, text=True, timeout=PATIENCE_S, cwd=ROOT)
     assert json.loads(again.stdout)["rows"] == [live, once_more]  # from the store, without a run

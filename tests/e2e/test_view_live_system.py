@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import time
 import urllib.request
 from pathlib import Path
 
@@ -14,7 +13,8 @@ import pytest
 from runtime.processes import Child, tailor
 from schemas.messages import TickReport
 from tests.browser import PROGRAM, Browser
-from tests.e2e.bus_system import ROOT, free_endpoint
+from tests.e2e.bus_system import ROOT, answers, free_endpoint
+from tests.patience import PATIENCE_S, wait_until
 from tools.viewer.recorded import timed
 
 pytestmark = [
@@ -35,16 +35,16 @@ def watched(tmp_path_factory):
     up = Child("up", tailor("up", "soccer", *flags), subprocess.DEVNULL)
     view = None
     try:
-        time.sleep(2.0)
+        wait_until(lambda: answers(endpoint), "router")
         with (folder / "view.log").open("w") as log:
             view = Child("view", tailor("view", "--live", "--port", "0", "--connect", endpoint), log)
         address = first_word(folder / "view.log")
         with Browser() as browser:
             browser.open(address)
             browser.wait("document.documentElement.dataset.connection === 'open'")
-            browser.wait(f"{ROWS} > 100", 30)
-            assert up.wait(90) == 0
-            browser.wait(f"{LANE} >= 2", 5)
+            browser.wait(f"{ROWS} > 100")
+            assert up.wait(2 * PATIENCE_S) == 0
+            browser.wait(f"{LANE} >= 2")
             browser.screenshot(folder / "live.png")
             shown = browser.value("document.querySelector('#timeline small').textContent")
             assert browser.errors == []
@@ -55,16 +55,13 @@ def watched(tmp_path_factory):
 
 
 def first_word(log: Path) -> str:
-    deadline = time.monotonic() + 20
-    while not log.read_text().startswith("http"):
-        assert time.monotonic() < deadline, log.read_text()
-        time.sleep(0.05)
+    wait_until(lambda: log.read_text().startswith("http"), "address")
     return log.read_text().split()[0]
 
 
 def ticks_at(address: str) -> list[int]:
     """The numbers of the ticks that the server keeps."""
-    with urllib.request.urlopen(f"{address}events", timeout=10) as stream:
+    with urllib.request.urlopen(f"{address}events", timeout=PATIENCE_S) as stream:
         rows = next(json.loads(line[6:]) for line in stream if line.startswith(b"data: ["))
     return [fields["tick"] for _, kind, fields in rows if kind == "tick"]
 
@@ -79,7 +76,7 @@ def test_from_when_it_listens_the_live_page_shows_every_tick(watched) -> None:
 def test_why_explains_the_run_that_was_watched(watched, tmp_path) -> None:
     picture = tmp_path / "why.png"
     words = [sys.executable, "-m", "tools.main", "why", str(watched[0]), "--json", "-o", str(picture)]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE_S, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     first = json.loads(done.stdout.splitlines()[0])[0]
     assert first["actions"][-1] == "dribbleBall"

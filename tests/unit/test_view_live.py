@@ -16,6 +16,7 @@ from schemas import messages as m
 from schemas.codec import encode
 from schemas.errors import UsageError
 from schemas.typesystem import ros_type
+from tests.patience import PATIENCE_S
 from tools.viewer import server
 from tools.viewer.feed import WAITING, Feed
 from tools.viewer.listening import Listener
@@ -39,7 +40,7 @@ def status(mode: str = "READY") -> m.ExecStatus:
 @contextmanager
 def events(port: int):
     """The lines of the event stream."""
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=5)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     connection.request("GET", "/events")
     answer = connection.getresponse()
     assert answer.getheader("Content-Type") == "text/event-stream"
@@ -56,7 +57,7 @@ def next_rows(lines) -> list:
 
 
 def get(port: int, path: str, host: str = "127.0.0.1") -> int:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=5)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     connection.request("GET", path, headers={"Host": host})
     return connection.getresponse().status
 
