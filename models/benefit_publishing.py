@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from models.benefit import Pairs, TrainedBenefit, space
-from models.card import FORMAT, Card, card_path, identity, sha256_of, write_card
+from models.card import FORMAT, Card, card_path, identity, write_model
 from models.onnx_features import add_features, as_columns
 from models.onnx_graph import Graph
 from models.onnx_trees import add_probability
-from models.publishing import GOLDEN, LIBRARIES
+from models.publishing import GOLDEN, versions
 from models.runtime import BENEFIT
 
 
@@ -39,12 +37,7 @@ class AboutBenefit:
 def publish_benefit(zoo: Path, pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> Path:
     """Write `zoo/robot/refinement/benefit.onnx` and its card; returns the ONNX file's path."""
     card = _card(pairs, trained, about)
-    content = _exported(trained, about.names, card)
-    path = zoo / about.robot / f"{BENEFIT}.onnx"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    write_card(card_path(path), {**card, "sha256": sha256_of(content)})
-    return path
+    return write_model(zoo, _exported(trained, about.names, card), card)
 
 
 def withdraw_benefit(zoo: Path, robot: str) -> bool:
@@ -91,7 +84,7 @@ def _card(pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> dict[st
         "test": trained.test,
         "rules": list(trained.rules),
         "golden": _golden(pairs, trained),
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}},
+        "versions": versions(),
         "command": about.command,
     }
 

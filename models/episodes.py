@@ -1,4 +1,4 @@
-"""Data sets of episodes: Parquet parts with one row group per episode, and a manifest that says how they were made.
+"""Data sets of episodes: Parquet parts with one row group per episode; manifest.py says how they were made.
 
 A part appears whole or not at all, so that gathering may be killed at any time and go on later.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import json
 import os
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,12 +19,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from models.json_shape import arguments_error
+from models.manifest import read_manifest
 from schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
-MANIFEST = "manifest.json"
 WHOLE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
 UNOBSERVED = "unobserved"  # "failure" of an episode that says nothing about success
 
@@ -75,41 +73,6 @@ def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
         "failure": [episode.failure] * count,
     }
     return pa.table(columns)
-
-
-def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
-    """Write the manifest of a data set, whole or not at all."""
-    temporary = folder / f".{MANIFEST}.{os.getpid()}"
-    temporary.write_text(json.dumps(manifest, indent=1) + "\n")
-    temporary.replace(folder / MANIFEST)
-
-
-def read_manifest(folder: Path) -> dict[str, Any]:
-    """The manifest of a data set.
-
-    Raises:
-      UsageError: There is none, or it is not one.
-    """
-    try:
-        manifest = json.loads((folder / MANIFEST).read_text())
-    except OSError:
-        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` makes them)") from None
-    except ValueError as error:
-        raise UsageError(f"{folder / MANIFEST}: not a manifest ({error}), `tailor gather` writes them") from None
-    wrong = _manifest_error(manifest)
-    if wrong:
-        raise UsageError(f"{folder / MANIFEST}: not a manifest ({wrong}), `tailor gather` writes them")
-    return dict(manifest)
-
-
-def _manifest_error(manifest: Any) -> str:
-    """What is wrong with it; empty if nothing that training needs."""
-    if not isinstance(manifest, dict):
-        return f"a {type(manifest).__name__}, expected an object"
-    for key in ("robot", "action"):
-        if not isinstance(manifest.get(key), str):
-            return f"{key} is {manifest.get(key)!r}, expected a name"
-    return arguments_error(manifest.get("arguments"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ import onnx
 from numpy.typing import NDArray
 
 from models.amounts import AMOUNTS
-from models.card import FORMAT, Card, card_path, identity, sha256_of, write_card
+from models.card import FORMAT, Card, identity, write_model
 from models.episodes import DataSet
 from models.features import FeatureSpace
 from models.onnx_export import export_duration, export_success
@@ -40,12 +40,7 @@ class Publication:
 def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
     """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
     card = _card(data, trained, about)
-    content = _exported(trained.learner, about, card).SerializeToString()
-    path = zoo / card["robot"] / card["action"] / f"{about.kind}.onnx"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    write_card(card_path(path), {**card, "sha256": sha256_of(content)})
-    return path
+    return write_model(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
 
 
 def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
@@ -79,27 +74,40 @@ def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]
         "outputs": _outputs(about.kind),
         "output_range": _output_range(data, about.kind),
         **({"threshold": trained.learner.threshold_} if about.kind == "success" else {}),
-        "episodes": {
-            "count": len(data.episodes),
-            "finished": sum(episode.finished for episode in data.episodes),
-            "on_policy": manifest.get("on_policy", 0),
-            "sha256": data.sha256,
-            "seed": manifest.get("seed"),
-            "source": manifest.get("source"),
-            "source_sha256": manifest.get("source_sha256"),
-        },
-        "learner": {
-            "name": about.learner,
-            "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
-            "leaves": leaves(trained.learner),
-            "n_i": trained.n_i,
-            "seed": about.seed,
-        },
+        "episodes": _episodes(data),
+        "learner": _learner(trained, about),
         "test": trained.test,
         "golden": golden(data, trained.learner, about),
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}},
+        "versions": versions(),
         "command": about.command,
     }
+
+
+def _episodes(data: DataSet) -> dict[str, Any]:
+    """What a card says of the episodes that it was learned from."""
+    return {
+        "count": len(data.episodes),
+        "finished": sum(episode.finished for episode in data.episodes),
+        "on_policy": data.manifest.get("on_policy", 0),
+        "sha256": data.sha256,
+        **{key: data.manifest.get(key) for key in ("seed", "source", "source_sha256")},
+    }
+
+
+def _learner(trained: Trained, about: Publication) -> dict[str, Any]:
+    """What a card says of what learned it."""
+    return {
+        "name": about.learner,
+        "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
+        "leaves": leaves(trained.learner),
+        "n_i": trained.n_i,
+        "seed": about.seed,
+    }
+
+
+def versions() -> dict[str, str]:
+    """Of Python and of the libraries that a model depends on."""
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
 def _plain(value: object) -> bool:

@@ -19,7 +19,8 @@ import numpy as np
 
 from executive import domains
 from executive.library import Domain
-from models.episodes import MANIFEST, Episode, read_manifest, write_manifest, write_part
+from models.episodes import Episode, write_part
+from models.manifest import MANIFEST, read_manifest, write_manifest
 from schemas.errors import UsageError
 from tools import lockstep
 

@@ -141,10 +141,8 @@ def run_action(
         before, truth = truth, body.truth()
         work.append(trials.work_j(before, truth))
     done = control.outcome == "done"
-    if not done:
-        failure = failure or control.reason or "time limit"
-    ticks = np.array(rows)
-    worked = np.array([*work, 0.0])[: len(ticks)]
+    failure = failure or ("" if done else control.reason or "time limit")
+    ticks, worked = np.array(rows), np.array([*work, 0.0])[: len(rows)]
     return Episode(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, worked, tuple(trace))
 
 

@@ -18,7 +18,8 @@ from executive.composition import load_models
 from executive.core.context import Settings, make_context
 from executive.library import Models
 from executive.refinement.settings import RefinementSettings
-from models.episodes import Episode, write_manifest, write_part
+from models.episodes import Episode, write_part
+from models.manifest import write_manifest
 from schemas.errors import Rejected, UsageError
 from schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
 from tools import gathering, lockstep

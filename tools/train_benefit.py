@@ -19,6 +19,7 @@ from tools.asked import at_least, finite, processes
 
 if TYPE_CHECKING:
     from models.benefit import Pairs
+    from models.benefit_publishing import AboutBenefit
     from tools.evaluations.outcome import Outcome, Task
 
 DEFAULT_SEED = 700_000
@@ -86,10 +87,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     """Make the tree and write it to the zoo; returns where it lies, and its test."""
-    from executive.composition import load_models
     from executive.refinement.benefit import SITUATION
     from models.benefit import check_learner, train_benefit
-    from models.benefit_publishing import AboutBenefit, publish_benefit
+    from models.benefit_publishing import publish_benefit
     from tools import gathering
     from tools.evaluations.outcome import Task
 
@@ -99,25 +99,40 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     zoo = "" if arguments.zoo == ZOO else str(arguments.zoo)
     found = gathered(Task(domain, arguments.scenario, zoo=zoo), settings, arguments)
     trained = train_benefit(found.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
-    loaded: Any = load_models(arguments.robot, zoo)
+    episodes = {
+        "scenario": arguments.scenario,
+        "started": found.started,
+        "seed": arguments.seed,
+        "source_sha256": gathering.source_hash(arguments.robot, domain),
+    }
+    about = _about(arguments, settings, found.sequences, episodes)
+    return publish_benefit(arguments.zoo, found.pairs, trained, about), dict(trained.test)
+
+
+def _about(
+    arguments: argparse.Namespace,
+    settings: RefinementSettings,
+    sequences: tuple[tuple[str, ...], ...],
+    episodes: dict[str, Any],
+) -> AboutBenefit:
+    """What the card is to say, the action models that the tree was learned with among it."""
+    from executive.composition import load_models
+    from executive.refinement.benefit import SITUATION
+    from models.benefit_publishing import AboutBenefit
+
+    loaded: Any = load_models(arguments.robot, "" if arguments.zoo == ZOO else str(arguments.zoo))
     models = {**loaded.durations, **loaded.successes}
-    about = AboutBenefit(
+    return AboutBenefit(
         arguments.robot,
         SITUATION,
-        found.sequences,
+        sequences,
         {name: model.card["sha256"] for name, model in sorted(models.items()) if not name.endswith("/energy")},
         dataclasses.asdict(settings),
-        {
-            "scenario": arguments.scenario,
-            "started": found.started,
-            "seed": arguments.seed,
-            "source_sha256": gathering.source_hash(arguments.robot, domain),
-        },
+        episodes,
         arguments.learner,
         arguments.seed,
         _command(arguments),
     )
-    return publish_benefit(arguments.zoo, found.pairs, trained, about), dict(trained.test)
 
 
 def gathered(task: Task, settings: RefinementSettings, arguments: argparse.Namespace) -> Gathered:

@@ -10,7 +10,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from models.episodes import Episode, merge, read_data_set, write_manifest, write_part
+from models.episodes import Episode, merge, read_data_set, write_part
+from models.manifest import write_manifest
 from schemas.errors import UsageError
 from tests import standin
 

@@ -7,8 +7,9 @@ import pytest
 
 from executive import domains
 from executive.refinement.settings import RefinementSettings
-from models.episodes import Episode, read_data_set, write_manifest, write_part
+from models.episodes import Episode, read_data_set, write_part
 from models.examples import energy_examples
+from models.manifest import write_manifest
 from models.runtime import load_robot
 from schemas.messages import JointState, Odometry, SimTruth
 from tools import lockstep

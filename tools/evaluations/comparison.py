@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,13 @@ class Comparison:
     p_value: float  # dependent t-test, two-sided
     p_wilcoxon: float
     slower_pct: float  # share of episodes that took longer
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """What a table tells of the improvement, in the order of its columns."""
+        return {
+            name: getattr(self, name) for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")
+        }
 
     @property
     def gain_of_means_pct(self) -> float:

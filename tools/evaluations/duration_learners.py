@@ -15,7 +15,7 @@ from models.publishing import leaves
 from models.training import fit
 from tools.asked import at_least
 from tools.evaluations import fresh, weka
-from tools.evaluations.learned import PAPER_EPISODES, configure_learned
+from tools.evaluations.learned import configure_learned, configure_train
 from tools.evaluations.report import Report, tell
 
 
@@ -23,12 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate duration-learners`."""
     configure_learned(parser, 1000)
     parser.add_argument("--actions", nargs="+", default=["goToPose", "dribbleBall"], help="(default %(default)s)")
-    parser.add_argument(
-        "--train",
-        type=at_least(40, "--train"),
-        default=PAPER_EPISODES,
-        help="episodes learned from (default %(default)s)",
-    )
+    configure_train(parser)
     parser.add_argument(
         "--ticks", type=at_least(1, "--ticks"), default=5, help="first ticks of each (n_i, default %(default)s)"
     )

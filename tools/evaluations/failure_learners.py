@@ -12,9 +12,8 @@ from models.examples import success_examples
 from models.features import SPACES
 from models.training import fit
 from schemas.errors import UsageError
-from tools.asked import at_least
 from tools.evaluations import fresh, weka
-from tools.evaluations.learned import PAPER_EPISODES, configure_learned
+from tools.evaluations.learned import configure_learned, configure_train
 from tools.evaluations.report import Report, tell
 
 
@@ -22,12 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate failure-learners`."""
     configure_learned(parser, 1000)
     parser.add_argument("--action", default="approachBall", help="which action (default %(default)s)")
-    parser.add_argument(
-        "--train",
-        type=at_least(40, "--train"),
-        default=PAPER_EPISODES,
-        help="episodes learned from (default %(default)s)",
-    )
+    configure_train(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

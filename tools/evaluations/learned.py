@@ -10,6 +10,16 @@ from tools.evaluations.report import configure_report
 PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 
 
+def configure_train(parser: argparse.ArgumentParser) -> None:
+    """How many episodes to learn from."""
+    parser.add_argument(
+        "--train",
+        type=at_least(40, "--train"),
+        default=PAPER_EPISODES,
+        help="episodes learned from (default %(default)s)",
+    )
+
+
 def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
     """Robot, fresh episodes, seed, and how to tell the result."""
     parser.add_argument("--robot", default="agilo", help="whose models (default %(default)s)")

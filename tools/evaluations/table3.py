@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from tools.evaluations import letters
 from tools.evaluations.baselines import against_oracle, bias_s
 from tools.evaluations.comparison import compare
 from tools.evaluations.oracle import consult, subgoal_parameters
-from tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tools.evaluations.plots import draw_pairs
 from tools.evaluations.replicas import Recipe, configure_replicas, over_models, replica
 from tools.evaluations.report import Report, configure_report, tell
@@ -98,24 +99,7 @@ def evaluate(
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, name)
     greedy, refined = found["h1"], found["h2"]
-    durations = paired(greedy, refined)
-    said = compare(*durations)
-    row = {
-        "scenario": name + (" (degraded)" if arguments.degraded else ""),
-        "horizon": 2,
-        "n": said.n,
-        "mean_greedy_s": said.mean_baseline_s,
-        "mean_refined_s": said.mean_s,
-        "improvement_pct": said.improvement_pct,
-        "ci95": said.ci95,
-        "p_value": said.p_value,
-        "p_wilcoxon": said.p_wilcoxon,
-        "slower_pct": said.slower_pct,
-        "failed_greedy": sum(not outcome.achieved for outcome in greedy.values()),
-        "failed_refined": sum(not outcome.achieved for outcome in refined.values()),
-        "bias_greedy_s": bias_s(greedy),
-        "bias_refined_s": bias_s(refined),
-    }
+    row = {"scenario": name + (" (degraded)" if arguments.degraded else ""), **_told(greedy, refined)}
     if arguments.oracle:
         example = next(outcome for outcome in greedy.values() if outcome.achieved)
         judged = consult(
@@ -123,4 +107,20 @@ def evaluate(
             arguments.store,
         )  # fmt: skip
         row |= against_oracle(judged, greedy, refined)
-    return row, durations
+    return row, paired(greedy, refined)
+
+
+def _told(greedy: Mapping[int, Outcome], refined: Mapping[int, Outcome]) -> dict[str, Any]:
+    """The figures of one scenario, over the seeds at which both achieved the goal."""
+    said = compare(*paired(greedy, refined))
+    return {
+        "horizon": 2,
+        "n": said.n,
+        "mean_greedy_s": said.mean_baseline_s,
+        "mean_refined_s": said.mean_s,
+        **said.verdict,
+        "failed_greedy": sum(not outcome.achieved for outcome in greedy.values()),
+        "failed_refined": sum(not outcome.achieved for outcome in refined.values()),
+        "bias_greedy_s": bias_s(greedy),
+        "bias_refined_s": bias_s(refined),
+    }

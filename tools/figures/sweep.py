@@ -40,8 +40,17 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
 
 def _draw(axis: Any, sweep: Sweep, number: int) -> None:
     """One polar plot, with both minima of it."""
+    _draw_curves(axis, sweep, number)
+    _draw_minima(axis, sweep, number)
+    axis.set_rlabel_position(112)
+    axis.yaxis.set_major_formatter("{x:g} s")
+    axis.tick_params(labelsize="small")
+
+
+def _draw_curves(axis: Any, sweep: Sweep, number: int) -> None:
+    """What was predicted and what was simulated, with the spread of the runs and the angles that take a detour."""
     angles = np.append(sweep.angles, sweep.angles[0] + 2 * np.pi)
-    predicted, simulated = sweep.predicted_s[number], sweep.simulated_s[number]
+    predicted = sweep.predicted_s[number]
     axis.fill_between(
         angles,
         _round(sweep.least_s[number]),
@@ -50,7 +59,7 @@ def _draw(axis: Any, sweep: Sweep, number: int) -> None:
         alpha=0.6,
         label="least to most of its runs",
     )
-    axis.plot(angles, _round(simulated), color=SIMULATED, linewidth=1.6, label="simulated")
+    axis.plot(angles, _round(sweep.simulated_s[number]), color=SIMULATED, linewidth=1.6, label="simulated")
     axis.plot(angles, _round(predicted), color=MODEL, linewidth=2.2, label="predicted by the models")
     axis.plot(
         sweep.angles[sweep.detoured],
@@ -61,6 +70,11 @@ def _draw(axis: Any, sweep: Sweep, number: int) -> None:
         markersize=5,
         label="with a detour",
     )
+
+
+def _draw_minima(axis: Any, sweep: Sweep, number: int) -> None:
+    """A line and a star at the least of both curves, and what they are in words."""
+    predicted, simulated = sweep.predicted_s[number], sweep.simulated_s[number]
     top = 1.05 * float(np.nanmax([predicted, simulated]))
     said = []
     for name, seconds, colour in (("predicted", predicted, MODEL), ("simulated", simulated, SIMULATED)):
@@ -69,10 +83,7 @@ def _draw(axis: Any, sweep: Sweep, number: int) -> None:
         axis.plot([sweep.angles[best]], [seconds[best]], "*", color=colour, markersize=13, markeredgecolor="white")
         said.append(f"least {name}: {seconds[best]:.1f} s at {np.degrees(sweep.angles[best]):.0f}°")
     axis.set_ylim(0, top)
-    axis.set_rlabel_position(112)
     axis.set_xlabel("\n".join(said), fontsize="small")
-    axis.yaxis.set_major_formatter("{x:g} s")
-    axis.tick_params(labelsize="small")
 
 
 def _round(values: Array) -> Array:
