@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from executive import planning
-from executive.core.command_guard import checked
+from executive.core.command_guard import at_rest, checked
 from executive.core.context import Context
 from executive.core.deliberation import Decision
 from executive.core.execution import Running, control_step
@@ -25,7 +25,7 @@ class Acted:
 
 def act(context: Context, state: State) -> Acted:
     """Advance the running action, or start the one that was decided on, and set the command."""
-    zero = tuple(0.0 for _ in context.domain.axes)
+    zero = at_rest(context.domain.axes)
     if state.mode is not Mode.EXECUTING:
         return Acted(replace(state, command=zero))
     if state.task.running is None:
@@ -103,7 +103,7 @@ def _ended(context: Context, state: State, running: Running, control: Control) -
         return Acted(replace(state, task=_with_effects(context, replace(task, failures=()), running)), finished)
     failures = (*task.failures, f"{running.action.name}: {control.reason}")
     task = replace(task, failures=failures, plan=None, done=frozenset())
-    zero = tuple(0.0 for _ in context.domain.axes)
+    zero = at_rest(context.domain.axes)
     fault = failures[-1] if failures.count(failures[-1]) >= context.settings.replan_failures else ""
     return Acted(replace(state, task=task, fault=fault, command=zero, coasted=context.settings.coast_ticks), finished)
 

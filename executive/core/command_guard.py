@@ -7,12 +7,17 @@ import math
 from executive.library import Axis
 
 
+def at_rest(axes: tuple[Axis, ...]) -> tuple[float, ...]:
+    """The command that brings the robot to rest."""
+    return tuple(0.0 for _ in axes)
+
+
 def checked(command: tuple[float, ...], axes: tuple[Axis, ...]) -> tuple[tuple[float, ...], str]:
     """A command that is finite and within limits, and what was wrong with it ("" if nothing but a clamp).
 
     Finiteness is tested first: in Python `max(-.5, min(.5, nan))` is .5, full speed ahead.
     """
-    zero = tuple(0.0 for _ in axes)
+    zero = at_rest(axes)
     if len(command) != len(axes):
         return zero, f"command has {len(command)} values, the robot has {len(axes)} axes"
     for value, axis in zip(command, axes, strict=True):

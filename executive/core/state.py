@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from executive.core.command_guard import at_rest
 from executive.core.context import Context
 from executive.core.deliberation import Decision, Deliberation
 from executive.core.execution import Running
@@ -87,5 +88,4 @@ class State:
 
 def initial_state(context: Context) -> State:
     """The executive before its first tick: no goal, no belief, a zero command."""
-    zero = tuple(0.0 for _ in context.domain.axes)
-    return State(belief=context.domain.initial_belief(), command=zero)
+    return State(belief=context.domain.initial_belief(), command=at_rest(context.domain.axes))

@@ -117,24 +117,26 @@ class Refinement:
 
     def report(self) -> Report:
         """How the search went so far."""
-        solver = self._solver
         first = self._greedy.rows if self._greedy else 0
-        trace = [(first, self._greedy_s)] if np.isfinite(self._greedy_s) else []
-        if solver is not None:
-            found = zip(solver.trace.rows, solver.trace.values, strict=True)
-            trace += [(first + rows, value) for rows, value in found if value < self._greedy_s]
+        searches = [search for search in (self._solver, self._polish) if search is not None]
         return Report(
-            type(solver).__name__ if solver else "",
-            first + self._objective.rows + (self._polish.rows if self._polish else 0),
-            (self._greedy is not None)
-            + (solver.checks if solver else 0)
-            + (self._polish.checks if self._polish else 0),
-            self._greedy_s,
-            self._choice.total_s if self._choice else np.inf,
-            tuple(trace),
-            self._verdict,
-            self._gap_pct(),
+            solver=type(self._solver).__name__ if self._solver else "",
+            evaluations=first + self._objective.rows + (self._polish.rows if self._polish else 0),
+            checks=(self._greedy is not None) + sum(search.checks for search in searches),
+            greedy_s=self._greedy_s,
+            best_s=self._choice.total_s if self._choice else np.inf,
+            trace=self._trace(first),
+            verdict=self._verdict,
+            gap_pct=self._gap_pct(),
         )
+
+    def _trace(self, first: int) -> tuple[tuple[int, float], ...]:
+        """The improvements so far: the greedy answer, for which `first` rows were predicted, and what beat it."""
+        trace = [(first, self._greedy_s)] if np.isfinite(self._greedy_s) else []
+        if self._solver is not None:
+            found = zip(self._solver.trace.rows, self._solver.trace.values, strict=True)
+            trace += [(first + rows, value) for rows, value in found if value < self._greedy_s]
+        return tuple(trace)
 
     def _gap_pct(self) -> float | None:
         """The gap that was proven, if it says anything."""
