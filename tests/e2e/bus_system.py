@@ -13,9 +13,6 @@ from tools.system import free_endpoint
 ROOT = Path(__file__).resolve().parents[2]
 
 
-DRIVING = "tests.e2e.stand_in_executive"  # a module that drives at a speed
-
-
 @contextmanager
 def bus_system():
     """Yields (router session, endpoint, start), where start(module, *arguments) runs one of our modules."""
@@ -61,3 +58,10 @@ def outputs(trace):
 def moving(trace, speed):
     """Whether the guard's output is that speed, as a function."""
     return lambda: trace.exists() and outputs(trace) and outputs(trace)[-1][1] == speed
+
+
+def driving(start, endpoint, trace, speed=0.5):
+    """An executive that drives the stand-in robot, which moves by now."""
+    executive = start("tests.e2e.stand_in_executive", endpoint, speed)
+    wait_until(moving(trace, speed), "robot moves")
+    return executive

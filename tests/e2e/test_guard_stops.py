@@ -8,7 +8,7 @@ import time
 import pytest
 
 from schemas.messages import DriverState
-from tests.e2e.bus_system import DRIVING, guarded_robot, moving, outputs
+from tests.e2e.bus_system import driving, guarded_robot, moving, outputs
 from tests.patience import in_one_try_of, wait_until
 
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period of the executive
@@ -31,8 +31,7 @@ def rest_after(trace, since_s):
 
 def killed_in_motion(start, endpoint, trace, after_s):
     """Kills a driving executive; seconds to zero at the guard, which are between the bounds whatever stalls."""
-    executive = start(DRIVING, endpoint, 0.5)
-    wait_until(moving(trace, 0.5), "robot moves")
+    executive = driving(start, endpoint, trace)
     time.sleep(after_s)
     assert moving(trace, 0.5)(), "the machine stalled the executive for 0.3 s"
     before_s = time.monotonic()
@@ -61,8 +60,7 @@ def test_a_pause_of_a_tick_does_not_stop_the_robot(system):
     _session, endpoint, start, trace = system
 
     def survived():
-        executive = start(DRIVING, endpoint, 0.5)
-        wait_until(moving(trace, 0.5), "robot moves")
+        executive = driving(start, endpoint, trace)
         began_s = time.monotonic()
         os.kill(executive.pid, signal.SIGSTOP)
         time.sleep(0.12)
@@ -80,8 +78,7 @@ def test_a_pause_of_two_seconds_stops_the_robot_for_good(system):
     _session, endpoint, start, trace = system
 
     def stopped():
-        executive = start(DRIVING, endpoint, 0.5)
-        wait_until(moving(trace, 0.5), "robot moves")
+        executive = driving(start, endpoint, trace)
         before_s = time.monotonic()
         os.kill(executive.pid, signal.SIGSTOP)
         paused_s = time.monotonic()
@@ -101,10 +98,9 @@ def test_a_second_executive_cannot_move_the_robot(system):
     session, endpoint, start, trace = system
 
     def refused():
-        first = start(DRIVING, endpoint, 0.25)
-        wait_until(moving(trace, 0.25), "robot moves")
+        first = driving(start, endpoint, trace, 0.25)
         states = session.inbox(["driver"], "agilo")
-        second = start(DRIVING, endpoint, 0.9)
+        second = start("tests.e2e.stand_in_executive", endpoint, 0.9)
 
         def told():
             found = [s.message for s in states.drain() if isinstance(s.message, DriverState)]

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from tests.e2e.bus_system import DRIVING, guarded_robot, moving, outputs
+from tests.e2e.bus_system import driving, guarded_robot, moving, outputs
 from tests.patience import in_one_try_of, wait_until
 
 
@@ -26,7 +26,7 @@ def newest(inbox):
 def test_reset_puts_the_world_back_and_disarms(system):
     session, endpoint, start, trace = system
     truth, driver = session.inbox(["truth"], "agilo"), session.inbox(["driver"], "agilo")
-    start(DRIVING, endpoint, 0.5)
+    driving(start, endpoint, trace)
     wait_until(lambda: newest(truth).x > 0.1, "robot moves")
     assert ask(session, "reset", {"start": {"x": -3.0}}) == (True, "reset")
     wait_until(lambda: newest(truth).x == -3.0, "robot back at its start")
@@ -68,8 +68,7 @@ def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
     truth = session.inbox(["truth"], "agilo")
 
     def drives_on():
-        executive = start(DRIVING, endpoint, 0.5)
-        wait_until(moving(trace, 0.5), "robot moves")
+        executive = driving(start, endpoint, trace)
         ask(session, "pause", True)
         time.sleep(1.0)
         truth.drain()
