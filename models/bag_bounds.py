@@ -19,22 +19,25 @@ def least_of_bag(least: Floats, most: Floats, k_std: float) -> Floats:
     those far below the others are raised to where that costs nothing. (Where the optimum is a kink, for all can agree,
     the bound holds but is not tight.)
     """
+    k = np.float32(k_std)
     said = least
     for _ in range(ROUNDS):
-        mean, spread = _moments(said)
-        said = np.maximum(least, np.minimum(most, mean - spread / np.float32(k_std)))
-    mean, spread = _moments(said)
-    scores = np.asarray((said - mean) / np.maximum(spread, LEAST_SPREAD), np.float32)
+        mean, off, spread = _moments(said)
+        said = np.maximum(least, np.minimum(most, mean - spread / k))
+    mean, off, spread = _moments(said)
+    scores = off / np.maximum(spread, LEAST_SPREAD)
     scores -= _mean(scores)  # where all agree but for rounding, they are not yet
-    scores /= np.maximum(np.sqrt(_mean(scores * scores)), 1)
-    weights: Floats = 1 + np.float32(k_std) * scores
+    scores /= np.maximum(np.sqrt(_mean(scores * scores)), np.float32(1))
+    weights: Floats = 1 + k * scores
     return _mean(weights * np.where(weights >= 0, least, most))
 
 
-def _moments(said: Floats) -> tuple[Floats, Floats]:
-    mean = _mean(said)
+def _moments(said: Floats) -> tuple[Floats, Floats, Floats]:
+    """Mean, what each is off it, and standard deviation."""
+    count = np.float32(len(said))
+    mean: Floats = np.add.reduce(said, axis=0) / count
     off = said - mean
-    return mean, np.sqrt(_mean(off * off))
+    return mean, off, np.sqrt(np.add.reduce(off * off, axis=0) / count)
 
 
 def _mean(values: Floats) -> Floats:

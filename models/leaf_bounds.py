@@ -24,6 +24,7 @@ Ends = tuple[Floats, Floats]
 
 ROUNDING = 2.0**-21  # of the terms of a sum: eight units in the last place
 FARTHEST = 10.0  # no feature is larger, in metres or radians
+AXES = 3  # of boxes: ways, before, own
 WORTH_LEAVING_OUT = 10_000  # boxes and leaves: fewer are compared sooner than the leaves that none meets are left out
 
 
@@ -63,8 +64,12 @@ class LeafBounds:
         self.slack = _slack(boxes) if slack is None else slack
         bounded = np.isfinite(boxes.lower) | np.isfinite(boxes.upper)
         self._decide, self._count = (np.flatnonzero(some.any(axis=0)) for some in (bounded, boxes.slopes))
-        self._slopes, self._intercept = (np.stack([one, -one]) for one in (boxes.slopes, boxes.intercept))
-        self._low, self._high = np.stack([boxes.low, -boxes.high]), np.stack([boxes.high, -boxes.low])
+        self._lower, self._upper = (_along(side.T) for side in (boxes.lower, boxes.upper))
+        self._slopes = _along(np.stack([boxes.slopes.T, -boxes.slopes.T]))  # by side, feature, leaf
+        self._intercept = _along(np.stack([boxes.intercept, -boxes.intercept]))
+        self._low, self._high = (
+            _along(np.stack(ends)) for ends in ((boxes.low, -boxes.high), (boxes.high, -boxes.low))
+        )
 
     def within(self, features: Spans, margin: float) -> LeafBounds:
         """The same trees for features that lie within these, or `margin` beside them.
@@ -80,15 +85,14 @@ class LeafBounds:
 
     def meeting(self, features: Spans) -> Meeting:
         """Which leaves are met by features whose spans broadcast to (...)."""
-        boxes, axes = self.boxes, features[0].lower.ndim
         ends = tuple((span.lower.astype(np.float32), span.upper.astype(np.float32)) for span in features)
         masks: dict[tuple[int, ...], Bools] = {}
         for j in self._decide:
             lower, upper = ends[j]
-            met = (lower <= _along(boxes.upper[:, j], axes)) & (upper > _along(boxes.lower[:, j], axes))
+            met = (lower <= self._upper[j]) & (upper > self._lower[j])
             shape = met.shape[1:]
             masks[shape] = masks[shape] & met if shape in masks else met
-        sides = sorted(masks.values(), key=np.size) or [np.ones((self.leaves, *(1,) * axes), bool)]
+        sides = sorted(masks.values(), key=np.size) or [np.ones((self.leaves, *(1,) * AXES), bool)]
         leaves, starts = self._worth(sides)
         met = reduce(np.logical_and, (side[leaves] for side in sides))
         empty = bool((starts == np.append(starts[1:], len(met))).any())
@@ -105,23 +109,23 @@ class LeafBounds:
         """The least of each tree, shape (sides, trees, ...); where leaves have a spread, with `k_std` times that."""
         said = self._formulas(meeting, side)
         if k_std and self.boxes.spread is not None:
-            said = said + _along(np.float32(k_std) * self.boxes.spread[meeting.leaves], said.ndim - 2)
+            said = said + _along(np.float32(k_std) * self.boxes.spread[meeting.leaves])
         total = np.where(meeting.met, said, np.float32(np.inf))
         least: Floats = np.minimum.reduceat(total, meeting.starts, axis=1)
         return least
 
     def _formulas(self, meeting: Meeting, side: Side) -> Floats:
         """The least of each leaf's formula where a box meets it, (sides, leaves, ...): a sum over features."""
-        boxes, leaves, axes = self.boxes, meeting.leaves, meeting.met.ndim - 1
-        low, high, total = (_along(each[side.value, leaves], axes) for each in (self._low, self._high, self._intercept))
+        side_of, leaves = side.value, meeting.leaves
+        low, high, total = (each[side_of, leaves] for each in (self._low, self._high, self._intercept))
         if not len(self._count):
             return low
         sums: dict[tuple[int, ...], Floats] = {}
         for j in self._count:
             lower, upper = meeting.ends[j]
-            slopes = _along(self._slopes[side.value, leaves, j], axes)
-            at_least = np.maximum(lower, _along(boxes.lower[leaves, j], axes)) * slopes
-            part = np.minimum(at_least, np.minimum(upper, _along(boxes.upper[leaves, j], axes)) * slopes)
+            slopes = self._slopes[side_of, j, leaves]
+            at_least = np.maximum(lower, self._lower[j, leaves]) * slopes
+            part = np.minimum(at_least, np.minimum(upper, self._upper[j, leaves]) * slopes)
             shape = part.shape[2:]
             sums[shape] = sums[shape] + part if shape in sums else part
         total = reduce(np.add, sorted(sums.values(), key=np.size), total)
@@ -134,6 +138,6 @@ def _slack(boxes: TreeBoxes) -> float:
     return ROUNDING * float((np.abs(boxes.intercept) + (np.abs(boxes.slopes) * ends).sum(axis=1)).max())
 
 
-def _along(values: Floats, axes: int) -> Floats:
-    """One value a leaf, (..., leaves), with so many axes for boxes."""
-    return values.reshape(*values.shape, *(1,) * axes)
+def _along(values: Floats) -> Floats:
+    """One value a leaf, (..., leaves), with the axes of boxes behind it."""
+    return np.ascontiguousarray(values).reshape(*values.shape, *(1,) * AXES)

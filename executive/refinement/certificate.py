@@ -23,13 +23,13 @@ from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
 from executive.refinement.stalling import Stalling
 
 EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 while boxes are wide
-CUT_AT_ONCE = 4  # boxes of a subgoal
 HOPELESS = 0.3  # of the checks just to begin: what is left will not get far
 LOOK_EVERY = 4  # turns of cutting
 BOXES_MAX = 1000  # of a subgoal: more take longer to go through than to bound
 NARROWEST = 1e-5  # of a range: below, single precision says what is gained
 FIRST_CUTS = 6, 4  # before anything is bounded: of the only subgoal that has free parameters, of each of several
-PIECES = 32, 16  # that the boxes chosen are cut into at a time, likewise: pairs of boxes take longer
+CUT_AT_ONCE = 12, 4  # boxes of a subgoal, likewise: a turn costs more than its boxes where they are no pairs
+PIECES = 48, 16  # that the boxes chosen are cut into at a time, likewise: pairs of boxes take longer
 
 
 class Certificate:
@@ -63,6 +63,7 @@ class Certificate:
         self._blocks = blocks
         self._settings = settings
         self._bounds = bounds
+        self._several = sum(map(bool, map(len, blocks))) > 1  # subgoals that have free parameters
         self._work = self._prove()
 
     @property
@@ -110,10 +111,9 @@ class Certificate:
             bounds.append(bound.within(*ends))
             yield
         free = [i for i, block in enumerate(self._blocks) if len(block)]
-        several = len(free) > 1
-        for i in free * FIRST_CUTS[several]:
+        for i in free * FIRST_CUTS[self._several]:
             boxes[i] = boxes[i].halves(weight[self._blocks[i]])
-        return BoxChain(bounds, boxes, EFFORT, PIECES[several])
+        return BoxChain(bounds, boxes, EFFORT, PIECES[self._several])
 
     def _note(self, costs: Costs) -> bool:
         """Take up what is proven; whether it is good enough."""
@@ -135,12 +135,14 @@ class Certificate:
     def _chosen(self, chain: BoxChain, costs: Costs, index: int) -> tuple[Columns, Columns]:
         """Of a subgoal's boxes those that are kept as they are, and those to cut: the cheapest that can be."""
         boxes, through = chain.boxes[index], costs.through[index]
-        alive = np.flatnonzero(through < self._limit)
+        kept = through < self._limit
+        alive = np.flatnonzero(kept)
         widest = (boxes.width[alive] / self._objective.ranges.width[self._blocks[index]]).max(axis=1, initial=0.0)
         able = alive[widest > NARROWEST]
         able = able[np.argsort(through[able], kind="stable")] if len(boxes) < BOXES_MAX else able[:0]
-        chosen = able[:CUT_AT_ONCE]
-        return alive[~np.isin(alive, chosen)], chosen
+        chosen = able[: CUT_AT_ONCE[self._several]]
+        kept[chosen] = False
+        return np.flatnonzero(kept), chosen
 
 
 def certificate(objective: SequenceObjective, best: Array, settings: RefinementSettings) -> Certificate | NoBound:
