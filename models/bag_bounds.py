@@ -25,7 +25,7 @@ def least_of_bag(least: Floats, most: Floats, k_std: float) -> Floats:
         mean, off, spread = _moments(said)
         said = np.maximum(least, np.minimum(most, mean - spread / k))
     mean, off, spread = _moments(said)
-    scores = off / np.maximum(spread, LEAST_SPREAD)
+    scores: Floats = np.divide(off, np.maximum(spread, LEAST_SPREAD), dtype=np.float32)
     scores -= _mean(scores)  # where all agree but for rounding, they are not yet
     scores /= np.maximum(np.sqrt(_mean(scores * scores)), np.float32(1))
     weights: Floats = 1 + k * scores
