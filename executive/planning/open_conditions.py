@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from executive.planning.cells import without
-from executive.planning.ground_action import GroundAction, GroundEffect
 from executive.planning.ground_formula import Every, GroundCondition, Some
 from executive.planning.ground_task import GroundTask
+from executive.planning.new_steps import new_step_plans, opened_by
 from executive.planning.orderings import INITIAL, Orderings
 from executive.planning.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
-from executive.planning.threat_detection import Guarded, Spanned, guarded_links, threats_by, threats_to
+from executive.planning.threat_detection import Spanned, threats_to
 
 
 def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:
@@ -24,15 +24,7 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
         return [_opened(rest, part, flaw) for part in condition.parts]
     if isinstance(condition, Every):
         return [_opened(rest, condition, flaw)]
-    children = []
-    achievers = task.achievers[condition]
-    if achievers:
-        undoing = plan.effects.masks()[condition ^ 1]
-        guarded = guarded_links(plan.links)
-        for action, effect in achievers:
-            child = _by_new_step(task, rest, flaw, undoing, guarded, action, effect)
-            if child is not None:
-                children.append(child)
+    children = new_step_plans(task, rest, flaw, condition)
     for node in _nodes(reusable(plan, flaw)):
         children += _by_old_step(task, rest, flaw, condition, node)
     if condition in task.initial:
@@ -75,56 +67,11 @@ def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) 
 
 def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> PartialPlan:
     """The plan with more open conditions of one step."""
-    opened = _opened_by(conditions, node, plan.open)
+    opened = opened_by(conditions, node, plan.open)
     return plan._replace(open=opened, open_count=plan.open_count + len(conditions))
 
 
 # --- the three ways ------------------------------------------------------------------------------
-def _by_new_step(
-    task: GroundTask,
-    plan: PartialPlan,
-    flaw: OpenCondition,
-    undoing: int,
-    guarded: Guarded,
-    action: GroundAction,
-    effect: GroundEffect,
-) -> PartialPlan | None:
-    """The plan with one more step; `undoing` are the nodes that make the condition false, `guarded` its old links."""
-    _, first, last, _ = flaw
-    literal = effect.literal
-    node = len(plan.orderings.late)
-    orderings = plan.orderings.with_step(action, effect.moment, first)
-    if orderings is None:
-        return None
-    steps = (*plan.steps, action)
-    link = new(Link, (node + effect.moment, literal, first, last, plan.links))
-    undoing |= action.bits.get(literal ^ 1, 0) << node
-    threats, count = threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
-    threats, count = threats_by(action, node, orderings.late, guarded, threats, count)
-    conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
-    return new(
-        PartialPlan,
-        (
-            steps,
-            orderings,
-            plan.effects.with_step(action, node),
-            link,
-            _opened_by(conditions, node, plan.open),
-            threats,
-            plan.open_count + len(conditions),
-            count,
-            plan.cost + task.costs[action.number],
-        ),
-    )
-
-
-def _opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:
-    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
-    for condition, (first, last) in reversed(conditions):
-        cell = new(OpenCondition, (condition, node + first, node + last, cell))
-    return cell
-
-
 def _by_old_step(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, node: int
 ) -> list[PartialPlan]:
