@@ -81,13 +81,13 @@ class BestFirst(Generic[P]):
                 yield self._limited(f"{self._limit} plans generated")
                 return
             plan: P = heapq.heappop(plans)[-1]
-            if len(plans) * space.entries(plan) > MAX_ENTRIES:  # the others are about as large
+            if len(plans) * plan.orderings.entries > MAX_ENTRIES:  # the others are about as large
                 yield self._limited("the plans that wait take too much memory")
                 return
-            if space.length(plan) > self._steps:
+            if len(plan.steps) > self._steps:
                 self._too_long = True
                 continue
-            if space.solved(plan):
+            if plan.open is None and plan.threats is None and space.complete(plan):
                 yield Result("solved", space.extract(plan), "", self.generated, self.visited)
                 return
             self.visited += 1

@@ -1,4 +1,4 @@
-"""Flaws stand in persistent lists that plans share with their parents; this takes one cell out of such a list."""
+"""Flaws stand in persistent lists that plans share with their parents: reads such a list, takes one cell out of it."""
 
 from __future__ import annotations
 
@@ -18,6 +18,15 @@ class Cell(Protocol):
 
 C = TypeVar("C", bound=Cell)
 _new: Any = tuple.__new__  # makes a named tuple in a third of the time of its `_replace`
+
+
+def cells_of(cells: C | None) -> list[C]:
+    """The cells of a list, the newest first."""
+    found = []
+    while cells is not None:
+        found.append(cells)
+        cells = cells.rest
+    return found
 
 
 def without(cells: C | None, gone: C) -> C | None:

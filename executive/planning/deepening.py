@@ -48,7 +48,7 @@ class Deepening(Generic[P]):
                 if self.generated >= limit:
                     return
                 _, plan = stack.pop()
-                if self._space.solved(plan):
+                if plan.open is None and plan.threats is None and self._space.complete(plan):
                     yield Result("solved", self._space.extract(plan), "", self.generated, self.visited)
                     return
                 self.visited += 1
@@ -68,7 +68,7 @@ class Deepening(Generic[P]):
             rank = self._space.rank(child, self.generated)
             if rank is None:
                 continue
-            if self._space.length(child) > self._settings.step_limit:
+            if len(child.steps) > self._settings.step_limit:
                 self._too_long = True
                 continue
             children.append((rank, child))

@@ -3,65 +3,61 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from executive.planning.additive_heuristic import Value
+from executive.planning.cells import cells_of
 from executive.planning.flaw_orders import Criterion
+from executive.planning.refinable import Refinable
 
-P = TypeVar("P")
-P_contra = TypeVar("P_contra", contravariant=True)
+P = TypeVar("P", bound=Refinable)
+P_contra = TypeVar("P_contra", bound=Refinable, contravariant=True)
 C = TypeVar("C")  # open conditions
 T = TypeVar("T")  # threats
+C_contra = TypeVar("C_contra", contravariant=True)
+T_contra = TypeVar("T_contra", contravariant=True)
 
 
-class FlawMeasures(Protocol[P_contra, C, T]):
-    """What flaw orders ask about the flaws of a plan; lists of flaws begin with the newest."""
+class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
+    """What flaw orders ask about the flaws of a plan."""
 
-    def conditions(self, plan: P_contra) -> Iterable[C]:
-        """The open conditions."""
-        ...
-
-    def threats(self, plan: P_contra) -> Iterable[T]:
-        """The threats."""
-        ...
-
-    def separable(self, plan: P_contra, threat: T) -> bool:
+    def separable(self, plan: P_contra, threat: T_contra) -> bool:
         """Whether separation may mend a threat."""
         ...
 
-    def step(self, condition: C) -> int:
-        """The step that a condition belongs to."""
+    def step(self, condition: C_contra) -> int:
+        """A number that tells the step that a condition belongs to from all others."""
         ...
 
-    def static(self, condition: C) -> bool:
+    def static(self, condition: C_contra) -> bool:
         """Whether no action touches the condition's predicate."""
         ...
 
-    def unsafe(self, plan: P_contra, condition: C) -> bool:
+    def unsafe(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether some step may come before the consumer and undo the condition."""
         ...
 
-    def condition_choices(self, plan: P_contra, condition: C) -> int:
+    def condition_choices(self, plan: P_contra, condition: C_contra) -> int:
         """The number of ways to achieve a condition."""
         ...
 
-    def threat_choices(self, plan: P_contra, threat: T) -> int:
+    def threat_choices(self, plan: P_contra, threat: T_contra) -> int:
         """The number of ways to mend a threat."""
         ...
 
-    def by_new_step(self, plan: P_contra, condition: C) -> bool:
+    def by_new_step(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether a new step can achieve the condition."""
         ...
 
-    def value(self, plan: P_contra, condition: C) -> Value:
+    def value(self, plan: P_contra, condition: C_contra) -> Value:
         """The heuristic's estimate without reuse of steps."""
         ...
 
-    def provided(self, plan: P_contra, condition: C) -> bool:
+    def provided(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether a step of the plan may already achieve the condition."""
         ...
 
@@ -132,7 +128,7 @@ class FlawSelection(Generic[P, C, T]):
 
     def _threats(self, plan: P, choice: _Choice[P, C, T]) -> list[T]:
         """The threats that a criterion applies to."""
-        threats = list(self._measures.threats(plan))
+        threats: list[T] = cells_of(plan.threats)
         if choice.any_threat or not threats:
             return threats
         measures, types, limit = self._measures, choice.criterion.types, choice.criterion.limit
@@ -145,7 +141,7 @@ class FlawSelection(Generic[P, C, T]):
     def _conditions(self, plan: P, criterion: Criterion) -> list[C]:
         """The open conditions that a criterion applies to."""
         measures, types, limit = self._measures, criterion.types, criterion.limit
-        conditions = list(measures.conditions(plan))
+        conditions: list[C] = cells_of(plan.open)
         if "o" not in types and conditions:
             local = measures.step(conditions[0]) if "l" in types else None
             if types & {"u", "t"}:

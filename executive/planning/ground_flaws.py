@@ -6,7 +6,7 @@ from executive.planning.additive_heuristic import Value, literals_of
 from executive.planning.ground_formula import Some
 from executive.planning.ground_task import GroundTask
 from executive.planning.open_conditions import reusable
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, step_of
+from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat
 from executive.planning.threats import choices
 
 
@@ -15,25 +15,8 @@ class GroundFlaws:
 
     def __init__(self, task: GroundTask) -> None:
         self._task = task
+        self._first, self._moments = task.first_node, task.moments
         self.threat_choices = choices
-
-    def conditions(self, plan: PartialPlan) -> list[OpenCondition]:
-        """See `FlawMeasures`."""
-        found = []
-        cell = plan.open
-        while cell is not None:
-            found.append(cell)
-            cell = cell.rest
-        return found
-
-    def threats(self, plan: PartialPlan) -> list[Threat]:
-        """See `FlawMeasures`."""
-        found = []
-        cell = plan.threats
-        while cell is not None:
-            found.append(cell)
-            cell = cell.rest
-        return found
 
     def separable(self, plan: PartialPlan, threat: Threat) -> bool:
         """Only a conditional effect can be separated."""
@@ -41,7 +24,7 @@ class GroundFlaws:
 
     def step(self, condition: OpenCondition) -> int:
         """See `FlawMeasures`."""
-        return step_of(self._task, condition.first)
+        return (condition.first - self._first) // self._moments
 
     def static(self, condition: OpenCondition) -> bool:
         """Never: grounding has folded static conditions away."""

@@ -17,10 +17,11 @@ from executive.planning.open_conditions import refine_open
 from executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
 from executive.planning.plan import Plan
 from executive.planning.ranking import Rank, Ranking
+from executive.planning.refinable import Refinable
 from executive.planning.settings import Settings, rankings_for
 from executive.planning.threats import refine_threat
 
-P = TypeVar("P")
+P = TypeVar("P", bound=Refinable)
 
 
 class PlanSpace(Protocol[P]):
@@ -30,16 +31,8 @@ class PlanSpace(Protocol[P]):
         """The plan that every search starts from."""
         ...
 
-    def solved(self, plan: P) -> bool:
-        """Whether the plan has no flaws."""
-        ...
-
-    def length(self, plan: P) -> int:
-        """The number of steps."""
-        ...
-
-    def entries(self, plan: P) -> int:
-        """The size of the plan's orderings: see `Orderings`."""
+    def complete(self, plan: P) -> bool:
+        """Whether a plan without flaws is one that can be executed."""
         ...
 
     def refine(self, plan: P, order: int) -> list[P]:
@@ -71,17 +64,9 @@ class GroundSpace:
         """The goal as open conditions."""
         return initial_plan(self._task)
 
-    def solved(self, plan: PartialPlan) -> bool:
-        """No open condition, no threat."""
-        return plan.open is None and plan.threats is None
-
-    def length(self, plan: PartialPlan) -> int:
-        """See `PlanSpace`."""
-        return len(plan.steps)
-
-    def entries(self, plan: PartialPlan) -> int:
-        """See `PlanSpace`."""
-        return plan.orderings.entries
+    def complete(self, plan: PartialPlan) -> bool:
+        """Always: no flaw, no doubt."""
+        return True
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """Chooses a flaw and mends it in every way."""

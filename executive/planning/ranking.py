@@ -9,12 +9,13 @@ import math
 from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 
+from executive.planning.refinable import Refinable
 from schemas.errors import UsageError
 
 Rank = tuple[float, ...]
 Estimate = tuple[float, float]  # cost, work of the open conditions
-P = TypeVar("P", bound="Ranked")
-P_contra = TypeVar("P_contra", bound="Ranked", contravariant=True)
+P = TypeVar("P", bound=Refinable)
+P_contra = TypeVar("P_contra", bound=Refinable, contravariant=True)
 
 NAMES = (
     "LIFO", "FIFO", "OC", "UC", "BUC", "S+OC", "UCPOP", "ADD", "ADD_COST", "ADD_WORK", "ADDR", "ADDR_COST",
@@ -37,25 +38,6 @@ def check_rankings(names: tuple[str, ...]) -> tuple[str, ...]:
     if any(name.startswith("ADDR") for name in chosen) and any(name in _PLAIN for name in chosen):
         raise UsageError("rankings ADD* and ADDR* exclude each other")
     return chosen
-
-
-class Ranked(Protocol):
-    """What every plan knows of itself."""
-
-    @property
-    def cost(self) -> float:
-        """The cost of its steps."""
-        ...
-
-    @property
-    def open_count(self) -> int:
-        """The number of its open conditions."""
-        ...
-
-    @property
-    def threat_count(self) -> int:
-        """The number of its threats."""
-        ...
 
 
 class PlanEstimates(Protocol[P_contra]):

@@ -9,7 +9,7 @@ from executive.planning.ground_action import GroundAction, Span
 from executive.planning.ground_formula import GroundCondition
 from executive.planning.ground_task import GroundTask
 from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import Link, Threat, step_of
+from executive.planning.partial_plan import Link, Threat, new, step_of
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
 Threats = tuple[Threat | None, int]  # the list and its length
@@ -48,7 +48,7 @@ def threats_to(
         mask ^= 1 << node
         if not late[node] >> producer & 1:
             for conditions in _ALWAYS if task.simple else _deletions_at(task, steps, node, literal ^ 1):
-                threats = Threat(link, node, conditions, threats)
+                threats = new(Threat, (link, node, conditions, threats))
                 count += 1
     return threats, count
 
@@ -71,7 +71,7 @@ def threats_by(
             mask ^= 1 << at
             if not late[at] >> link.producer & 1:
                 for conditions in _deletions(action, undoing, at - node):
-                    threats = Threat(link, at, conditions, threats)
+                    threats = new(Threat, (link, at, conditions, threats))
                     count += 1
     return threats, count
 

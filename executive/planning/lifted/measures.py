@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
+from executive.planning.cells import cells_of
 from executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
 from executive.planning.lifted.bindings import Bindings
 from executive.planning.lifted.formula import AllOf, AnyOf, Equality, LiftedFormula, LiftedLiteral
@@ -22,20 +21,6 @@ class LiftedMeasures:
         self._task = task
 
     # --- flaws -----------------------------------------------------------------------------------
-    def conditions(self, plan: LiftedPlan) -> Iterator[LiftedCondition]:
-        """See `FlawMeasures`."""
-        cell = plan.open
-        while cell is not None:
-            yield cell
-            cell = cell.rest
-
-    def threats(self, plan: LiftedPlan) -> Iterator[LiftedThreat]:
-        """See `FlawMeasures`."""
-        cell = plan.threats
-        while cell is not None:
-            yield cell
-            cell = cell.rest
-
     def separable(self, plan: LiftedPlan, threat: LiftedThreat) -> bool:
         """See `FlawMeasures`."""
         return any(True for _ in separations(self._task, plan, threat))
@@ -103,14 +88,14 @@ class LiftedMeasures:
     # --- rankings --------------------------------------------------------------------------------
     def plain(self, plan: LiftedPlan) -> Estimate:
         """See `PlanEstimates`."""
-        values = [self.value(plan, condition) for condition in self.conditions(plan)]
+        values = [self.value(plan, condition) for condition in cells_of(plan.open)]
         return sum(value.cost for value in values), sum(value.work for value in values)
 
     def reusing(self, plan: LiftedPlan) -> Estimate:
         """See `PlanEstimates`."""
         cost: float = 0
         work: float = 0
-        for condition in self.conditions(plan):
+        for condition in cells_of(plan.open):
             if self.provided(plan, condition):
                 work += 1
             else:
@@ -121,5 +106,5 @@ class LiftedMeasures:
 
     def makespan(self, plan: LiftedPlan) -> float:
         """See `PlanEstimates`."""
-        conditions = [(c.first, self.value(plan, c).makespan) for c in self.conditions(plan)]
+        conditions = [(c.first, self.value(plan, c).makespan) for c in cells_of(plan.open)]
         return makespan_estimate(plan.orderings, conditions)

@@ -36,17 +36,9 @@ class LiftedSpace:
         """The goal as open conditions."""
         return initial_plan(self._task)
 
-    def solved(self, plan: LiftedPlan) -> bool:
-        """No flaws, and an object for every variable."""
-        return plan.open is None and plan.threats is None and plan.bindings.completed() is not None
-
-    def length(self, plan: LiftedPlan) -> int:
-        """See `PlanSpace`."""
-        return len(plan.steps)
-
-    def entries(self, plan: LiftedPlan) -> int:
-        """See `PlanSpace`."""
-        return plan.orderings.entries
+    def complete(self, plan: LiftedPlan) -> bool:
+        """Whether there is an object for every variable."""
+        return plan.bindings.completed() is not None
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """Chooses a flaw and mends it in every way; nothing is left to do for bindings that cannot be completed."""
