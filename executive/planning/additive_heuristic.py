@@ -110,11 +110,11 @@ def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: 
         if effect.conditions:
             start = sum_of([before, *(_value(condition, values) for condition, _ in effect.conditions)])
         lasts = (action.shortest if effect.moment else 0) if action.duration_s else 1
-        value = Value(start.cost + cost, start.work + 1, start.makespan + lasts)
-        old = changed.get(effect.literal, values[effect.literal])
-        if value < old and value.cost < math.inf:
+        value = (start.cost + cost, start.work + 1, start.makespan + lasts)
+        old = changed.get(effect.literal) or values[effect.literal]
+        if value < old and value[0] < math.inf:
             # each quantity is minimal for itself where that matters: makespan never rises
-            changed[effect.literal] = value._replace(makespan=min(value.makespan, old.makespan))
+            changed[effect.literal] = Value(value[0], value[1], min(value[2], old.makespan))
     return True
 
 

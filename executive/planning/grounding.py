@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from executive.planning.durations import duration_range, ticks_of
-from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span
+from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
 from executive.planning.ground_formula import (
     FALSE,
     Binding,
@@ -168,6 +168,7 @@ def _instance(
         number,
         name,
         conditions,
+        needed(conditions, effects),
         effects,
         bits,
         *ticks_of(bounds, tick_s),
@@ -246,4 +247,4 @@ def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[G
         ]
         if len(ways) > MAX_WAYS:
             raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
-    return [replace(effect, conditions=way) for way in ways] if additions else [effect]
+    return [effect._replace(conditions=way) for way in ways] if additions else [effect]
