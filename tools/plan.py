@@ -11,6 +11,7 @@ import dataclasses
 import json
 import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -47,8 +48,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.conflict_handler = "resolve"
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
-    parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file")
-    parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file")
+    parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file, - for standard input")
+    parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file, - for standard input")
     _configure_search(parser.add_argument_group("search, as in VHPOP"))
     parser.set_defaults(node_limit=MAX_PLANS)
     _configure_output(parser.add_argument_group("output"))
@@ -70,7 +71,7 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
         dest="search",
         choices=("A", "IDA"),
         default="A",
-        type=str.upper,
+        type=lambda name: name.upper().removesuffix("*"),
         help="A* (default) or IDA*",
     )
     add("-w", "--weight", type=float, default=1.0, help="weight of the heuristic (default 1)")
@@ -148,13 +149,14 @@ def run(args: argparse.Namespace) -> int:
     """Plans and prints; 0 with a plan, 1 without."""
     started = time.process_time()
     try:
-        domain = parse_domain(_read(args.domain), str(args.domain))
-        problem = parse_problem(_read(args.problem), domain, str(args.problem))
+        texts = _read(args.domain), _read(args.problem)  # once: a pipe has nothing more to give
+        domain = parse_domain(texts[0], str(args.domain))
+        problem = parse_problem(texts[1], domain, str(args.problem))
     except Unsupported as feature:
         if args.json:
             print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
         raise
-    result = _ask(args, domain, problem) if args.planner else _search(args, domain, problem)
+    result = _ask(args, texts, domain, problem) if args.planner else _search(args, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if result.plan is not None:
         fault = validate(result.plan, domain, problem)
@@ -168,7 +170,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _read(path: Path) -> str:
     try:
-        with path.open("rb") as file:
+        with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size to look at
         if len(content) > MAX_BYTES:
             raise UsageError(f"{path}: more than the {MAX_BYTES} bytes that a PDDL file may have")
@@ -203,10 +205,10 @@ def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Resul
     return result
 
 
-def _ask(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
+def _ask(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
     """Lets the external planner answer; its plan is parsed, and the causal links that it lacks are added."""
     limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
-    child = PlannerProcess(args.planner, _read(args.domain), _read(args.problem), limit_s)
+    child = PlannerProcess(args.planner, *texts, limit_s)
     try:
         while (answer := child.poll()) is None:
             time.sleep(_POLL_S)

@@ -13,6 +13,7 @@ from tests.unit.test_planning_language import LAMPS, SWITCHES
 from tools.main import main
 
 OWN = DATA / "own"
+SVG = "{http://www.w3.org/2000/svg}"
 DOMAIN, PROBLEM = str(OWN / "kitchen-domain.pddl"), str(OWN / "kitchen-s1.pddl")
 DURATIVE = [str(OWN / "kitchen-durative-domain.pddl"), str(OWN / "kitchen-durative-s3.pddl")]
 
@@ -54,10 +55,29 @@ def test_dot_and_svg_draw_links_and_orderings_apart(capsys):
     assert 'label="(has-ball r2 b2)' in dot
     _, svg, _ = plan(capsys, *soccer, "--svg")
     picture = ElementTree.fromstring(svg)
-    paths = picture.findall(".//{http://www.w3.org/2000/svg}path[@marker-end]")
+    paths = picture.findall(f".//{SVG}path[@marker-end]")
     dashed = [path for path in paths if path.get("stroke-dasharray")]
     assert 0 < len(dashed) < len(paths)
     assert "(dribbleball r1 b1 p2 p1)" in svg
+
+
+@pytest.mark.parametrize("name", ["kitchen-s3", "soccer-typed-p3"])
+def test_svg_holds_every_line_and_word_and_no_word_stands_on_a_box(capsys, name):
+    _, svg, _ = plan(capsys, str(OWN / f"{name[:-3]}-domain.pddl"), str(OWN / f"{name}.pddl"), "--svg")
+    picture = ElementTree.fromstring(svg)
+    _, top, width, height = map(float, picture.get("viewBox").split())
+    boxes = [tuple(float(r.get(k)) for k in ("x", "y", "width", "height")) for r in picture.iter(f"{SVG}rect")
+             if r.get("rx")]  # fmt: skip
+    for word in picture.iter(f"{SVG}text"):
+        x, y = float(word.get("x")), float(word.get("y"))
+        assert 0 < x < width
+        assert top < y < top + height
+        if word.get("font-size") == "9":
+            assert not any(left <= x <= left + w and up <= y <= up + h for left, up, w, h in boxes), word.text
+    for path in picture.iter(f"{SVG}path"):
+        if path.get("marker-end"):
+            start, first, second, end = (float(y) for y in path.get("d").split()[1::2])
+            assert top < (start + 3 * first + 3 * second + end) / 8 < top + height  # a Bezier curve's middle
 
 
 def test_options_have_vhpops_letters_and_names(capsys):
@@ -71,6 +91,23 @@ def test_options_have_vhpops_letters_and_names(capsys):
             "--search-algorithm", "IDA", "--weight", "1", "--action-cost", "DURATION", "--tolerance", "0.01",
             "--random-open-conditions", "--seed", "1", "--verbose", "--time-limit", "1"]  # fmt: skip
     assert plan(capsys, DOMAIN, PROBLEM, *long)[0] == 0
+
+
+@pytest.mark.parametrize("name", ["IDA", "ida", "IDA*", "a*"])
+def test_searches_go_by_their_names_with_and_without_a_star(capsys, name):
+    assert plan(capsys, DOMAIN, PROBLEM, "-s", name)[0] == 0
+
+
+def test_a_pipe_is_read_once_even_when_another_program_plans(tmp_path):
+    echo = tmp_path / "echo.py"
+    echo.write_text("import sys; [open(f).read()[0] for f in sys.argv[1:]]; print('0:(approachball pos1 pos2)')")
+    command = [sys.executable, "-m", "tools.main", "plan", str(OWN / "soccer-domain.pddl"), "-"]
+    text = (OWN / "soccer-p1.pddl").read_text()
+    for options in ([], ["--planner", f"{sys.executable} {echo}"]):
+        done = subprocess.run([*command, *options], input=text, capture_output=True, text=True, cwd=DATA.parents[2])
+        assert "IndexError" not in done.stderr
+        told = "unsound" if options else "1:(approachball pos1 pos2)"  # half a plan: the child got both texts
+        assert told in done.stdout + done.stderr
 
 
 def test_verbose_stands_before_the_files_as_well(capsys):
