@@ -10,8 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from executive.planning.connectives import Every
 from executive.planning.ground_action import GroundAction, Span
-from executive.planning.ground_formula import Every, GroundCondition
+from executive.planning.ground_formula import GroundCondition
 
 Spanned = Iterable[tuple[GroundCondition, Span]]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from executive.planning.additive_heuristic import Value, literals_of
-from executive.planning.ground_formula import Some
+from executive.planning.connectives import Some
 from executive.planning.ground_task import GroundTask
 from executive.planning.open_conditions import reusable
 from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat

@@ -10,27 +10,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from executive.library import Fact
+from executive.planning.connectives import FALSE, TRUE, Every, Some, conjunction, disjunction
 from executive.planning.language import And, Atom, Domain, Equal, Formula, Literal, Not, Or, Quantified, Typed
 
-
-@dataclass(frozen=True, slots=True)
-class Every:
-    """A conjunction of ground conditions."""
-
-    parts: tuple[GroundCondition, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Some:
-    """A disjunction of ground conditions."""
-
-    parts: tuple[GroundCondition, ...]
-
-
-GroundCondition = int | Every | Some
+GroundCondition = int | Every[int] | Some[int]
 MAX_FORMULAS = 60_000  # a third of a second of grounding; the competition problems at hand need 20 000
-TRUE = Every(())
-FALSE = Some(())
 
 
 class TooMuchToGround(Exception):
@@ -133,35 +117,9 @@ def bindings(variables: tuple[Typed, ...], binding: Binding, world: World) -> It
         yield {**binding, **dict(zip(names, objects, strict=True))}
 
 
-def conjunction(conditions: Iterable[GroundCondition]) -> GroundCondition:
-    """All of them, flattened, in order, as often as they stand there; FALSE when one is false."""
-    parts: list[GroundCondition] = []
-    for condition in conditions:
-        if condition == FALSE:
-            return FALSE
-        parts += condition.parts if isinstance(condition, Every) else (condition,)
-    return parts[0] if len(parts) == 1 else Every(tuple(parts))
-
-
-def disjunction(conditions: Iterable[GroundCondition]) -> GroundCondition:
-    """Any of them, flattened, each once, in order; TRUE when one is true."""
-    parts: dict[GroundCondition, None] = {}
-    for condition in conditions:
-        if condition == TRUE:
-            return TRUE
-        for part in condition.parts if isinstance(condition, Some) else (condition,):
-            parts.setdefault(part)
-    return next(iter(parts)) if len(parts) == 1 else Some(tuple(parts))
-
-
 def negation(condition: GroundCondition) -> GroundCondition:
     """The opposite condition."""
     if isinstance(condition, int):
         return condition ^ 1
     parts = tuple(negation(part) for part in condition.parts)
     return disjunction(parts) if isinstance(condition, Every) else conjunction(parts)
-
-
-def conjuncts(condition: GroundCondition) -> tuple[GroundCondition, ...]:
-    """The condition as a list of parts that must all hold."""
-    return condition.parts if isinstance(condition, Every) else (condition,)

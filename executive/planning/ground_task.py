@@ -7,7 +7,8 @@ from typing import Literal as OneOf
 
 from executive.planning.achievers import Achiever, achievers_of
 from executive.planning.additive_heuristic import Estimates, action_costs, estimate
-from executive.planning.ground_formula import Facts, GroundCondition, conjuncts, ground
+from executive.planning.connectives import conjuncts
+from executive.planning.ground_formula import Facts, GroundCondition, ground
 from executive.planning.grounding import GroundActions
 from executive.planning.language import Literal
 from executive.planning.orderings import FIRST

@@ -11,18 +11,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from executive.planning.connectives import FALSE, conjunction, conjuncts
 from executive.planning.durations import duration_range, ticks_of
 from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
 from executive.planning.ground_formula import (
-    FALSE,
     Binding,
     Facts,
     GroundCondition,
     TooMuchToGround,
     World,
     bindings,
-    conjunction,
-    conjuncts,
     ground,
     negation,
 )

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from executive.planning.cells import without
-from executive.planning.ground_formula import Every, GroundCondition, Some
+from executive.planning.connectives import Every, Some
+from executive.planning.ground_formula import GroundCondition
 from executive.planning.ground_task import GroundTask
 from executive.planning.new_steps import new_step_plans, opened_by
 from executive.planning.orderings import INITIAL, Orderings

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from executive.planning.cells import without
+from executive.planning.connectives import conjunction
 from executive.planning.ground_action import Span
-from executive.planning.ground_formula import GroundCondition, conjunction, negation
+from executive.planning.ground_formula import GroundCondition, negation
 from executive.planning.ground_task import GroundTask
 from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, new
 

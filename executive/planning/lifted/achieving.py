@@ -7,10 +7,11 @@ import math
 from collections.abc import Iterator
 
 from executive.planning.cells import without
+from executive.planning.connectives import Some
 from executive.planning.ground_formula import TooMuchToGround
 from executive.planning.lifted.bindings import Bindings, Term
 from executive.planning.lifted.effects import Guard, LiftedEffect
-from executive.planning.lifted.formula import AnyOf, LiftedLiteral, tagged
+from executive.planning.lifted.formula import LiftedLiteral, of_step, tagged
 from executive.planning.lifted.lifted_plan import (
     LiftedCondition,
     LiftedLink,
@@ -33,7 +34,7 @@ def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) 
     Of a disjunction each part is one way.
     """
     rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
-    if isinstance(flaw.condition, AnyOf):
+    if isinstance(flaw.condition, Some):
         parts = (opened(rest, part, flaw.first, flaw.last) for part in flaw.condition.parts)
         return [child for child in parts if child is not None]
     literal = flaw.condition
@@ -122,8 +123,8 @@ def _by_new_step(
         return None
     cell = grown.open
     for condition, (first, last) in reversed(schema.conditions):
-        part = condition.of_step(step)
-        assert isinstance(part, LiftedLiteral | AnyOf)
+        part = of_step(condition, step)
+        assert isinstance(part, LiftedLiteral | Some)
         cell = LiftedCondition(part, node + first, node + last, cell)
     grown = grown._replace(
         steps=(*plan.steps, schema),
@@ -162,7 +163,7 @@ def _guarded(plan: LiftedPlan, guards: tuple[Guard, ...], step: int, node: int) 
     grown: LiftedPlan | None = plan
     for guard in reversed(guards):
         first, last = guard.span
-        grown = grown and opened(grown, guard.holds.of_step(step), node + first, node + last)
+        grown = grown and opened(grown, of_step(guard.holds, step), node + first, node + last)
     return grown
 
 

@@ -5,10 +5,9 @@ In a schema variables are plain names; in a plan each is tagged with its step (`
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from executive.planning.connectives import FALSE, TRUE, Every, Some
 from executive.planning.lifted.bindings import Term
 
 
@@ -36,31 +35,9 @@ class Equality(NamedTuple):
         return Equality(tagged(self.left, step), tagged(self.right, step), self.same)
 
 
-@dataclass(frozen=True, slots=True)
-class AllOf:
-    """A conjunction."""
-
-    parts: tuple[LiftedFormula, ...]
-
-    def of_step(self, step: int) -> AllOf:
-        """The conjunction with the variables of one step."""
-        return AllOf(tuple(part.of_step(step) for part in self.parts))
-
-
-@dataclass(frozen=True, slots=True)
-class AnyOf:
-    """A disjunction."""
-
-    parts: tuple[LiftedFormula, ...]
-
-    def of_step(self, step: int) -> AnyOf:
-        """The disjunction with the variables of one step."""
-        return AnyOf(tuple(part.of_step(step) for part in self.parts))
-
-
-LiftedFormula = LiftedLiteral | Equality | AllOf | AnyOf
-TRUE = AllOf(())
-FALSE = AnyOf(())
+Leaf = LiftedLiteral | Equality
+AnyOf = Some[Leaf]
+LiftedFormula = Leaf | Every[Leaf] | AnyOf
 
 
 def tagged(term: Term, step: int) -> Term:
@@ -68,29 +45,15 @@ def tagged(term: Term, step: int) -> Term:
     return (term, step) if isinstance(term, str) and term[0] == "?" else term
 
 
-def conjunction(formulas: Iterable[LiftedFormula]) -> LiftedFormula:
-    """All of them, flattened, in order; FALSE when one is false."""
-    parts: list[LiftedFormula] = []
-    for formula in formulas:
-        if formula == FALSE:
-            return FALSE
-        parts += conjuncts(formula)
-    return parts[0] if len(parts) == 1 else AllOf(tuple(parts))
-
-
-def disjunction(formulas: Iterable[LiftedFormula]) -> LiftedFormula:
-    """Any of them, flattened, each once, in order; TRUE when one is true."""
-    parts: dict[LiftedFormula, None] = {}
-    for formula in formulas:
-        if formula == TRUE:
-            return TRUE
-        parts.update(dict.fromkeys(formula.parts if isinstance(formula, AnyOf) else (formula,)))
-    return next(iter(parts)) if len(parts) == 1 else AnyOf(tuple(parts))
-
-
-def conjuncts(formula: LiftedFormula) -> tuple[LiftedFormula, ...]:
-    """The formula as a list of parts that must all hold."""
-    return formula.parts if isinstance(formula, AllOf) else (formula,)
+def of_step(formula: LiftedFormula, step: int) -> LiftedFormula:
+    """A schema's formula with the variables of one step."""
+    match formula:
+        case Every(parts):
+            return Every(tuple(of_step(part, step) for part in parts))
+        case Some(parts):
+            return Some(tuple(of_step(part, step) for part in parts))
+        case literal:
+            return literal.of_step(step)
 
 
 def equality(left: Term, right: Term, same: bool) -> LiftedFormula:

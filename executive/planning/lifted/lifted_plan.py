@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from executive.planning.connectives import FALSE, Some, conjuncts
 from executive.planning.lifted.bindings import Bindings
 from executive.planning.lifted.effects import Guard
-from executive.planning.lifted.formula import FALSE, AnyOf, Equality, LiftedFormula, LiftedLiteral, conjuncts
+from executive.planning.lifted.formula import AnyOf, Equality, LiftedFormula, LiftedLiteral, of_step
 from executive.planning.lifted.schema import Schema
 from executive.planning.lifted.task import LiftedTask, Placed
 from executive.planning.orderings import GOAL, Closure, Orderings
@@ -67,7 +68,7 @@ def initial_plan(task: LiftedTask) -> LiftedPlan:
     orderings: Orderings = TemporalNetwork.start(ticks) if task.moments == 2 else Closure()
     choices = {(v.name, GOAL_STEP): task.world.choices(v) for v in task.goal_variables}
     empty = LiftedPlan((), orderings, Bindings().with_variables(choices), None, None, None, 0, 0, 0)
-    plan = opened(empty, task.goal.of_step(GOAL_STEP), GOAL, GOAL)
+    plan = opened(empty, of_step(task.goal, GOAL_STEP), GOAL, GOAL)
     return plan or empty._replace(open=LiftedCondition(FALSE, GOAL, GOAL, None), open_count=1)
 
 
@@ -83,7 +84,7 @@ def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> L
             if bound is None:
                 return None
             bindings = bound
-        elif isinstance(part, LiftedLiteral | AnyOf):
+        elif isinstance(part, LiftedLiteral | Some):
             cell, count = LiftedCondition(part, first, last, cell), count + 1
     return plan._replace(open=cell, open_count=count, bindings=bindings)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
 from executive.planning.cells import cells_of
+from executive.planning.connectives import Every, Some
 from executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
 from executive.planning.lifted.bindings import Bindings
-from executive.planning.lifted.formula import AllOf, AnyOf, Equality, LiftedFormula, LiftedLiteral
+from executive.planning.lifted.formula import Equality, LiftedFormula, LiftedLiteral
 from executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
 from executive.planning.lifted.resolving import choices, separations
 from executive.planning.lifted.task import LiftedTask
@@ -73,9 +74,9 @@ class LiftedMeasures:
             case Equality(left, right, same):
                 possible = bindings.may_equal(left, right) if same else not bindings.same(left, right)
                 return NOTHING if possible else UNREACHABLE
-            case AllOf(parts):
+            case Every(parts):
                 return sum_of(self._value(part, bindings) for part in parts)
-            case AnyOf(parts):
+            case Some(parts):
                 return min((self._value(part, bindings) for part in parts), default=UNREACHABLE)
 
     def provided(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:

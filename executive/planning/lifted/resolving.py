@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from executive.planning.cells import without
+from executive.planning.lifted.formula import of_step
 from executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat, opened
 from executive.planning.lifted.task import LiftedTask
 from executive.planning.lifted.threatening import is_threat
@@ -32,7 +33,7 @@ def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Ite
     step = task.step_of(threat.node)
     for guard in threat.guards:
         first, last = (task.node_of(step) + moment for moment in guard.span)
-        child = opened(plan, guard.fails.of_step(step), first, last)
+        child = opened(plan, of_step(guard.fails, step), first, last)
         if child is not None:
             yield child
 
