@@ -123,3 +123,9 @@ def negation(condition: GroundCondition) -> GroundCondition:
         return condition ^ 1
     parts = tuple(negation(part) for part in condition.parts)
     return disjunction(parts) if isinstance(condition, Every) else conjunction(parts)
+
+
+def contradictory(conditions: Iterable[GroundCondition]) -> bool:
+    """Whether a literal and its opposite stand among conditions of one moment."""
+    literals = {condition for condition in conditions if isinstance(condition, int)}
+    return any(literal ^ 1 in literals for literal in literals)

@@ -7,8 +7,8 @@ from typing import Literal as OneOf
 
 from executive.planning.achievers import Achiever, achievers_of
 from executive.planning.additive_heuristic import Estimates, action_costs, estimate
-from executive.planning.connectives import conjuncts
-from executive.planning.ground_formula import Facts, GroundCondition, ground
+from executive.planning.connectives import FALSE, conjuncts
+from executive.planning.ground_formula import Facts, GroundCondition, contradictory, ground
 from executive.planning.grounding import GroundActions
 from executive.planning.language import Literal
 from executive.planning.orderings import FIRST
@@ -43,6 +43,8 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
     """The task of a problem whose world has been grounded."""
     facts = Facts(grounded.facts)
     goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
+    if contradictory(goal):
+        goal = (FALSE,)
     holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
     timed = tuple(
         (facts.literal(t.literal.fact, t.literal.positive), round(t.time_s / grounded.tick_s)) for t in problem.timed

@@ -21,6 +21,7 @@ from executive.planning.ground_formula import (
     TooMuchToGround,
     World,
     bindings,
+    contradictory,
     ground,
     negation,
 )
@@ -182,7 +183,7 @@ def _span(when: When, temporal: bool) -> Span:
 def _conditions(
     conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts
 ) -> tuple[tuple[GroundCondition, Span], ...] | None:
-    """The ground conditions by span, in order; None when one is false."""
+    """The ground conditions by span, in order; None when one is false, or two of one span contradict each other."""
     grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
         result = ground(condition.formula, binding, world, facts)
@@ -190,6 +191,9 @@ def _conditions(
             return None
         for part in conjuncts(result):
             grounded.append((part, _span(condition.when, world.temporal)))
+    spans = {span for _, span in grounded}
+    if any(contradictory(part for part, own in grounded if own == span) for span in spans):
+        return None
     return tuple(grounded)
 
 

@@ -50,6 +50,25 @@ def test_a_search_that_runs_dry_proves_unsolvable():
     assert "dead end" in result.reason
 
 
+def test_a_goal_that_contradicts_itself_is_proven_unsolvable_at_once():
+    result = solve(*door("(and (open) (not (open)))"))
+    assert (result.status, result.visited) == ("unsolvable", 0)
+
+
+@pytest.mark.parametrize("kind", ["action", "durative-action"])
+def test_an_action_whose_conditions_contradict_each_other_is_no_way(kind):
+    timed = kind != "action"
+    start, end = ("(at start ", "(at end ") if timed else ("(", "(")
+    parts = (":duration (= ?duration 1) :condition", ":effect") if timed else (":precondition", ":effect")
+    literal = f"{start}(p ?x)) {start}(not (p ?y)))" if timed else "(p ?x) (not (p ?y))"
+    made = f"{end}(q ?x ?y))" if timed else "(q ?x ?y)"
+    domain = f"""(define (domain d) (:predicates (p ?x) (q ?x ?y))
+      (:{kind} a :parameters (?x ?y) {parts[0]} (and {literal}) {parts[1]} {made}))"""
+    task = "(define (problem x) (:domain d) (:objects a b) (:init (p a)) (:goal (q a {})))"
+    assert solve(*read(domain, task.format("a"))).status == "unsolvable"
+    assert solve(*read(domain, task.format("b"))).status == "solved"
+
+
 def test_an_endless_search_ends_at_its_limit():
     result = solve(*door("(in)"), dataclasses.replace(MATCHING, node_limit=500))
     assert result.status == "limit"
