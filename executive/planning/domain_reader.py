@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from executive.planning.action_reader import read_action
 from executive.planning.language import Domain, Typed
-from executive.planning.s_expressions import Form, Node, Word, form_of, read_form, word_of
+from executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
 from executive.planning.typed_lists import read_typed, variables_of
 
 MAX_TYPES = 500  # the largest competition domain has 30
@@ -19,6 +19,8 @@ SUPPORTED = frozenset(
         ":timed-initial-literals", ":fluents", ":numeric-fluents",
     }
 )  # fmt: skip
+_FIRST = (":types", ":constants", ":predicates", ":functions")
+_ACTIONS = frozenset({":action", ":durative-action"})
 _OTHER_PARTS = {
     ":derived": "a derived predicate",
     ":axiom": "a derived predicate (axiom)",
@@ -27,6 +29,7 @@ _OTHER_PARTS = {
     ":event": "an event",
     ":safety": "a safety constraint",
 }
+_REPEATED = _ACTIONS | {":requirements", *_OTHER_PARTS}  # the last are refused by name
 
 
 def parse_domain(text: str, source: str = "domain") -> Domain:
@@ -42,9 +45,10 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     form = read_form(text, source)
     name = define_name(form, "domain")
     domain = Domain(name, {"object": ()}, {"object": frozenset({"object"})}, (), {}, {}, ())
-    for part in form.items[2:]:
-        domain = _declare(form_of(part, "a part such as (:action ...)"), domain)
-    actions = tuple(read_action(part, domain) for part in form.items[2:] if isinstance(part, Form) and _is_action(part))
+    parts = parts_in_order(form, "a part such as (:action ...)", _FIRST, _REPEATED)
+    for part in parts:
+        domain = _declare(part, domain)
+    actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
     _refuse_twins(form, [action.name for action in actions])
     return replace(domain, actions=actions)
 
@@ -57,10 +61,6 @@ def define_name(form: Form, kind: str) -> str:
     if title.head != kind or len(title.items) != 2:
         raise title.place.error(f"expected ({kind} name)")
     return word_of(title.items[1], f"the {kind}'s name")
-
-
-def _is_action(form: Form) -> bool:
-    return form.head in {":action", ":durative-action"}
 
 
 def _declare(form: Form, domain: Domain) -> Domain:
@@ -79,7 +79,7 @@ def _declare(form: Form, domain: Domain) -> Domain:
             return replace(domain, predicates=_signatures(rest, domain))
         case ":functions":
             return replace(domain, functions=_signatures(_without_types(rest), domain))
-        case ":action" | ":durative-action":
+        case head if head in _ACTIONS:
             return domain
         case head if head in _OTHER_PARTS:
             raise form.place.unsupported(_OTHER_PARTS[head])

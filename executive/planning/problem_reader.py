@@ -10,7 +10,7 @@ from executive.planning.domain_reader import check_requirements, define_name
 from executive.planning.formula_reader import Scope, expect, read_atom, read_formula, read_terms
 from executive.planning.language import Domain, Formula, Literal, Typed
 from executive.planning.problem import Problem, TimedLiteral
-from executive.planning.s_expressions import Form, Node, Word, form_of, read_form, word_of
+from executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
 from executive.planning.typed_lists import read_typed
 
 MAX_OBJECTS = 10_000
@@ -39,9 +39,8 @@ def parse_problem(text: str, domain: Domain, source: str = "problem") -> Problem
     """
     form = read_form(text, source)
     name = define_name(form, "problem")
-    parts = [form_of(part, "a part such as (:goal ...)") for part in form.items[2:]]
     draft = _Draft()
-    for part in sorted(parts, key=lambda part: part.head != ":objects"):  # objects first, wherever they stand
+    for part in parts_in_order(form, "a part such as (:goal ...)", (":objects",), frozenset({":requirements"})):
         _read_part(part, draft, domain)
     if draft.goal is None:
         raise form.place.error("the problem has no (:goal ...)")

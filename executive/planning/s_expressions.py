@@ -128,3 +128,24 @@ def form_of(node: Node, what: str) -> Form:
     if isinstance(node, Form):
         return node
     raise node.place.error(f"expected {what}, found '{node.text}'")
+
+
+def parts_in_order(form: Form, what: str, order: tuple[str, ...], repeated: frozenset[str]) -> list[Form]:
+    """The parts behind a definition's name: first those whose words are read by the others, wherever they stand.
+
+    Args:
+      form: (define (kind name) part ...).
+      what: Such a part, for whoever wrote something else.
+      order: Heads of the parts that come first.
+      repeated: Heads of the parts that may stand there more than once.
+
+    Raises:
+      PddlError: Another part stands there twice.
+    """
+    parts = [form_of(part, what) for part in form.items[2:]]
+    seen: set[str] = set()
+    for part in parts:
+        if part.head in seen - repeated:
+            raise part.place.error(f"'{part.head}' is given twice")
+        seen.add(part.head)
+    return sorted(parts, key=lambda part: order.index(part.head) if part.head in order else len(order))

@@ -304,6 +304,8 @@ def test_what_is_not_supported_is_refused_by_name_with_its_place(part, place, fe
         ("(:durative-action a :duration (= ?duration 1) :effect (p))", "my.pddl:4:56: expected (at start ...)"),
         ("(:action a :effect (p)) (:action a :effect (p))", "my.pddl:1:1: the action 'a' is declared twice"),
         ("(:rules)", "my.pddl:4:2: unknown part ':rules' of a domain"),
+        ("(:predicates (r))", "my.pddl:4:2: ':predicates' is given twice"),
+        ("(:derived (p) (q)) (:derived (q) (p))", "my.pddl:4:2: a derived predicate is not supported"),
     ],
 )
 def test_errors_point_at_line_and_column(part, message):
@@ -321,6 +323,7 @@ PROBLEM = "(define (problem p) (:domain d)\n (:objects a)\n {part})"
         ("(:init (p))", "problem:1:1: the problem has no (:goal ...)"),
         ("(:init (q b)) (:goal (p))", "problem:3:12: unknown object 'b'"),
         ("(:goal (q ?x))", "problem:3:12: unknown variable '?x'"),
+        ("(:goal (p)) (:goal (q a))", "problem:3:14: ':goal' is given twice"),
         ("(:goal (p)) (:metric maximize (f))", "problem:3:14: the metric maximize (f) is not supported"),
         ("(:goal (p)) (:init (= (g) 1))", "problem:3:24: unknown function 'g'"),
         ("(:goal (p)) (:init (at -1 (p)))", "problem:3:25: expected a time of at least 0"),
@@ -334,6 +337,13 @@ def test_errors_in_problems_point_at_line_and_column(part, message):
     with pytest.raises(PddlError) as caught:
         read(domain_with(""), PROBLEM.replace("{part}", part))
     assert str(caught.value).startswith(message)
+
+
+def test_declarations_stand_in_any_order():
+    text = """(define (domain d) (:action a :parameters (?x - cup) :effect (p ?x k)) (:predicates (p ?x - cup ?k - key))
+      (:constants k - key) (:types cup key))"""
+    task = "(define (problem x) (:goal (p c k)) (:init) (:objects c - cup) (:domain d))"
+    assert [step.action for step in solve(*read(text, task)).plan.steps] == [("a", "c")]
 
 
 def test_a_problem_of_another_domain_is_refused():
