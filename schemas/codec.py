@@ -1,6 +1,6 @@
 """Bytes of the bus <-> typed values. Reading is total: a message or a Rejected, never an exception.
 
-Payloads are ROS 2 CDR. Writing does not judge; reading refuses what is too long, damaged, or not finite.
+Payloads are ROS 2 CDR. Writing does not judge; reading refuses what is too long, damaged, or no number to reckon with.
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ def decode(what: Topic | type, data: bytes) -> Message | Rejected:
     """The message in CDR bytes that came over a topic (or of a type), or why it is refused.
 
     The number of different reasons is small, so that they can be counted: "too long", "malformed", "trailing bytes",
-    "not finite", "stamp out of range", "orientation is not a unit quaternion", "a joint lacks a value".
+    "not finite", "number too large", "negative variance", "stamp out of range", "orientation is not a unit quaternion",
+    "a joint lacks a value".
     """
     kind, limit = (what.type, what.max_bytes) if isinstance(what, Topic) else (what, _LIMITS[what])
     if len(data) > limit:

@@ -6,7 +6,6 @@ writes only those.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import cache
@@ -14,7 +13,8 @@ from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
-from schemas.ros_time import Refusal, header, stamp_ns
+from schemas.numbers import check_array, check_numbers, check_variances
+from schemas.ros_time import header, stamp_ns
 from schemas.typesystem import ros_class, ros_type
 
 Convert = Callable[[Any], Any]
@@ -25,27 +25,31 @@ def _same(value: Any) -> Any:
     return value
 
 
-def _finite(value: float) -> float:
-    if not math.isfinite(value):
-        raise Refusal("not finite")
+def _number(value: float) -> float:
+    check_numbers(value)
     return value
 
 
-def _finite_tuple(values: Any) -> tuple[float, ...]:
-    if not np.isfinite(values).all():
-        raise Refusal("not finite")
+def _variance(value: float) -> float:
+    check_numbers(value)
+    check_variances(value)
+    return value
+
+
+def _numbers(values: Any) -> tuple[float, ...]:
+    check_array(values)
     return tuple(values.tolist())
 
 
-def _field(hint: Any) -> tuple[Convert, Convert]:
+def _field(name: str, hint: Any) -> tuple[Convert, Convert]:
     """How one field is written and read, by its type hint."""
     if hint is float:
-        return float, _finite
+        return float, _variance if name.startswith("var_") else _number
     if hint in {int, bool, str}:
         return _same, _same
     item: Any = get_args(hint)[0]
     if item is float:
-        return lambda values: np.array(values, dtype=np.float64), _finite_tuple
+        return lambda values: np.array(values, dtype=np.float64), _numbers
     if item is int:
         return lambda values: np.array(values, dtype=np.int64), lambda values: tuple(values.tolist())
     if item is str:
@@ -60,7 +64,7 @@ def converters(kind: Any) -> tuple[Convert, Convert]:
     hints = get_type_hints(kind)
     stamped = next(iter(hints)) == "stamp_ns"
     frame = FRAMES.get(kind.__name__, "")
-    rows = [(name, *_field(hint)) for name, hint in hints.items() if name != "stamp_ns"]
+    rows = [(name, *_field(name, hint)) for name, hint in hints.items() if name != "stamp_ns"]
     target = ros_class(ros_type(kind))
 
     def write(message: Any) -> Any:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from schemas import messages as m
+from schemas.numbers import check_array, check_numbers, check_variances
 from schemas.ros_time import Refusal, header, stamp_ns, time, time_ns
 from schemas.typesystem import ros_class
 
@@ -25,11 +26,6 @@ def _geometry(name: str) -> Any:
     return ros_class(f"geometry_msgs/msg/{name}")
 
 
-def _finite(*values: float) -> None:
-    if not all(map(math.isfinite, values)):
-        raise Refusal("not finite")
-
-
 def _pose(x: float, y: float, phi: float) -> Any:
     turn = _geometry("Quaternion")(x=0.0, y=0.0, z=math.sin(phi / 2), w=math.cos(phi / 2))
     return _geometry("Pose")(position=_geometry("Point")(x=x, y=y, z=0.0), orientation=turn)
@@ -37,7 +33,7 @@ def _pose(x: float, y: float, phi: float) -> Any:
 
 def _planar(pose: Any) -> tuple[float, float, float]:
     point, turn = pose.position, pose.orientation
-    _finite(point.x, point.y, point.z, turn.x, turn.y, turn.z, turn.w)
+    check_numbers(point.x, point.y, point.z, turn.x, turn.y, turn.z, turn.w)
     norm = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w
     if abs(norm - 1) > UNIT_TOLERANCE:
         raise Refusal("orientation is not a unit quaternion")
@@ -52,13 +48,8 @@ def _twist(v: float, omega: float) -> Any:
 
 def _speeds(twist: Any) -> tuple[float, float]:
     linear, angular = twist.linear, twist.angular
-    _finite(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+    check_numbers(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
     return linear.x, angular.z
-
-
-def _finite_matrix(matrix: Any) -> None:
-    if not np.isfinite(matrix).all():
-        raise Refusal("not finite")
 
 
 def velocity_to_ros(message: m.VelocityCommand) -> Any:
@@ -82,8 +73,8 @@ def odometry_to_ros(message: m.Odometry) -> Any:
 
 def odometry_from_ros(ros: Any) -> m.Odometry:
     """The planar part of an Odometry."""
-    _finite_matrix(ros.pose.covariance)
-    _finite_matrix(ros.twist.covariance)
+    check_array(ros.pose.covariance)
+    check_array(ros.twist.covariance)
     return m.Odometry(stamp_ns(ros.header), *_planar(ros.pose.pose), *_speeds(ros.twist.twist))
 
 
@@ -98,8 +89,9 @@ def pose_to_ros(message: m.PoseEstimate) -> Any:
 def pose_from_ros(ros: Any) -> m.PoseEstimate:
     """Planar pose with the variances of x, y and yaw."""
     covariance = ros.pose.covariance
-    _finite_matrix(covariance)
-    variances = (float(covariance[i]) for i in (COVARIANCE_X, COVARIANCE_Y, COVARIANCE_YAW))
+    check_array(covariance)
+    variances = [float(covariance[i]) for i in (COVARIANCE_X, COVARIANCE_Y, COVARIANCE_YAW)]
+    check_variances(*variances)
     return m.PoseEstimate(stamp_ns(ros.header), *_planar(ros.pose.pose), *variances)
 
 
@@ -140,7 +132,7 @@ def joints_from_ros(ros: Any) -> m.JointState:
     """All four of a joint's values; a sender that leaves out velocities or efforts is refused."""
     rows = (ros.position, ros.velocity, ros.effort)
     for row in rows:
-        _finite_matrix(row)
+        check_array(row)
     if any(len(row) != len(ros.name) for row in rows):
         raise Refusal("a joint lacks a value")
     return m.JointState(stamp_ns(ros.header), tuple(ros.name), *(tuple(row.tolist()) for row in rows))

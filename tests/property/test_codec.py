@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from schemas import messages as m
 from schemas.codec import decode, encode
 from schemas.errors import Rejected
+from schemas.numbers import MOST
 from schemas.own import example
 from schemas.ros_time import MAX_STAMP_NS
 from schemas.topics import TOPICS
 from schemas.typesystem import MESSAGES, STANDARD
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
-FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+FLOATS = st.floats(-MOST, MOST)
 PLAIN = {
     float: FLOATS,
     int: st.integers(-(2**63), 2**63 - 1),
@@ -30,6 +31,8 @@ PLAIN = {
 def values(name, hint):
     if name == "stamp_ns":
         return st.integers(0, MAX_STAMP_NS)
+    if name.startswith("var_"):
+        return st.floats(0.0, MOST)
     if hint in PLAIN:
         return PLAIN[hint]
     item = get_args(hint)[0]
@@ -126,6 +129,26 @@ def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
         pytest.skip("an infinite angle has no quaternion to write")
     found = decode(kind, encode(put(example(kind), bad)))
     assert found == Rejected("not finite")
+
+
+@pytest.mark.parametrize(("kind", "path", "put"), FLOAT_FIELDS)
+@pytest.mark.parametrize("huge", [1e308, -1e16])
+def test_a_number_so_large_that_its_square_might_overflow_is_refused(kind, path, put, huge):
+    if path == "phi" and kind in STANDARD:
+        pytest.skip("an angle goes as a quaternion")
+    assert decode(kind, encode(put(example(kind), huge))) == Rejected("number too large")
+
+
+@pytest.mark.parametrize(
+    "reading",
+    [
+        m.PoseEstimate(0, 1.0, 2.0, 0.0, -1.0, 0.1, 0.1),
+        m.PoseEstimate(0, 1.0, 2.0, 0.0, 0.1, 0.1, -1.0),
+        m.BallPercept(0, 1.0, 2.0, 0.1, -0.1, 0.0),
+    ],
+)
+def test_a_negative_variance_is_refused(reading):
+    assert decode(type(reading), encode(reading)) == Rejected("negative variance")
 
 
 @pytest.mark.parametrize("topic", TOPICS.values(), ids=TOPICS)

@@ -21,6 +21,8 @@ LOST_JUMP_RAD = 0.6
 LOST_POSES = 3  # so many such poses in a row, and they are believed
 CREDIBLE_MPS = 1.5  # a faster odometry has been restarted in between
 CREDIBLE_RADPS = 3.0
+# m² or rad². ROS nodes that know no covariance send zeros: none is surer than a millimetre. Beyond 5 m all is one
+VARIANCES = (1e-6, 25.0)
 MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity says nothing
 
 
@@ -94,8 +96,8 @@ def _advance(belief: SoccerBelief, to_ns: int) -> SoccerBelief:
 
 
 def _drive(belief: SoccerBelief, to_ns: int, odom: Odometry) -> SoccerBelief:
-    """Odometry tells the mean velocity up to its arrival."""
-    if to_ns < belief.time_ns:
+    """Odometry tells the mean velocity up to its arrival; speeds that the robot cannot have tell nothing."""
+    if to_ns < belief.time_ns or abs(odom.v) > CREDIBLE_MPS or abs(odom.omega) > CREDIBLE_RADPS:
         return belief
     duration_s = 1e-9 * (to_ns - belief.time_ns) if belief.time_ns else 0.0
     v, omega = _mean_velocity(belief, odom)
@@ -152,14 +154,25 @@ def _locate(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
         if doubted >= LOST_POSES:
             return _relocated(belief, seen)
         return _with_pose(belief, belief.pose, belief.poses_seen, doubted)
-    variances = (POSE_ERROR_MEMORY * seen.var_x, POSE_ERROR_MEMORY * seen.var_y, POSE_ERROR_MEMORY * seen.var_phi)
+    x, y, phi = _variances(seen)
+    variances = (POSE_ERROR_MEMORY * x, POSE_ERROR_MEMORY * y, POSE_ERROR_MEMORY * phi)
     pose = planar_ekf.correct(belief.pose, seen.x, seen.y, seen.phi, variances)
     return _with_pose(belief, pose, belief.poses_seen + 1, 0)
 
 
 def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
-    pose = Pose(seen.x, seen.y, seen.phi, (seen.var_x, 0.0, 0.0, seen.var_y, 0.0, seen.var_phi))
+    x, y, phi = _variances(seen)
+    pose = Pose(seen.x, seen.y, seen.phi, (x, 0.0, 0.0, y, 0.0, phi))
     return _with_pose(belief, pose, 1, 0)
+
+
+def _variances(seen: PoseEstimate) -> tuple[float, float, float]:
+    return _bounded(seen.var_x), _bounded(seen.var_y), _bounded(seen.var_phi)
+
+
+def _bounded(variance: float) -> float:
+    least, most = VARIANCES
+    return min(most, max(least, variance))
 
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
@@ -169,6 +182,6 @@ def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> Soc
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
     b = belief
-    variance = 0.5 * (seen.var_x + seen.var_y)
+    variance = _bounded(0.5 * (seen.var_x + seen.var_y))
     ball = ball_track.see(b.ball, seen.x, seen.y, variance, b.pose.phi, b.time_ns)
     return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, b.poses_seen, b.poses_doubted, b.odom)

@@ -1,0 +1,52 @@
+"""Whatever legal numbers the bus brings, nothing raises in the soccer robot's belief, and nothing poisons it."""
+
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from executive import domains
+from executive.domains.soccer import belief as soccer
+from schemas import messages as m
+from schemas.messages import Sample
+from schemas.numbers import MOST
+
+SOCCER = domains.load("soccer")
+ANY = st.floats(-MOST, MOST) | st.sampled_from([0.0, MOST, -MOST, 5e-324])
+ANGLE = st.floats(-math.pi, math.pi)
+VARIANCE = st.floats(0.0, MOST) | st.sampled_from([0.0, 5e-324, MOST])
+STAMP = st.integers(0, 2**62)
+READINGS = st.one_of(
+    st.builds(m.Odometry, STAMP, ANY, ANY, ANGLE, ANY, ANY),
+    st.builds(m.PoseEstimate, STAMP, ANY, ANY, ANGLE, VARIANCE, VARIANCE, VARIANCE),
+    st.builds(m.BallPercept, STAMP, ANY, ANY, VARIANCE, VARIANCE, ANY),
+)
+
+
+@given(st.lists(READINGS, max_size=40))
+@settings(deadline=None, max_examples=100)
+def test_no_legal_reading_leaves_the_belief_without_a_number(readings):
+    belief = soccer.unknown()
+    for k, reading in enumerate(readings, start=1):
+        now_ns = k * 80_000_000
+        belief = soccer.update(belief, now_ns, (Sample("any", reading, now_ns, k),))
+        assert all(math.isfinite(value) for value in SOCCER.belief_values(belief))
+
+
+def test_poses_with_a_covariance_of_zeros_are_fused_and_not_divided_by():
+    """ROS nodes that know no covariance leave it zero."""
+    belief = soccer.unknown()
+    for k in range(1, 40):
+        pose = m.PoseEstimate(k, 0.5 + 0.001 * (k % 2), 0.2, 0.1, 0.0, 0.0, 0.0)
+        belief = soccer.update(belief, k * 80_000_000, (Sample("agilo/pose", pose, k * 80_000_000, k),))
+    assert soccer.ready(belief)
+    assert abs(belief.pose.x - 0.5) < 0.01
+
+
+def test_odometry_that_no_robot_could_drive_tells_nothing():
+    belief = soccer.unknown()
+    for k, (v, omega) in enumerate([(0.2, 0.0), (1e9, 0.0), (0.0, 1e9)], start=1):
+        odom = m.Odometry(k * 20_000_000, 0.0, 0.0, 0.0, v, omega)
+        belief = soccer.update(belief, k * 20_000_000, (Sample("agilo/odom", odom, k * 20_000_000, k),))
+    assert (belief.v, belief.omega) == (0.2, 0.0)
+    assert abs(belief.pose.x) < 0.05
