@@ -1,11 +1,14 @@
-"""SIGINT and SIGTERM as a question that a loop asks between two turns; the second one ends the process at once."""
+"""Ctrl-C, SIGTERM and a terminal that closes, as a question that a loop asks between two turns.
+
+The second signal of a kind ends the process at once.
+"""
 
 from __future__ import annotations
 
 import signal
 from types import FrameType
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Stop:
@@ -22,8 +25,9 @@ class Stop:
 
 
 def stop_on_signals() -> Stop:
-    """Take over SIGINT and SIGTERM; to be called from the main thread."""
+    """Take over the signals that end a process, but for those that nohup has it ignore; from the main thread."""
     stop = Stop()
     for number in SIGNALS:
-        signal.signal(number, stop.request)
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, stop.request)
     return stop

@@ -13,6 +13,7 @@ from runtime.restart import Restart
 
 FINAL_CODES = (0, 2)  # done; bad input, which another start would not mend
 STARTUP_NS = 30_000_000_000  # from start to the first sign of life
+PAUSE_NS = 500_000_000  # between two looks: then it was us who stood still, and no child can be blamed for silence
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,7 @@ class Supervisor:
         self._tell = tell
         self._start = start
         self._watches: dict[str, _Watch] = {}
+        self._looked_ns: int | None = None
 
     def begin(self, charge: Charge, now_ns: int) -> None:
         """Start a process and look after it."""
@@ -70,6 +72,7 @@ class Supervisor:
 
     def look(self, now_ns: int) -> None:
         """Notice deaths and silences; start what is due."""
+        self._forgive_own_pause(now_ns)
         for watch in self._watches.values():
             if watch.over:
                 continue
@@ -86,10 +89,22 @@ class Supervisor:
             watch.over = True
             watch.child.stop()
 
+    def _forgive_own_pause(self, now_ns: int) -> None:
+        """Time in which we did not run (Ctrl-Z) is no silence of theirs: our router stood still, too."""
+        pause_ns = 0 if self._looked_ns is None else now_ns - self._looked_ns
+        self._looked_ns = now_ns
+        if pause_ns > PAUSE_NS:
+            for watch in self._watches.values():
+                watch.started_ns += pause_ns
+                if watch.heard_ns is not None:
+                    watch.heard_ns = min(now_ns, watch.heard_ns + pause_ns)
+
     def _died(self, watch: _Watch, code: int, now_ns: int) -> None:
         name = watch.charge.name
         if not watch.charge.restarts or code in FINAL_CODES:
             watch.over = True
+            if code != 0:
+                self._tell(f"{name} ended with {code}; not started again")
         elif watch.restart.exhausted(now_ns):
             watch.over = True
             self._tell(f"{name} ended with {code}; gave up: too many starts within a minute")

@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Record until told to stop; 0, or 1 when something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MOST, f"--{name.replace('_', '-')}")
-    intake = Intake()
+    stop, intake = stop_on_signals(), Intake()
     with open_client(deployment(arguments).bus.endpoint) as session:
         if arguments.write:
             done, said = session.ask(SNAPSHOT_KEY, "asked for")
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         recorder = _recorder(arguments, intake)
         questions = session.questions(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
         tap = session.tap("**", intake.put)
-        _record(recorder, questions, stop_on_signals(), session, quiet=arguments.quiet)
+        _record(recorder, questions, stop, session, quiet=arguments.quiet)
         tap.undeclare()
         health = recorder.close()
     if not arguments.quiet or health.drops or health.trouble:

@@ -5,12 +5,13 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 
 import pytest
 
 from runtime.processes import Child, stopped_in_order
 from runtime.restart import Restart
-from runtime.stopping import stop_on_signals
+from runtime.stopping import SIGNALS, stop_on_signals
 from runtime.supervisor import STARTUP_NS, Charge, Supervisor
 from tests.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
@@ -95,12 +96,35 @@ def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, cod
 
 def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
     supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
-    for k in range(30):
-        supervisor.heard("executive", k * S)
-        supervisor.look(k * S + S)
+    for now_ns in range(0, 30 * S, 50 * MS):
+        if now_ns % S == 0:
+            supervisor.heard("executive", now_ns)
+        supervisor.look(now_ns)
+    supervisor.look(30 * S)
     assert not FakeChild.made[0].killed
     supervisor.look(30 * S + 1)
     assert FakeChild.made[0].killed
+
+
+@pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
+def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervisor, paused_s):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.heard("executive", S)
+    supervisor.look(S + 100 * MS)
+    on_ns = S + 100 * MS + round(paused_s * S)
+    for now_ns in range(on_ns, on_ns + 900 * MS, 50 * MS):
+        supervisor.look(now_ns)
+    assert not FakeChild.made[0].killed
+    supervisor.look(on_ns + 900 * MS + 1)
+    assert FakeChild.made[0].killed
+
+
+def test_a_child_that_is_gone_for_good_is_told(supervisor):
+    supervisor.begin(Charge("record", ["x"], restarts=False), 0)
+    FakeChild.made[0].code = -9
+    supervisor.look(S)
+    supervisor.look(2 * S)
+    assert supervisor.said == ["record ended with -9; not started again"]
 
 
 def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
@@ -145,13 +169,29 @@ def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path
 
 
 def test_a_signal_is_a_question_first():
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
+    for number in SIGNALS:
+        with handlers_kept():
+            stop = stop_on_signals()
+            assert not stop.requested
+            os.kill(os.getpid(), number)
+            assert stop.requested
+            assert signal.getsignal(number) == signal.SIG_DFL
+
+
+def test_a_closing_terminal_asks_to_end_but_not_below_nohup():
+    with handlers_kept():
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
         stop = stop_on_signals()
+        os.kill(os.getpid(), signal.SIGHUP)
         assert not stop.requested
-        os.kill(os.getpid(), signal.SIGTERM)
-        assert stop.requested
-        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    assert signal.SIGHUP in SIGNALS
+
+
+@contextmanager
+def handlers_kept():
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
