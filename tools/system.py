@@ -17,6 +17,7 @@ from runtime.processes import Child, tailor
 from runtime.session import Session, open_router
 from runtime.stopping import Stop
 from runtime.supervisor import Charge, Supervisor
+from schemas.errors import UsageError
 from schemas.messages import DriverState, ExecStatus
 from tools.live_status import Screen
 
@@ -45,6 +46,8 @@ def run_system(plan: Plan, screen: Screen, stop: Stop) -> str:
     Raises:
       UsageError: Before anything is started.
     """
+    if plan.record is not None and plan.record.exists():
+        raise UsageError(f"{plan.record}: exists already, expected the name of a new file")
     robot = compose(plan.order, sender="").domain.robot
     with open_router(plan.endpoint) as session, tempfile.TemporaryFile("w+") as log:
         supervisor = Supervisor(screen.tell, lambda name, argv: Child(name, argv, log))
@@ -67,7 +70,7 @@ def free_endpoint() -> str:
 def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
     inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot)
     if plan.record is not None:
-        listened = session.publisher("plan", robot)
+        listened = session.publisher("provenance", robot)  # the recorder alone hears that: we do not
         supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())
         if not _appeared(supervisor, "record", listened.matched, stop):
             return "failed: the recorder did not start"

@@ -20,7 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run until Ctrl-C, or with --once until the goal is achieved or has failed."""
+    """Run until Ctrl-C (0), or with --once until the goal is achieved (0) or has failed; 1 too if it ends by itself."""
     stop = stop_on_signals()
     if arguments.letters:
         arguments.scenario = f"word-{arguments.letters.upper()}"
@@ -31,4 +31,5 @@ def run(arguments: argparse.Namespace) -> int:
     with screen() as shown:
         result = run_system(plan, shown, stop)
     print(result or "stopped")
-    return 0 if not arguments.once or result == "achieved" else 1
+    done = result == "achieved" if arguments.once else stop.requested
+    return 0 if done else 1

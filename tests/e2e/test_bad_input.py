@@ -81,6 +81,22 @@ def test_port_in_use():
         assert "the port is in use" in refused("up", "soccer", "--connect", f"tcp/127.0.0.1:{taken.getsockname()[1]}")
 
 
+def test_a_recording_that_exists_is_refused_before_anything_starts(tmp_path):
+    (tmp_path / "run.mcap").write_text("precious")
+    assert "run.mcap: exists already" in refused("up", "soccer", "--record", tmp_path / "run.mcap")
+
+
+@pytest.mark.xdist_group("live")
+def test_a_system_whose_recorder_cannot_start_does_not_run_without_it(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    flags = ("--record", tmp_path / "file" / "run.mcap", "--connect", free_endpoint())
+    done = subprocess.run(
+        tailor("up", "soccer", *map(str, flags)), capture_output=True, text=True, timeout=60, cwd=ROOT
+    )
+    assert (done.returncode, done.stdout.splitlines()[-1]) == (1, "failed: the recorder did not start")
+    assert "record ended with 2; not started again" in done.stdout
+
+
 @pytest.fixture
 def zoo(tmp_path):
     return shutil.copytree(ZOO, tmp_path / "zoo")
