@@ -20,6 +20,7 @@ from runtime.supervisor import Charge, Supervisor
 from schemas.errors import UsageError
 from schemas.messages import DriverState, ExecStatus
 from tools.live_status import Screen
+from tools.own_executive import OwnExecutive
 
 LOOK_NS = 50_000_000
 SILENCE_NS = 1_000_000_000  # faults.md, row 2
@@ -83,16 +84,17 @@ def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, scree
 
 def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
     loop = Loop(LOOK_NS, MonotonicClock())
-    result, stopped = "", ""
+    own, result, stopped = OwnExecutive(), "", ""
     while not stop.requested:
         turn = loop.next_turn()
         for sample in inbox.drain():
-            screen.show(sample.message)
-            if isinstance(sample.message, ExecStatus):
-                supervisor.heard("executive", turn.now_ns)
-                result = sample.message.result
-            elif isinstance(sample.message, DriverState):
+            if isinstance(sample.message, DriverState):
                 stopped = _stopped(sample.message)
+            elif own.sent(sample, supervisor.pid("executive")):
+                screen.show(sample.message)
+                if isinstance(sample.message, ExecStatus):
+                    supervisor.heard("executive", turn.now_ns)
+                    result = sample.message.result
         supervisor.look(turn.now_ns)
         ended = _ended(supervisor) or (plan.once and (result or stopped))
         if ended:
