@@ -12,7 +12,7 @@ import zenoh
 
 from runtime import bus_config
 from runtime.attachment import SENDER_BYTES
-from runtime.inbox import Inbox, Raw, depth
+from runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
 from runtime.publisher import Publisher
 from runtime.questions import Question, Questions
 from runtime.realtime import elevate_bus_threads
@@ -111,12 +111,19 @@ class Session:
         )
         return Publisher(key, _Wire(declared), self.sender)
 
-    def inbox(self, names: Sequence[str], robot: str) -> Inbox:
-        """The new samples of these topics, to be drained by a loop."""
+    def inbox(self, names: Sequence[str], robot: str, newest_only: bool = True) -> Inbox:
+        """The new samples of these topics, to be drained by a loop.
+
+        Args:
+          names: Of topics.
+          robot: Whose.
+          newest_only: Of a state topic, the newest sample alone; else several, for who tells senders apart.
+        """
         rows = []
         for name in names:
             topic, key = TOPICS[name], key_of(name, robot)
-            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(depth(topic)))
+            kept = depth(topic) if newest_only else EVENT_DEPTH
+            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(kept))
             rows.append((topic, key, _Source(subscriber)))
         return Inbox(rows, encoding_of, time.monotonic_ns)
 

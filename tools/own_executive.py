@@ -6,7 +6,7 @@ from schemas.messages import ExecStatus, Sample
 
 
 class OwnExecutive:
-    """The first new sender of `exec/status` after a start is it; whoever speaks besides, or spoke before, is another."""
+    """The first new sender of `exec/status` after a start; whoever speaks besides it, or spoke before, is another."""
 
     def __init__(self) -> None:
         self._pid = 0

@@ -69,7 +69,7 @@ def free_endpoint() -> str:
 
 
 def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
-    inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot)
+    inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot, newest_only=False)
     if plan.record is not None:
         listened = session.publisher("provenance", robot)  # the recorder alone hears that: we do not
         supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())
@@ -91,9 +91,9 @@ def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, sto
             if isinstance(sample.message, DriverState):
                 stopped = _stopped(sample.message)
             elif own.sent(sample, supervisor.pid("executive")):
+                supervisor.heard("executive", turn.now_ns)
                 screen.show(sample.message)
                 if isinstance(sample.message, ExecStatus):
-                    supervisor.heard("executive", turn.now_ns)
                     result = sample.message.result
         supervisor.look(turn.now_ns)
         ended = _ended(supervisor) or (plan.once and (result or stopped))

@@ -9,7 +9,8 @@ import pytest
 from runtime.session import open_client, open_router
 from schemas import codec
 from schemas.errors import UsageError
-from schemas.messages import EStop, Odometry, VelocityCommand
+from schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
+from schemas.own import example
 from tests.e2e.bus_system import free_endpoint
 from tests.patience import in_one_try_of, wait_until
 
@@ -70,6 +71,17 @@ def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair)
     time.sleep(0.2)
     sequences = [(s.key, s.sequence) for s in inbox.drain()]
     assert sorted(sequences) == [*(("agilo/cmd_vel", k) for k in range(1, 6)), ("agilo/odom", 5)]
+
+
+def test_who_tells_senders_apart_hears_each_of_them(pair):
+    a, b = pair
+    ours, theirs = a.publisher("status", "agilo"), b.publisher("status", "agilo")
+    inbox = b.inbox(["status"], "agilo", newest_only=False)
+    wait_until(lambda: ours.matched() and theirs.matched())
+    for publisher in (ours, theirs, theirs):
+        publisher.publish(example(ExecStatus))
+        time.sleep(0.05)
+    assert [s.sender for s in inbox.drain()] == [a.sender, b.sender, b.sender]
 
 
 def test_a_put_on_a_wildcard_does_not_pass_for_a_command(pair):
