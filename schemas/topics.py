@@ -43,7 +43,7 @@ TOPICS: dict[str, Topic] = {
     "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # a replay's
     "truth": Topic("{robot}/sim/truth", m.SimTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
-    "status": Topic("exec/status", m.ExecStatus, 10, "executive"),
+    "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
     "plan": Topic("exec/plan", m.PlanReport, 0, "executive", max_bytes=65536),
     "plan_request": Topic("exec/plan_request", m.PlanRequest, 0, "executive", max_bytes=1 << 20),

@@ -25,6 +25,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 when the driver has done it, 1 when it has not."""
+    if not re.fullmatch(r"[\w-]+(/[\w-]+)*", arguments.robot, re.ASCII):
+        raise UsageError(f"robot {arguments.robot!r}: expected a name, e.g. agilo")
     if arguments.sender and not re.fullmatch("[0-9a-f]{32}", arguments.sender):
         raise UsageError(f"--sender {arguments.sender}: expected 32 hex digits")
     with open_client(deployment(arguments).bus.endpoint) as session:

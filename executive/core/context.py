@@ -11,6 +11,7 @@ from executive.refinement.settings import RefinementSettings
 from schemas.errors import UsageError
 
 PERIOD_NS = 100_000_000  # 10 Hz
+LONGEST_GOAL = 8000  # bytes: each status tells the goal, and must not become longer than its topic allows
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,9 @@ def make_context(
 
 def check_goal(context: Context, goal: str) -> str:
     """Why a PDDL goal cannot be accepted, or "" if it can."""
+    length = len(goal.encode(errors="replace"))
+    if length > LONGEST_GOAL:
+        return f"the goal has {length} bytes, expected at most {LONGEST_GOAL}"
     try:
         context.problem.with_goal(goal)
     except planning.PddlError as error:

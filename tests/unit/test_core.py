@@ -10,13 +10,22 @@ import pytest
 from executive import planning
 from executive.budget import CheckBudget
 from executive.core.command_guard import checked
-from executive.core.context import Settings
+from executive.core.context import LONGEST_GOAL, Settings, check_goal
 from executive.core.modes import Conditions, Mode, next_mode
 from executive.core.state import Inputs, initial_state
 from executive.core.step import step
 from executive.library import Axis, Models
 from schemas import codec
-from schemas.messages import ActionFinished, ArmRequest, PlanReport, RefinementReport, Subgoals, VelocityCommand
+from schemas.messages import (
+    ActionFinished,
+    ArmRequest,
+    ExecStatus,
+    PlanReport,
+    RefinementReport,
+    Subgoals,
+    VelocityCommand,
+)
+from schemas.topics import TOPICS
 from tests.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
 
 TICK = 100_000_000
@@ -134,6 +143,17 @@ def test_unsolvable_goal_is_told_once_and_nothing_moves():
     assert run[-1][0].task.result.startswith("failed: no plan")
     assert all(state.command == (0.0,) for state, _, _ in run)
     assert len(messages(run, PlanReport)) == 1
+
+
+def test_a_goal_too_long_to_be_told_is_refused_and_the_longest_one_is_told():
+    context = line_context()
+    longest = GOAL + " " * (LONGEST_GOAL - len(GOAL))
+    assert check_goal(context, longest) == ""
+    assert check_goal(context, longest + " ") == "the goal has 8001 bytes, expected at most 8000"
+    run = drive(context, goal=longest, ticks=5)
+    told = messages(run, ExecStatus)
+    assert [codec.decode(TOPICS["status"], codec.encode(status)) for status in told] == told
+    assert told[-1].goal == longest
 
 
 def test_place_that_moves_redirects_the_running_action():
