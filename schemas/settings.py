@@ -60,7 +60,9 @@ def _convert(hint: Any, value: Any, key: str, problems: list[str]) -> Any:
     elif origin is tuple and isinstance(value, list | tuple):
         item = typing.get_args(hint)
         hints = [item[0]] * len(value) if item[-1] is Ellipsis else list(item)
-        return tuple(_convert(h, v, key, problems) for h, v in zip(hints, value, strict=False))
+        if len(hints) == len(value):
+            return tuple(_convert(h, v, key, problems) for h, v in zip(hints, value, strict=True))
+        problems.append(f"'{key}' is {value!r}, expected {len(hints)} values")
     elif origin in (types.UnionType, typing.Union):
         return None if value is None else _convert(typing.get_args(hint)[0], value, key, problems)
     elif hint is float and isinstance(value, int | float) and not isinstance(value, bool):

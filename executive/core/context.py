@@ -41,6 +41,14 @@ class Settings:
     adopt_gain_s: float = 0.3  # and only if it is predicted to save this much
     overruns_to_hold: int = 3  # in one second
 
+    def __post_init__(self) -> None:
+        for name in ("seed", "improve_plans", "coast_ticks", "refine_while_running_s", "adopt_gain_s"):
+            if not getattr(self, name) >= 0:  # so that nan is refused as well
+                raise UsageError(f"executive.{name} is {getattr(self, name)}, expected at least 0")
+        for name in ("replan_failures", "overruns_to_hold"):
+            if getattr(self, name) < 1:
+                raise UsageError(f"executive.{name} is {getattr(self, name)}, expected at least 1")
+
 
 @dataclass(frozen=True, slots=True)
 class Context:

@@ -24,6 +24,21 @@ def test_nested_tables_become_nested_settings():
         ({"executive": {"seed": "x"}}, "f.toml: 'executive.seed' is 'x', expected int"),
         ({"executive": {"seed": True}}, "f.toml: 'executive.seed' is True, expected int"),
         ({"executive": {"refinement": {"horizon": 0}}}, "f.toml: refinement.horizon is 0, expected at least 1"),
+        ({"executive": {"seed": -1}}, "f.toml: executive.seed is -1, expected at least 0"),
+        ({"executive": {"adopt_gain_s": float("nan")}}, "f.toml: executive.adopt_gain_s is nan, expected at least 0"),
+        ({"executive": {"overruns_to_hold": 0}}, "f.toml: executive.overruns_to_hold is 0, expected at least 1"),
+        (
+            {"executive": {"refinement": {"batch": 10**9}}},
+            "f.toml: refinement.batch is 1000000000, expected at most 1000000",
+        ),
+        (
+            {"executive": {"refinement": {"arrival_spread": [["x"]]}}},
+            "f.toml: 'executive.refinement.arrival_spread' is ['x'], expected 2 values",
+        ),
+        (
+            {"executive": {"refinement": {"arrival_spread": [["x", -0.1]]}}},
+            "f.toml: refinement.arrival_spread of x is -0.1, expected a finite number >= 0",
+        ),
     ],
 )
 def test_mistake_is_told_with_its_key_and_what_was_expected(table, expected):
