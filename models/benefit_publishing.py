@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from models.benefit import Pairs, TrainedBenefit, space
-from models.card import FORMAT, Card, card_path, identity, write_model
+from models.card import FORMAT, Card, card_path, identity
 from models.onnx_features import add_features, as_columns
 from models.onnx_graph import Graph
 from models.onnx_trees import add_probability
+from models.placing import place
 from models.publishing import GOLDEN, versions
 from models.runtime import BENEFIT
 
@@ -37,7 +38,7 @@ class AboutBenefit:
 def publish_benefit(zoo: Path, pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> Path:
     """Write `zoo/robot/refinement/benefit.onnx` and its card; returns the ONNX file's path."""
     card = _card(pairs, trained, about)
-    return write_model(zoo, _exported(trained, about.names, card), card)
+    return place(zoo, _exported(trained, about.names, card), card)
 
 
 def withdraw_benefit(zoo: Path, robot: str) -> bool:

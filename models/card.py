@@ -85,15 +85,6 @@ def write_card(path: Path, card: Card) -> None:
     path.write_text(_dumped(card) + "\n")
 
 
-def write_model(zoo: Path, content: bytes, card: Card) -> Path:
-    """Write `zoo/robot/action/kind.onnx`, and its card with the content's hash; returns the ONNX file's path."""
-    path: Path = zoo / card["robot"] / card["action"] / f"{card['kind']}.onnx"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    write_card(card_path(path), {**card, "sha256": sha256_of(content)})
-    return path
-
-
 def _dumped(value: Any, indent: str = "") -> str:
     """JSON that breaks lines between members, but keeps lists and tables of bare values on one line."""
     inner = indent + " "

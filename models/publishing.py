@@ -14,10 +14,11 @@ import onnx
 from numpy.typing import NDArray
 
 from models.amounts import AMOUNTS
-from models.card import FORMAT, Card, identity, write_model
+from models.card import FORMAT, Card, identity
 from models.episodes import DataSet
 from models.features import FeatureSpace
 from models.onnx_export import export_duration, export_success
+from models.placing import place
 from models.training import Trained
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ class Publication:
 def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
     """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
     card = _card(data, trained, about)
-    return write_model(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
+    return place(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
 
 
 def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:

@@ -37,11 +37,18 @@ class Ring:
         return not self._messages
 
     def write(self, path: Path, facts: Mapping[str, Mapping[str, str]]) -> int:
-        """Write everything into a new file; how many messages."""
+        """Write everything into a new file; how many messages.
+
+        Raises:
+          FileExistsError: There is such a file.
+          OSError: The disk does not take it; then nothing is left of it.
+        """
         tape = Tape(path, facts)
         for raw, wall_ns in self._messages:
             tape.write(raw, wall_ns)
-        tape.close()
+        if not tape.close():
+            path.unlink()
+            raise OSError(0, tape.trouble, str(path))
         return tape.messages
 
 

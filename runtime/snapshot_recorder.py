@@ -24,6 +24,7 @@ class SnapshotRecorder:
         self._ring, self._facts, self._alarm = ring, facts, Alarm()
         self._reason = ""  # why a file is due
         self._write_at_ns = 0
+        self._number = 0  # of the next file
 
     def turn(self, now_ns: int) -> None:
         """Take what has arrived; write a file when one is due. `now_ns` is monotonic."""
@@ -58,8 +59,7 @@ class SnapshotRecorder:
 
     def _write(self) -> None:
         reason, self._reason = self._reason, ""
-        health = self.health
-        path = self._path.with_name(f"{self._path.stem}_{len(health.files):03d}{self._path.suffix}")
+        health, path = self.health, self._free_path()
         try:
             health.messages += self._ring.write(path, {**self._facts.entries, "snapshot": {"reason": reason}})
         except OSError as error:
@@ -67,3 +67,11 @@ class SnapshotRecorder:
             return
         health.files.append(path)
         health.bytes += path.stat().st_size
+
+    def _free_path(self) -> Path:
+        """The next name that no file has: those of an earlier recorder are kept."""
+        while True:
+            path = self._path.with_name(f"{self._path.stem}_{self._number:03d}{self._path.suffix}")
+            if not path.exists():
+                return path
+            self._number += 1

@@ -58,8 +58,13 @@ class RunTape:
         self._say(TOPICS["tick"].key, report, now_ns)
 
     def close(self) -> None:
-        """Complete the file."""
-        self._tape.close()
+        """Complete the file.
+
+        Raises:
+          OSError: The disk has no room for it; what is left of it can be read as far as it goes.
+        """
+        if not self._tape.close():
+            raise OSError(0, self._tape.trouble, str(self._tape.path))
 
     def _say(self, key: str, message: Message, now_ns: int) -> None:
         self._said[key] += 1

@@ -340,6 +340,57 @@ def test_a_snapshot_of_nothing_is_refused(tmp_path):
     assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
 
 
+@pytest.fixture
+def full_disk(monkeypatch):
+    """Call with True and False: whether the disk is full."""
+    from runtime import sink
+
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    really = sink.os.write
+    return lambda full: monkeypatch.setattr(sink.os, "write", refuse if full else really)
+
+
+def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake.put(odometry(1))
+    recorder.turn(0)
+    full_disk(True)
+    recorder.ask("by hand", 1)
+    recorder.turn(1)
+    assert recorder.health.trouble == "No space left on device"
+    assert (recorder.health.files, list(tmp_path.iterdir())) == ([], [])
+    full_disk(False)
+    recorder.ask("again", 2)
+    recorder.turn(2)
+    assert [path.name for path in recorder.health.files] == ["s_000.mcap"]
+
+
+def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
+    (tmp_path / "s_000.mcap").write_text("of yesterday")
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake.put(odometry(1))
+    recorder.turn(0)
+    for k in (1, 2):
+        recorder.ask("by hand", k)
+        recorder.turn(k)
+    assert [path.name for path in recorder.health.files] == ["s_001.mcap", "s_002.mcap"]
+    assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
+
+
+def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_path, full_disk):
+    from tests.toy_domain import line_context
+    from tools.run_tape import RunTape
+
+    tape = RunTape(tmp_path / "run.mcap", line_context(), {})
+    full_disk(True)
+    with pytest.raises(OSError, match="No space left on device"):
+        tape.close()
+
+
 def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
     intake = Intake()
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))

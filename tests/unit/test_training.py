@@ -8,6 +8,7 @@ import pytest
 from models import features, runtime
 from models.amounts import ENERGY
 from models.episodes import DataSet, Episode
+from models.placing import place
 from models.publishing import Publication, publish
 from models.training import Trained, train_amount, train_duration, train_success
 from schemas.errors import UsageError
@@ -22,6 +23,20 @@ def data_set(count: int, seed: int = 1) -> DataSet:
     made = standin.episodes(count, seed)
     episodes = tuple(Episode(k, t[0], t, d, ok, "" if ok else "ball") for k, (t, d, ok) in enumerate(made))
     return DataSet({"robot": "toy", "action": "goToPose", "arguments": ARGUMENTS}, episodes, "0" * 64)
+
+
+def test_a_model_that_cannot_be_written_whole_leaves_the_one_that_was_there(tmp_path, monkeypatch) -> None:
+    card = {"robot": "toy", "action": "goToPose", "kind": "duration"}
+    path = place(tmp_path, b"old", card)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("models.placing.write_card", full)
+    with pytest.raises(OSError, match="No space"):
+        place(tmp_path, b"new", card)
+    assert path.read_bytes() == b"old"
+    assert sorted(file.name for file in path.parent.iterdir()) == ["duration.card.json", "duration.onnx"]
 
 
 @pytest.fixture(scope="module")
