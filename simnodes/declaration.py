@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
+from typing import Any
 
 from simnodes.guard import Limit
+
+LONGEST_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is none
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,11 +30,28 @@ def declaration(robot: str) -> Declaration:
 
 
 def read_declaration(text: str) -> Declaration:
-    """A declaration from its TOML text; raises KeyError, TypeError or ValueError where it is none."""
+    """A declaration from its TOML text; raises KeyError, TypeError or ValueError where it is none, or no safe one."""
     command = tomllib.loads(text)["command"]
+    timeout_s = _number(command, "timeout_s")
+    if not 0.0 < timeout_s <= LONGEST_TIMEOUT_S:
+        raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {LONGEST_TIMEOUT_S:g}")
     return Declaration(
         command_topic=command["topic"],
         axes=tuple(axis["name"] for axis in command["axes"]),
-        limits=tuple(Limit(axis["lower"], axis["upper"]) for axis in command["axes"]),
-        timeout_ns=round(command["timeout_s"] * 1e9),
+        limits=tuple(_limit(axis) for axis in command["axes"]),
+        timeout_ns=round(timeout_s * 1e9),
     )
+
+
+def _limit(axis: Mapping[str, Any]) -> Limit:
+    lower, upper = _number(axis, "lower"), _number(axis, "upper")
+    if lower >= upper:
+        raise ValueError(f"{axis['name']} goes from {lower:g} to {upper:g}, expected the lower limit first")
+    return Limit(lower, upper)
+
+
+def _number(table: Mapping[str, Any], key: str) -> float:
+    value = table[key]
+    if type(value) not in (int, float) or not math.isfinite(value):
+        raise ValueError(f"{key} is {value!r}, expected a finite number")
+    return float(value)

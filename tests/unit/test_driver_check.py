@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from importlib import resources
 
 import pytest
 
@@ -33,3 +34,22 @@ def test_a_file_that_is_no_declaration_is_refused(tmp_path):
     file.write_text("[robot]\n")
     with pytest.raises(UsageError, match="expected a driver's declaration"):
         driver_of("agilo", str(file))
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "expected"),
+    [
+        ("timeout_s = 0.3", "timeout_s = 0", "timeout_s is 0, expected more than 0 and at most 1"),
+        ("timeout_s = 0.3", "timeout_s = 1e9", "timeout_s is 1e\\+09, expected more than 0 and at most 1"),
+        ("timeout_s = 0.3", "timeout_s = nan", "timeout_s is nan, expected a finite number"),
+        ("upper = 0.9", 'upper = "0.9"', "upper is '0.9', expected a finite number"),
+        ("upper = 0.9", "upper = inf", "upper is inf, expected a finite number"),
+        ("upper = 0.9", "upper = -2.0", "v goes from -0.9 to -2, expected the lower limit first"),
+    ],
+)
+def test_a_declaration_that_would_leave_the_guard_without_teeth_is_refused(tmp_path, line, wrong, expected):
+    text = resources.files("simnodes").joinpath("agilo", "driver.toml").read_text()
+    assert line in text
+    (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
+    with pytest.raises(UsageError, match=expected):
+        driver_of("agilo", str(tmp_path / "driver.toml"))
