@@ -29,6 +29,7 @@ class Body(Protocol):
     """A robot in its world. The same seed, start and commands give the same states, bit for bit, in every process."""
 
     robot: str
+    names: tuple[str, ...]  # of the values of a start state, which `place` takes, too
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
         """Put the world into a start state and its clock to 0; all noise until the next reset is drawn from `rng`."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,6 +11,7 @@ from simnodes.world import World
 
 NAMES = ("reset", "place", "pause", "step")
 MOST_STEPS = 6000  # in one request: a minute of 10 ms
+MOST_VALUE = 1000.0  # m, rad, m/s or rad/s: physics breaks down far beyond
 
 
 class Services:
@@ -50,12 +50,12 @@ class Services:
         seed = asked.get("seed")
         if seed is not None and (type(seed) is not int or seed < 0):
             raise ValueError(f"seed is {seed!r}, expected a whole number of at least 0")
-        self._world.reset(seed, _numbers(asked["start"]) if "start" in asked else None)
+        self._world.reset(seed, self._numbers(asked["start"]) if "start" in asked else None)
         self._on_reset()
         return "reset"
 
     def _place(self, asked: Any) -> str:
-        self._world.body.place(_numbers(asked))
+        self._world.body.place(self._numbers(asked))
         return "placed"
 
     def _pause(self, asked: Any) -> str:
@@ -72,11 +72,14 @@ class Services:
         self.steps_due += asked
         return f"{asked} periods"
 
-
-def _numbers(asked: Any) -> dict[str, float]:
-    legal = isinstance(asked, dict) and all(
-        type(value) in (int, float) and math.isfinite(value) for value in asked.values()
-    )
-    if not legal:
-        raise ValueError("expected an object of finite numbers, e.g. " + '{"x": 1.0}')
-    return {name: float(value) for name, value in asked.items()}
+    def _numbers(self, asked: Any) -> dict[str, float]:
+        legal = isinstance(asked, dict) and all(
+            type(value) in (int, float) and abs(value) <= MOST_VALUE for value in asked.values()
+        )
+        if not legal:
+            raise ValueError(f"expected an object of numbers up to {MOST_VALUE:g}, e.g. " + '{"x": 1.0}')
+        names = self._world.body.names
+        unknown = sorted(asked.keys() - set(names))
+        if unknown:
+            raise ValueError(f"there is no {', '.join(unknown)[:100]}, expected some of: {', '.join(names)}")
+        return {name: float(value) for name, value in asked.items()}

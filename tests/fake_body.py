@@ -12,6 +12,7 @@ class FakeBody:
     """See simnodes.body.Body."""
 
     robot = "agilo"
+    names = ("x", "y", "phi", "ball_x", "ball_y")
 
     def reset(self, rng, start):
         self.time_ns = 0

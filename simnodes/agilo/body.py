@@ -25,6 +25,7 @@ class AgiloBody:
     """See simnodes.body.Body. Start values: x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy (SI, field frame)."""
 
     robot = "agilo"
+    names = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
 
     def __init__(self, physique: Physique | None = None, sensing: Sensing | None = None) -> None:
         self._p = physique or Physique()

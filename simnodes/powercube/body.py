@@ -23,6 +23,7 @@ class PowerCubeBody:
     """See simnodes.body.Body. Start values: a, b (rad), wa, wb (rad/s): pan and lift, as in the paper's Table 6."""
 
     robot = "powercube"
+    names = LEGAL
 
     def __init__(self, physique: Physique | None = None) -> None:
         self._p = physique or Physique()

@@ -90,3 +90,10 @@ def test_things_can_be_placed_while_the_world_runs(system):
     assert ask(session, "place", {"ball_x": 4.5}) == (True, "placed")
     wait_until(lambda: newest(truth).ball_x == 4.5, "ball placed")
     assert ask(session, "place", {"ball_x": "far"})[0] is False
+    for huge in (1e308, -1001.0, 10**400):
+        assert "expected an object of numbers up to 1000" in ask(session, "place", {"x": huge})[1]
+    assert ask(session, "place", {"ball": 1.0}) == (
+        False,
+        "place: there is no ball, expected some of: x, y, phi, ball_x, ball_y",
+    )
+    assert "there is no z" in ask(session, "reset", {"start": {"z": 1.0}})[1]
