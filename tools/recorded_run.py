@@ -1,74 +1,83 @@
-"""Takes one executive's run out of a recording: what it was made of, what every tick was given, what it answered."""
+"""Takes the executives' runs out of a recording, and gives every tick back what it was given."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from executive.core.state import Inputs
 from executive.replay import RecordedTick
 from runtime.recording import Recorded, Recording, open_recording
 from schemas.codec import decode, encode
 from schemas.errors import Rejected, UsageError
-from schemas.json_text import table_of
-from schemas.messages import Message, Provenance, Sample, TickReport
+from schemas.messages import Sample
 from schemas.topics import TOPICS
 from schemas.typesystem import type_of
+from tools.executive_run import PROVENANCE_KEY, TICK_KEY, RecordedRun, decoded, executives, in_order, take
 
-TICK_KEY = TOPICS["tick"].key
+__all__ = ["PROVENANCE_KEY", "TICK_KEY", "RecordedRun", "RecordedRuns", "decoded"]
+
 MOST_BYTES = 1_000_000_000  # a run has some 10 MB a minute
-PROVENANCE_KEY = TOPICS["provenance"].key
+MOST_REASONS = 3  # that are told one by one: a file may hold any number of strangers
 ANSWER_KEY = TOPICS["plan_answer"].key  # an executive's own, but an input of its core
 
 
-@dataclass(slots=True)
-class RecordedRun:
-    """One executive's run. `said` holds its messages by key, in the order of their sequence numbers."""
-
-    sender: str
-    provenance: dict[str, Any] = field(default_factory=dict)
-    ticks: list[TickReport] = field(default_factory=list)
-    said: dict[str, list[Recorded]] = field(default_factory=lambda: defaultdict(list))
-
-
 class RecordedRuns:
-    """All executives' runs in a recording, and the messages that they may have been given."""
+    """All executives' runs in a recording, and the messages that they may have been given.
+
+    Anyone may say something on exec/tick. A run is what one sender said that also told what it is made of; where nobody
+    told, every sender of ticks has one. What cannot be read as a tick, or is a stranger's, is counted in `left_out`.
+    """
 
     def __init__(self, path: Path) -> None:
         """Read the whole file; raises UsageError if it is none or holds no run."""
         self.path = path
+        self.left_out: Counter[str] = Counter()  # messages on exec/tick that belong to no run, by reason
         self._heard: dict[tuple[str, str, int], Recorded] = {}
         recording = open_recording(path)
         everything = list(_bounded(recording))
-        executives = list(dict.fromkeys(m.sender for m in everything if m.key == TICK_KEY))
-        if not executives:
-            damage = f" ({recording.account.text()})" if recording.account.text() else ""
-            raise UsageError(f"{path}: no message of {TICK_KEY}, expected the recording of an executive's run{damage}")
-        self.runs = [RecordedRun(sender) for sender in executives]
-        by_sender = {run.sender: run for run in self.runs}
+        by_sender = {sender: RecordedRun(sender) for sender in executives(everything)}
         for message in everything:
             if message.sender in by_sender and message.key != ANSWER_KEY:
                 self._take(by_sender[message.sender], message)
             else:
                 self._heard[message.key, message.sender, message.sequence] = message
+                if message.key == TICK_KEY:
+                    self.left_out[f"said by {message.sender[:8] or 'nobody'}, not by an executive"] += 1
+        self.runs = [run for run in by_sender.values() if run.ticks]
+        if not self.runs:
+            raise UsageError(f"{path}: {self._missing(recording)}, expected the recording of an executive's run")
         for run in self.runs:
-            _in_order(run)
+            in_order(run)
         _ready_codecs(everything)
+
+    def left_out_text(self) -> str:
+        """One line for people on what was left out of exec/tick; empty if nothing was."""
+        rows = [f"{count} {reason}" for reason, count in self.left_out.most_common(MOST_REASONS)]
+        others = self.left_out.total() - sum(count for _, count in self.left_out.most_common(MOST_REASONS))
+        text = ", ".join([*rows, f"{others} others"] if others else rows)
+        return f"left out of {TICK_KEY}: {text}" if text else ""
+
+    def _missing(self, recording: Recording) -> str:
+        known = "; ".join(filter(None, (self.left_out_text(), recording.account.text())))
+        return f"no message of {TICK_KEY}" + (f" to be used ({known})" if known else "")
 
     def _take(self, run: RecordedRun, message: Recorded) -> None:
         try:
-            _take(run, message)
+            wrong = take(run, message)
         except UsageError as error:
             raise UsageError(f"{self.path}: {error}") from None
+        if wrong:
+            self.left_out[wrong] += 1
 
     def ticks(self, run: RecordedRun) -> Iterator[RecordedTick]:
         """What each tick of a run was given; raises UsageError where the recording lacks it."""
         for number, report in enumerate(run.ticks, start=1):
             if report.tick != number:
-                raise UsageError(f"{self.path}: tick {number} is missing, expected every tick from the first one on")
+                left = self.left_out_text()
+                what = f"tick {number} is missing" + (f" ({left})" if left else "")
+                raise UsageError(f"{self.path}: {what}, expected every tick from the first one on")
             samples = tuple(
                 self._sample(report.tick, *row)
                 for row in zip(
@@ -108,15 +117,6 @@ def _bounded(recording: Recording) -> Iterator[Recorded]:
         yield message
 
 
-def decoded(recorded: Recorded) -> Message:
-    """The value of a recorded message of our own types; raises UsageError if it is damaged."""
-    kind = type_of(recorded.ros_type)
-    message = decode(kind, recorded.data) if kind is not None else Rejected(f"unknown type {recorded.ros_type}")
-    if isinstance(message, Rejected):
-        raise UsageError(f"{recorded.key} number {recorded.sequence}: {message.reason}")
-    return message
-
-
 def _ready_codecs(messages: list[Recorded]) -> None:
     """Read and write one message of each of our types: that compiles the code for it, 2 ms a type, once a process."""
     for message in {message.ros_type: message for message in messages}.values():
@@ -124,30 +124,3 @@ def _ready_codecs(messages: list[Recorded]) -> None:
         one = decode(kind, message.data) if kind is not None else None
         if one is not None and not isinstance(one, Rejected):
             encode(one)
-
-
-def _take(run: RecordedRun, message: Recorded) -> None:
-    if message.key == PROVENANCE_KEY:
-        said = decoded(message)
-        if isinstance(said, Provenance):
-            run.provenance = _table(said)
-    elif message.key == TICK_KEY:
-        report = decoded(message)
-        if not isinstance(report, TickReport):
-            raise UsageError(f"{TICK_KEY} number {message.sequence}: {message.ros_type}, expected reports of ticks")
-        run.ticks.append(report)
-    else:
-        run.said[message.key].append(message)
-
-
-def _table(said: Provenance) -> dict[str, Any]:
-    table = table_of(said.json)
-    if isinstance(table, Rejected):
-        raise UsageError(f"{PROVENANCE_KEY}: {table.reason}, expected what an executive says of itself")
-    return table
-
-
-def _in_order(run: RecordedRun) -> None:
-    run.ticks.sort(key=lambda report: report.tick)
-    for messages in run.said.values():
-        messages.sort(key=lambda message: message.sequence)

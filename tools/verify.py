@@ -38,6 +38,7 @@ class Verdict:
     rounded: int  # of them, equal but for rounding; 0 unless the machine that recorded is of another kind
     difference: Difference | None
     machines: str  # what differs between the recording machine and this one
+    left_out: str  # what on exec/tick was no tick of an executive, for people; empty: nothing
     took_s: float  # without what comes once a process: the file read, models loaded, readers of messages compiled
 
     @property
@@ -109,6 +110,7 @@ def verify(
         comparison.rounded,
         difference,
         contrast(there, here),
+        runs.left_out_text(),
         took_s,
     )
 
@@ -128,11 +130,12 @@ def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
 
 
 def told(verdict: Verdict) -> str:
-    """A verdict in a line, and what is known of the machines in another."""
+    """A verdict in a line, and what is known of the machines, and of what was left out, in others."""
     what = f"{verdict.compared} messages of {verdict.ticks} ticks ({verdict.times_real_time:.0f} times real time)"
+    left_out = f"\n  {verdict.left_out}" if verdict.left_out else ""
     machines = f"\n  recorded on {verdict.machines}" if verdict.machines else ""
     if verdict.difference is not None:
-        return f"different: {verdict.difference}{machines}"
+        return f"different: {verdict.difference}{machines}{left_out}"
     if verdict.rounded:
-        return f"equal within {ROUNDING:g}: {what}; {verdict.rounded} of them not to the last bit{machines}"
-    return f"equal: {what}"
+        return f"equal within {ROUNDING:g}: {what}; {verdict.rounded} of them not to the last bit{machines}{left_out}"
+    return f"equal: {what}{left_out}"
