@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import gc
 import json
 import time
 from dataclasses import dataclass
@@ -91,6 +92,7 @@ def verify(
       proofs: Whether to prove choices again and compare how near to the optimum they are.
     """
     here, there = machine(), run.provenance.get("machine", {})
+    gc.freeze()  # as live: looking for garbage in all that was loaded would take longer than many ticks
     began = time.perf_counter()
     comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
     difference, context = None, context if proofs else without_proofs(context)
