@@ -39,13 +39,12 @@ def _tree(
 ) -> tuple[Floats, Floats, Floats]:
     """Boxes and numbers of one tree's leaves: a leaf reaches from its first cell to its last along each feature."""
     own = [threshold[(feature == f) & (stride > 0)] for f in range(features)]
-    sizes = [len(some) + 1 for some in own]
-    numbers, place = np.unique(leaf, return_inverse=True)
-    lower, upper = (np.empty((len(numbers), features), np.float32) for _ in range(2))
-    for f, at in enumerate(np.unravel_index(np.arange(len(leaf)), sizes)):
-        lowest, highest = np.full(len(numbers), sizes[f]), np.zeros(len(numbers), np.int64)
-        np.minimum.at(lowest, place, at)
-        np.maximum.at(highest, place, at)
+    order = np.argsort(leaf, kind="stable")  # the cells of one leaf side by side
+    numbers = leaf[order]
+    starts = np.flatnonzero(np.concatenate([[True], numbers[1:] != numbers[:-1]]))
+    lower, upper = (np.empty((len(starts), features), np.float32) for _ in range(2))
+    for f, cells in enumerate(np.unravel_index(order, [len(some) + 1 for some in own])):
         edges = np.concatenate([[-np.inf], own[f], [np.inf]]).astype(np.float32)
-        lower[:, f], upper[:, f] = edges[lowest], edges[highest + 1]
-    return lower, upper, numbers.astype(np.float32)
+        lower[:, f] = edges[np.minimum.reduceat(cells, starts)]
+        upper[:, f] = edges[np.maximum.reduceat(cells, starts) + 1]
+    return lower, upper, numbers[starts].astype(np.float32)
