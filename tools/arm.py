@@ -9,7 +9,7 @@ import time
 from runtime.session import Session, open_client
 from schemas.errors import UsageError
 from schemas.messages import ArmRequest, DriverState, ExecStatus
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 
 WAIT_S = 2.0  # for the executive to show itself, and for the driver's answer
 
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"robot {arguments.robot!r}: expected a name, e.g. agilo")
     if arguments.sender and not re.fullmatch("[0-9a-f]{32}", arguments.sender):
         raise UsageError(f"--sender {arguments.sender}: expected 32 hex digits")
-    with open_client(deployment(arguments).bus.endpoint) as session:
+    with open_client(endpoint_of(arguments)) as session:
         sender = arguments.sender or ("" if arguments.off else _executive(session))
         if not sender and not arguments.off:
             print("no executive is running, and no --sender was named")

@@ -7,7 +7,7 @@ import time
 
 from runtime.session import open_router
 from runtime.stopping import stop_on_signals
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Route until told to stop."""
-    endpoint = deployment(arguments).bus.endpoint
+    endpoint = endpoint_of(arguments)
     stop = stop_on_signals()
     with open_router(endpoint):
         print(f"routing at {endpoint}; Ctrl-C ends it", flush=True)

@@ -14,6 +14,7 @@ from runtime.planner_process import words_of
 from schemas.errors import UsageError
 from schemas.settings import from_table
 from tools.asked import checked
+from tools.endpoint import configure_bus
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +44,6 @@ def configure_system(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--planner", metavar="COMMAND", help="a real vhpop is asked first, e.g. 'vhpop -v1 -f MW-Loc'")
     parser.add_argument("--zoo", help="folder of action models (default: those that ship)")
     configure_bus(parser)
-
-
-def configure_bus(parser: argparse.ArgumentParser) -> None:
-    """The flags of everyone who goes on the bus."""
-    parser.add_argument("--connect", metavar="ENDPOINT", help=f"bus endpoint (default {DEFAULT_ENDPOINT})")
-    parser.add_argument("--config", metavar="FILE", help="deployment file (TOML)")
 
 
 def deployment(arguments: argparse.Namespace) -> Deployment:

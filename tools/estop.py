@@ -11,7 +11,7 @@ from runtime.session import open_client
 from schemas.codec import decode
 from schemas.messages import DriverState, EStop
 from schemas.topics import TOPICS
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 
 WAIT_S = 1.5  # for every driver to confirm; they speak at 10 Hz
 AGAIN_S = 0.1  # until all have, repeat it: a publication may be lost
@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 when every driver that speaks has stopped, 1 when one has not or none speaks."""
-    with open_client(deployment(arguments).bus.endpoint) as session:
+    with open_client(endpoint_of(arguments)) as session:
         intake = Intake()
         tap = session.tap(TOPICS["driver"].key.format(robot="*"), intake.put)
         modes = _stop(session.publisher("estop", ""), intake)

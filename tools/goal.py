@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from runtime.session import open_client
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Ask; 0 when it was accepted, 2 with the reason when not."""
-    with open_client(deployment(arguments).bus.endpoint) as session:
+    with open_client(endpoint_of(arguments)) as session:
         accepted, answer = session.ask("exec/goal", arguments.goal)
     print(answer, file=sys.stdout if accepted else sys.stderr)
     return 0 if accepted else 2

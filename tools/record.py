@@ -29,7 +29,7 @@ from runtime.snapshot_recorder import SnapshotRecorder
 from runtime.stopping import Stop, stop_on_signals
 from schemas.errors import UsageError
 from tools.asked import check_within
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 
 TURN_S = 0.02
 MOST = 1e9  # MB or seconds: no disk and no run is so large
@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MOST, f"--{name.replace('_', '-')}")
     stop, intake = stop_on_signals(), Intake()
-    with open_client(deployment(arguments).bus.endpoint) as session:
+    with open_client(endpoint_of(arguments)) as session:
         if arguments.write:
             done, said = session.ask(SNAPSHOT_KEY, "asked for")
             print(said, file=sys.stdout if done else sys.stderr)

@@ -27,7 +27,7 @@ from schemas.errors import UsageError
 from schemas.messages import Clock
 from schemas.topics import TOPICS
 from tools.asked import check_within
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 from tools.keyboard import Keyboard
 from tools.playback import Outlets, Passage, remapping
 from tools.substitution import SILENCED, SUBSTITUTES, armed_for, live_executive
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
     stop = stop_on_signals()
-    with open_client(deployment(arguments).bus.endpoint) as session:
+    with open_client(endpoint_of(arguments)) as session:
         codec.prime()
         changes: dict[str, Any] = {}
         if arguments.substitute:

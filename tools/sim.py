@@ -17,7 +17,8 @@ from schemas.errors import UsageError
 from simnodes.declaration import Declaration, declaration
 from simnodes.node import Node
 from simnodes.world import Event, World
-from tools.deployment import configure_bus, deployment
+from tools.deployment import deployment
+from tools.endpoint import configure_bus
 
 # robot -> (module and class of its body, the domain whose scenarios it plays)
 ROBOTS = {

@@ -14,7 +14,7 @@ from runtime.session import open_client
 from runtime.stopping import stop_on_signals
 from schemas import codec
 from schemas.errors import UsageError
-from tools.deployment import configure_bus, deployment
+from tools.endpoint import configure_bus, endpoint_of
 from tools.viewer.explainer import Explainer
 from tools.viewer.feed import Feed
 from tools.viewer.listening import Listener
@@ -71,7 +71,7 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
 
 
 def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
-    endpoint = deployment(arguments).bus.endpoint
+    endpoint = endpoint_of(arguments)
     os.nice(NICENESS)
     stop = stop_on_signals()
     feed = Feed()

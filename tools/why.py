@@ -16,8 +16,6 @@ from rich.console import Console
 from rich.markup import escape
 
 from schemas.errors import UsageError
-from tools.figures.alternatives import draw_alternatives
-from tools.figures.page import image, page
 from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
 from tools.viewer.explainer import Explainer, fields_of
 from tools.viewer.explanation import Explanation
@@ -149,6 +147,9 @@ def _told(reason: Reason) -> dict[str, Any]:
 
 def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     """The picture itself, or a page around it."""
+    from tools.figures.alternatives import draw_alternatives  # with matplotlib: only who wants a picture waits for it
+    from tools.figures.page import image, page
+
     if output.suffix == ".png":
         draw_alternatives(explained, output)
     else:

@@ -1,0 +1,31 @@
+"""A command loads what it needs, and nothing that takes long to load and that it does not need."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.e2e.bus_system import ROOT
+
+HEAVY = {"scipy", "sklearn", "pandas", "matplotlib", "mujoco", "plotly", "onnx", "skl2onnx", "pytest"}
+WITHOUT = {
+    "main": {*HEAVY, "numpy", "rich", "onnxruntime", "zenoh", "rosbags", "mcap", "executive"},
+    "info": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "recover": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "cut": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "verify": {*HEAVY, "zenoh", "rich"},
+    "why": {*HEAVY, "zenoh"},
+    "replay": {*HEAVY, "onnxruntime", "executive"},
+    "record": {*HEAVY, "onnxruntime", "executive"},
+    "bus": {*HEAVY, "onnxruntime", "executive"},
+    "estop": {*HEAVY, "onnxruntime", "executive"},
+    "arm": {*HEAVY, "onnxruntime", "executive"},
+    "goal": {*HEAVY, "onnxruntime", "executive"},
+}
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
+    asked = f"import sys, tools.{name}; print(*{{module.split('.')[0] for module in sys.modules}})"
+    loaded = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert set(loaded.split()) & WITHOUT[name] == set()
