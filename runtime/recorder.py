@@ -16,7 +16,8 @@ from runtime.intake import Intake
 from runtime.selection import Selection
 from runtime.tape import ENCODING, Tape
 
-FLUSH_NS = 700_000_000  # with the turn and the disk's own time, kill -9 loses less than a second
+FLUSH_NS = 600_000_000  # with a turn and the disk's own time, kill -9 loses less than a second
+MOST_KINDS = 10_000  # of messages that are remembered: a bus has some 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +45,7 @@ class Health:
 
 
 class Recorder:
-    """Call `turn` a few dozen times a second from one thread, and `close` at the end."""
+    """Call `turn` some ten times a second from one thread, and `close` at the end."""
 
     def __init__(
         self,
@@ -66,6 +67,7 @@ class Recorder:
         self.health = Health()
         self._path, self._intake, self._selection = path, intake, selection
         self._limits, self._facts = limits, facts
+        self._wanted: dict[tuple[str, str], bool] = {}  # by key and encoding
         self._dropped: Counter[str] = Counter()  # for want of disk
         self._closed_messages = self._closed_bytes = 0
         self._flush_at_ns = 0
@@ -92,7 +94,7 @@ class Recorder:
         return self.health
 
     def _keep(self, raw: Raw) -> None:
-        if not raw.is_put or not self._selection.wants(raw.key, raw.encoding.removeprefix(ENCODING)):
+        if not raw.is_put or not self._wants(raw.key, raw.encoding):
             return
         if self._tape.stuck:
             self._dropped[raw.key] += 1
@@ -100,6 +102,15 @@ class Recorder:
         self._tape.write(raw, raw.received_wall_ns or wall_ns())
         if self._facts.hear(raw):
             self._tape.note("provenance", self._facts.entries["provenance"])
+
+    def _wants(self, key: str, encoding: str) -> bool:
+        """Whether to keep messages like this; worked out once for each kind."""
+        found = self._wanted.get((key, encoding))
+        if found is None:
+            if len(self._wanted) >= MOST_KINDS:
+                self._wanted.clear()
+            found = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
+        return found
 
     def _note_drops(self) -> None:
         drops = self._intake.drops + self._dropped

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import Any
 
 import zenoh
@@ -13,6 +14,7 @@ import zenoh
 from runtime import bus_config
 from runtime.attachment import SENDER_BYTES
 from runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from runtime.intake import Intake
 from runtime.publisher import Publisher
 from runtime.questions import Question, Questions
 from runtime.realtime import elevate_bus_threads
@@ -140,13 +142,11 @@ class Session:
             return False, f"no answer within {timeout_s:g} s" if said == "Timeout" else said
         return False, f"nobody answers at {key}"
 
-    def tap(self, pattern: str, callback: Callable[[Raw], Any]) -> Any:
-        """Call back with everything under a key pattern, in zenoh's thread: put it into a queue and return.
-
-        For the recorder only; keep the returned subscription alive.
-        """
-        handler: Any = zenoh.handlers.Callback(lambda sample: callback(_raw(sample)), indirect=False)
-        return self._zenoh.declare_subscriber(pattern, handler)
+    def tap(self, pattern: str) -> tuple[Intake, Any]:
+        """Everything under a key pattern from now on, and the subscription: undeclare it at the end."""
+        intake = Intake(read=_taken)
+        handler: Any = zenoh.handlers.Callback(intake.put, indirect=False)  # in zenoh's own thread
+        return intake, self._zenoh.declare_subscriber(pattern, handler)
 
 
 def _is_one_key(key: str) -> bool:
@@ -215,6 +215,12 @@ def _raw(sample: zenoh.Sample) -> Raw:
         is_put=sample.kind == zenoh.SampleKind.PUT,
         received_wall_ns=_received(sample),
     )
+
+
+def _taken(sample: zenoh.Sample, at_ns: int) -> Raw:
+    """A sample that was put at a wall time; that stands for its reception where nothing better is known."""
+    raw = _raw(sample)
+    return raw if raw.received_wall_ns is not None else replace(raw, received_wall_ns=at_ns)
 
 
 def _received(sample: zenoh.Sample) -> int | None:

@@ -25,8 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 when every driver that speaks has stopped, 1 when one has not or none speaks."""
     with open_client(endpoint_of(arguments)) as session:
-        intake = Intake()
-        tap = session.tap(TOPICS["driver"].key.format(robot="*"), intake.put)
+        intake, tap = session.tap(TOPICS["driver"].key.format(robot="*"))
         modes = _stop(session.publisher("estop", ""), intake)
         tap.undeclare()
     for robot, mode in sorted(modes.items()):

@@ -31,7 +31,7 @@ from schemas.errors import UsageError
 from tools.asked import check_within
 from tools.endpoint import configure_bus, endpoint_of
 
-TURN_S = 0.02
+TURN_S = 0.1  # so rarely for the sake of the CPU; with FLUSH_NS it bounds what kill -9 costs
 MOST = 1e9  # MB or seconds: no disk and no run is so large
 GONE = "the bus is gone: nothing is recorded until it is back"
 BACK = "the bus is back: recording goes on"
@@ -56,15 +56,15 @@ def run(arguments: argparse.Namespace) -> int:
     """Record until told to stop; 0, or 1 when something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MOST, f"--{name.replace('_', '-')}")
-    stop, intake = stop_on_signals(), Intake()
+    stop = stop_on_signals()
     with open_client(endpoint_of(arguments)) as session:
         if arguments.write:
             done, said = session.ask(SNAPSHOT_KEY, "asked for")
             print(said, file=sys.stdout if done else sys.stderr)
             return 0 if done else 1
+        intake, tap = session.tap("**")
         recorder = _recorder(arguments, intake)
         questions = session.questions(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
-        tap = session.tap("**", intake.put)
         _record(recorder, questions, stop, session, quiet=arguments.quiet)
         tap.undeclare()
         health = recorder.close()

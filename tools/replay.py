@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from runtime.clock import MonotonicClock
-from runtime.intake import Intake
 from runtime.pacing import FASTEST, SLOWEST, Pace
 from runtime.player import Played, Player
 from runtime.recording import open_recording
@@ -129,8 +128,7 @@ def _steer(pace: Pace, key: str, now_ns: int) -> bool:
 
 
 def _driver_is_live(session: Session) -> bool:
-    intake = Intake()
-    tap = session.tap(TOPICS["driver"].key.format(robot="*"), intake.put)
+    intake, tap = session.tap(TOPICS["driver"].key.format(robot="*"))
     time.sleep(LISTEN_S)
     tap.undeclare()
     return bool(intake.take())

@@ -9,7 +9,6 @@ from pathlib import Path
 from rich.console import Console
 
 from runtime.clock import MonotonicClock
-from runtime.intake import Intake
 from runtime.session import open_client
 from runtime.stopping import stop_on_signals
 from schemas import codec
@@ -77,9 +76,8 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     feed = Feed()
     with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
         codec.prime()
-        intake = Intake()
+        intake, tap = session.tap("**")
         listener = Listener(intake, Story(explainer, arguments.robot), feed, arguments.sender)
-        tap = session.tap("**", intake.put)
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
         tap.undeclare()

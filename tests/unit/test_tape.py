@@ -3,7 +3,9 @@
 import errno
 import os
 import struct
+import time
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
@@ -234,6 +236,17 @@ def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
     kept = len(intake.take())
     assert kept == 2000 // len(odometry(1).payload)
     assert intake.drops == Counter({"agilo/odom": 100 - kept})
+
+
+def test_what_waited_is_read_by_its_taker_with_the_time_when_it_came():
+    sample, began = raw(EStop(True), 1, "estop"), time.time_ns()
+    intake = Intake(read=lambda waited, at_ns: replace(waited, received_wall_ns=at_ns))
+    intake.put(sample)
+    came = time.time_ns()
+    time.sleep(0.01)
+    (taken,) = intake.take()
+    assert began <= taken.received_wall_ns <= came
+    assert intake.take() == []
 
 
 def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
