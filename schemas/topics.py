@@ -6,6 +6,7 @@ Everything else about topics derives from here: codecs, freshness limits, record
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 from schemas import messages as m
@@ -55,6 +56,7 @@ TOPICS: dict[str, Topic] = {
 }
 
 
+@lru_cache(maxsize=1024)  # a tick asks for a dozen, always the same
 def key_of(name: str, robot: str) -> str:
     """The zenoh key of a topic, e.g. `key_of("odom", "agilo") == "agilo/odom"`."""
     return TOPICS[name].key.format(robot=robot)

@@ -40,6 +40,7 @@ class Improvement:
           ground: The grounding of earlier searches.
         """
         self._plan, self._step, self._expected = plan, step, expected
+        self._facts: frozenset[Fact] | None = None
         self._domain = context.pddl_domain
         self._result: planning.Result | None = None
         self._search: planning.Search | None = None
@@ -51,6 +52,14 @@ class Improvement:
     def serves(self, plan: planning.Plan, step: int, expected: frozenset[Fact]) -> bool:
         """Whether this is the search for what comes after that step."""
         return self._plan is plan and self._step == step and self._expected == expected
+
+    def note(self, facts: frozenset[Fact]) -> None:
+        """Remember facts from which the step leads to what is expected: `follows` then knows them again."""
+        self._facts = facts
+
+    def follows(self, plan: planning.Plan, step: int, facts: frozenset[Fact]) -> bool:
+        """Whether this is known to be the search for what comes after that step, taken from these facts."""
+        return self._plan is plan and self._step == step and self._facts == facts
 
     def advance(self, budget: Budget) -> None:
         """Go on until the search has ended or the budget is spent."""

@@ -78,8 +78,8 @@ def _searched(deliberation: Deliberation | None) -> tuple[int, float]:
     """How far the search for subgoals has come: evaluations, and the gap to the optimum, -1 where it is not known."""
     if deliberation is None or deliberation.refinement is None:
         return 0, -1.0
-    report = deliberation.refinement.report()
-    return report.evaluations, -1.0 if report.gap_pct is None else report.gap_pct
+    gap_pct = deliberation.refinement.gap_pct
+    return deliberation.refinement.evaluations, -1.0 if gap_pct is None else gap_pct
 
 
 def _plan(context: Context, state: State, found: PlanFound) -> m.PlanReport:

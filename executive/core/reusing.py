@@ -35,11 +35,13 @@ def look_further(context: Context, state: State, budget: Budget) -> State:
     if action is None:
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
-    expected = planning.progress(context.pddl_domain, context.problem, facts, action)
     improvement = state.improvement
-    if improvement is None or not improvement.serves(task.plan, running.step, expected):
-        left = {step.id for step in task.plan.steps} - task.done - {running.step}
-        improvement = Improvement(context, task.plan, running.step, left, expected, task.goal, state.ground)
+    if improvement is None or not improvement.follows(task.plan, running.step, facts):
+        expected = planning.progress(context.pddl_domain, context.problem, facts, action)
+        if improvement is None or not improvement.serves(task.plan, running.step, expected):
+            left = {step.id for step in task.plan.steps} - task.done - {running.step}
+            improvement = Improvement(context, task.plan, running.step, left, expected, task.goal, state.ground)
+        improvement.note(facts)
     improvement.advance(budget)
     return replace(state, improvement=improvement)
 

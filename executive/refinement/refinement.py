@@ -121,13 +121,13 @@ class Refinement:
         searches = [search for search in (self._solver, self._polish) if search is not None]
         return Report(
             solver=type(self._solver).__name__ if self._solver else "",
-            evaluations=first + self._objective.rows + (self._polish.rows if self._polish else 0),
+            evaluations=self.evaluations,
             checks=(self._greedy is not None) + sum(search.checks for search in searches),
             greedy_s=self._greedy_s,
             best_s=self._choice.total_s if self._choice else np.inf,
             trace=self._trace(first),
             verdict=self._verdict,
-            gap_pct=self._gap_pct(),
+            gap_pct=self.gap_pct,
         )
 
     def _trace(self, first: int) -> tuple[tuple[int, float], ...]:
@@ -138,7 +138,14 @@ class Refinement:
             trace += [(first + rows, value) for rows, value in found if value < self._greedy_s]
         return tuple(trace)
 
-    def _gap_pct(self) -> float | None:
+    @property
+    def evaluations(self) -> int:
+        """Sequences that were judged so far."""
+        first = self._greedy.rows if self._greedy else 0
+        return first + self._objective.rows + (self._polish.rows if self._polish else 0)
+
+    @property
+    def gap_pct(self) -> float | None:
         """The gap that was proven, if it says anything."""
         gap = self._certificate.gap_pct if isinstance(self._certificate, Certificate) else None
         return gap if gap is not None and gap <= USEFUL_GAP_PCT else None
