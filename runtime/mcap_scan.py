@@ -21,8 +21,8 @@ from mcap import records as r
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.stream_reader import breakup_chunk
 
+from runtime.mcap_chunk import records_of
 from schemas.errors import UsageError
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -163,7 +163,7 @@ def _one(read: Any, data: bytes, account: Account) -> Iterator[Any]:
 def _chunk(data: bytes, account: Account) -> Iterator[Any]:
     try:
         chunk = r.Chunk.read(ReadDataStream(BytesIO(data)))
-        inside = breakup_chunk(_unpacked(chunk), validate_crc=True)
+        inside = records_of(_unpacked(chunk), chunk.uncompressed_crc)
     except DAMAGE as error:
         account.damaged_chunks += 1
         account.lose(len(data), f"a chunk is damaged: {error or type(error).__name__}")
@@ -172,8 +172,8 @@ def _chunk(data: bytes, account: Account) -> Iterator[Any]:
     yield from inside
 
 
-def _unpacked(chunk: Any) -> Any:
-    """The chunk with its records uncompressed, never more bytes than it declares and we allow."""
+def _unpacked(chunk: Any) -> bytes:
+    """A chunk's records uncompressed, never more bytes than it declares and we allow."""
     declared = chunk.uncompressed_size
     if declared > MOST_CHUNK_BYTES:
         raise ValueError(f"it declares {declared} bytes")
@@ -187,8 +187,7 @@ def _unpacked(chunk: Any) -> Any:
         raise ValueError(f"compression {chunk.compression!r} is not known")
     if len(plain) != declared:
         raise ValueError(f"it declares {declared} bytes and holds {len(plain)}")
-    chunk.data, chunk.compression = plain, ""
-    return chunk
+    return bytes(plain)
 
 
 def _ends_well(file: IO[bytes], size: int) -> bool:

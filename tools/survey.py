@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from runtime.recording import Recorded, Recording
 from schemas.codec import decode
 from schemas.errors import Rejected
@@ -94,8 +92,15 @@ def survey(recording: Recording) -> Survey:
 
 def percentiles(values: list[float]) -> dict[str, float]:
     """p50, p99 and maximum; zeros for no values."""
-    known = np.array(values or [0.0])
-    return {f"p{q}" if q < 100 else "max": round(float(np.percentile(known, q)), 3) for q in (50, 99, 100)}
+    known = sorted(values) or [0.0]
+    return {f"p{q}" if q < 100 else "max": round(_percentile(known, q), 3) for q in (50, 99, 100)}
+
+
+def _percentile(known: list[float], q: int) -> float:
+    """Between the two nearest of some sorted values, as numpy's; which loads numpy.ma for it, 40 ms."""
+    place = (len(known) - 1) * q / 100
+    low = int(place)
+    return known[low] + (known[min(low + 1, len(known) - 1)] - known[low]) * (place - low)
 
 
 def _status(found: Survey, key: str, message: ExecStatus) -> None:
