@@ -117,7 +117,6 @@ class Refinement:
 
     def report(self) -> Report:
         """How the search went so far."""
-        first = self._greedy.rows if self._greedy else 0
         searches = [search for search in (self._solver, self._polish) if search is not None]
         return Report(
             solver=type(self._solver).__name__ if self._solver else "",
@@ -125,24 +124,28 @@ class Refinement:
             checks=(self._greedy is not None) + sum(search.checks for search in searches),
             greedy_s=self._greedy_s,
             best_s=self._choice.total_s if self._choice else np.inf,
-            trace=self._trace(first),
+            trace=self._trace(),
             verdict=self._verdict,
             gap_pct=self.gap_pct,
         )
 
-    def _trace(self, first: int) -> tuple[tuple[int, float], ...]:
-        """The improvements so far: the greedy answer, for which `first` rows were predicted, and what beat it."""
-        trace = [(first, self._greedy_s)] if np.isfinite(self._greedy_s) else []
-        if self._solver is not None:
-            found = zip(self._solver.trace.rows, self._solver.trace.values, strict=True)
-            trace += [(first + rows, value) for rows, value in found if value < self._greedy_s]
-        return tuple(trace)
-
     @property
     def evaluations(self) -> int:
         """Sequences that were judged so far."""
-        first = self._greedy.rows if self._greedy else 0
-        return first + self._objective.rows + (self._polish.rows if self._polish else 0)
+        return self._first + self._objective.rows + (self._polish.rows if self._polish else 0)
+
+    @property
+    def _first(self) -> int:
+        """Rows that were predicted for the greedy answer."""
+        return self._greedy.rows if self._greedy else 0
+
+    def _trace(self) -> tuple[tuple[int, float], ...]:
+        """The improvements so far: the greedy answer, and what beat it."""
+        trace = [(self._first, self._greedy_s)] if np.isfinite(self._greedy_s) else []
+        if self._solver is not None:
+            found = zip(self._solver.trace.rows, self._solver.trace.values, strict=True)
+            trace += [(self._first + rows, value) for rows, value in found if value < self._greedy_s]
+        return tuple(trace)
 
     @property
     def gap_pct(self) -> float | None:
