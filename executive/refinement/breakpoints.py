@@ -114,4 +114,6 @@ def _both_sides(values: list[float], ranges: Ranges, column: int) -> Array:
     angles = wanted + 2 * np.pi * np.arange(-1, 2)[:, None] if ranges.periodic[column] else wanted[None]
     inside = angles[(angles > lower) & (angles < upper)]
     nudge = NUDGE * width
-    return np.unique(np.clip(np.concatenate([[lower, upper], inside - nudge, inside + nudge]), lower, upper))
+    known = np.sort(np.clip(np.concatenate([[lower, upper], inside - nudge, inside + nudge]), lower, upper))
+    distinct: Array = known[np.concatenate([[True], known[1:] != known[:-1]])]  # np.unique loads numpy.ma, 40 ms
+    return distinct

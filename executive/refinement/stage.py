@@ -63,7 +63,7 @@ class Stage:
         spoils: Spoiling | None = None,
     ) -> None:
         ids = instance.variables
-        self.columns: NDArray[np.intp] = np.unique([places[i] for i in ids if i in places]).astype(np.intp)
+        self.columns: NDArray[np.intp] = np.array(sorted({places[i] for i in ids if i in places}), dtype=np.intp)
         self.rows = 0  # rows predicted so far
         self.action = instance.action
         self.models = models_of(instance.action, models, settings)
