@@ -60,6 +60,7 @@ class Inbox:
         self._rows = [(topic, key, source, encodings(topic.type)) for topic, key, source in rows]
         self._now, self._wall = now, wall
         self._previous = Instant(now(), wall())
+        self._last: dict[str, tuple[str, int]] = {}  # sender and number of the newest message, by key
 
     def drain(self, now_ns: int | None = None) -> tuple[Sample, ...]:
         """All new samples, oldest first, none of them stamped as arriving after `now_ns` (default: now)."""
@@ -88,8 +89,11 @@ class Inbox:
         origin = unpack(raw.attachment)
         if isinstance(origin, Rejected):
             return origin
+        if origin.sequence and self._last.get(key) == (origin.sender, origin.sequence):
+            return Rejected("repeated")  # a frozen sender is heard no more, and so its topic gets stale
         message = decode(topic, raw.payload)
         if isinstance(message, Rejected):
             return message
+        self._last[key] = (origin.sender, origin.sequence)
         arrived = arrival_ns(raw.received_wall_ns, self._previous, now)
         return Sample(key, message, arrived, origin.sequence, origin.sender)

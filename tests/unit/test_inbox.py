@@ -76,9 +76,24 @@ def test_an_unsigned_publication_of_another_ros_node_is_taken():
     assert [(s.sequence, s.sender) for s in samples] == [(0, "")]
 
 
+def numbered(message, number, key="agilo/odom", sender=SENDER):
+    return raw(message, key, attachment=pack(Origin(number, 123, sender)))
+
+
 def test_a_flood_is_drained_in_bounded_portions():
-    box = inbox(*[raw(VelocityCommand(0, 0.1, 0.0), "agilo/cmd_vel")] * 40, topic="cmd_vel", key="agilo/cmd_vel")
-    assert len(box.drain(1)) == EVENT_DEPTH
+    flood = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in range(1, 41)]
+    assert len(inbox(*flood, topic="cmd_vel", key="agilo/cmd_vel").drain(1)) == EVENT_DEPTH
+
+
+def test_a_frozen_sensor_is_not_heard_again_but_one_that_starts_anew_or_is_replayed_is():
+    line = Line(*(numbered(ODOMETRY, number) for number in (7, 7, 7, 8, 8, 3)), numbered(ODOMETRY, 3, sender="ff" * 16))
+    box = Inbox([(TOPICS["odom"], "agilo/odom", line)], encoding_of, now=lambda: 0, wall=lambda: 0)
+    assert [sample.sequence for sample in box.drain(9)] == [7, 8, 3, 3]
+    assert box.rejected == {("agilo/odom", "repeated"): 3}
+
+
+def test_a_frozen_sensor_without_numbers_is_heard():  # a ROS 2 bridge sends none
+    assert len(inbox(*[raw(ODOMETRY, attachment=None)] * 3).drain(9)) == 3
 
 
 def test_states_replace_each_other_events_and_commands_do_not():
