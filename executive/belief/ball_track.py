@@ -7,13 +7,13 @@ A ball that is not seen rolls on and its uncertainty grows.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 VELOCITY_MEMORY = 0.8  # weight of the old velocity at a percept: steps of 80 ms, so about 0.4 s
 GROWTH_M2_PER_S = 4e-4  # a resting ball out of sight: 2 cm after 1 s
 CARRIED_GROWTH_M2_PER_S = 1e-3  # a ball in the grip may slide in it
 MOVING_GROWTH_M2_PER_S = 9e-3  # at 1 m/s; proportional to its speed
-MOVED_PERCEPTS = 2  # so many far off in a row, and somebody moved the ball; a single one is an outlier
+SURPRISING = 5.0  # standard deviations: with 12 percepts a second, four would come about every few minutes
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,17 @@ class BallTrack:
     vy: float
     variance: float  # m², of either axis
     seen_ns: int  # when it was last seen
-    doubted: int = 0  # percepts in a row that were far off
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """A percept of the ball: where, in the robot's frame (m), and how surely (m²)."""
+
+    ahead: float
+    left: float
+    var_ahead: float
+    var_left: float
+    covariance: float
 
 
 def move(track: BallTrack, v: float, turn: float, phi: float, duration_s: float, rolling_mps2: float) -> BallTrack:
@@ -55,7 +65,6 @@ def move(track: BallTrack, v: float, turn: float, phi: float, duration_s: float,
         track.vy * kept,
         track.variance + growth,
         track.seen_ns,
-        track.doubted,
     )
 
 
@@ -70,18 +79,20 @@ def carry(track: BallTrack, v: float, omega: float, phi: float, duration_s: floa
         s * forward + c * sideways,
         track.variance + CARRIED_GROWTH_M2_PER_S * duration_s,
         track.seen_ns,
-        track.doubted,
     )
 
 
-def see(track: BallTrack | None, ahead: float, left: float, variance: float, phi: float, now_ns: int) -> BallTrack:
-    """Fuse a percept (m, robot's frame, m² of either axis); a second one far off in a row starts a new track."""
-    if track is None:
-        return BallTrack(ahead, left, 0.0, 0.0, variance, now_ns)
-    if _surprising(track, ahead, left, variance):
-        doubted = track.doubted + 1
-        if doubted < MOVED_PERCEPTS:
-            return replace(track, doubted=doubted)
+def see(track: BallTrack | None, seen: Seen, phi: float, now_ns: int) -> BallTrack:
+    """Fuse a percept; one far off what was believed starts a new track.
+
+    Args:
+      track: The ball before; None if it was never seen.
+      seen: What is seen now.
+      phi: The robot's heading, map frame.
+      now_ns: Time of the percept.
+    """
+    ahead, left, variance = seen.ahead, seen.left, 0.5 * (seen.var_ahead + seen.var_left)
+    if track is None or _surprising(track, seen):
         return BallTrack(ahead, left, 0.0, 0.0, variance, now_ns)
     gain = track.variance / (track.variance + variance)
     d_ahead, d_left = gain * (ahead - track.ahead), gain * (left - track.left)
@@ -98,7 +109,15 @@ def see(track: BallTrack | None, ahead: float, left: float, variance: float, phi
     )
 
 
-def _surprising(track: BallTrack, ahead: float, left: float, variance: float) -> bool:
-    """Beyond four standard deviations, and 10 cm."""
-    off_squared = (ahead - track.ahead) ** 2 + (left - track.left) ** 2
-    return off_squared > 16.0 * (track.variance + variance) and off_squared > 0.01
+def _surprising(track: BallTrack, seen: Seen) -> bool:
+    """Beyond five standard deviations (Mahalanobis), and 10 cm: somebody moved the ball.
+
+    A camera errs along its line of sight more than across; held against the mean of both, half a metre of noise would
+    move the ball now and then.
+    """
+    d_ahead, d_left = seen.ahead - track.ahead, seen.left - track.left
+    a, b, c = seen.var_ahead + track.variance, seen.var_left + track.variance, seen.covariance
+    distance = (
+        b * d_ahead * d_ahead - 2.0 * c * d_ahead * d_left + a * d_left * d_left
+    )  # squared, times the determinant
+    return distance > SURPRISING**2 * (a * b - c * c) and d_ahead * d_ahead + d_left * d_left > 0.01

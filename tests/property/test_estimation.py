@@ -95,22 +95,29 @@ def test_resting_ball_stays_where_it_is_while_the_robot_drives(ahead, left, v, t
     assert math.dist(was, now) < 0.2 * abs(turn) * abs(v) + 1e-9  # the step drives along the middle heading
 
 
-def seen(track, ahead, left, percept):
-    return ball_track.see(track, ahead, left, 1e-3, 0.0, percept * 80_000_000)
+def sight(ahead, left, along=1e-3, across=1e-3, bearing=0.0):
+    """A percept that errs by these variances (m²) along a line of sight in that direction, and across it."""
+    c, s = math.cos(bearing), math.sin(bearing)
+    return ball_track.Seen(ahead, left, c * c * along + s * s * across, s * s * along + c * c * across,
+                           c * s * (along - across))  # fmt: skip
 
 
-def test_a_ball_put_elsewhere_is_believed_at_second_sight():
-    track = seen(BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0), 1.5, 0.4, 1)
-    assert (track.ahead, track.left) == (1.0, 0.0)
-    moved = seen(ball_track.move(track, 0.0, 0.0, 0.0, 0.08, 0.53), 1.5, 0.4, 2)
+def test_a_ball_put_elsewhere_is_believed_at_once():
+    track = BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0)
+    moved = ball_track.see(track, sight(1.5, 0.4), 0.0, 80_000_000)
     assert (moved.ahead, moved.left) == (1.5, 0.4)
 
 
-def test_outliers_between_good_percepts_move_no_ball():
-    track = BallTrack(1.0, 0.0, 0.0, 0.0, 1e-3, 0)
-    for percept in range(1, 20):
-        track = seen(track, *((1.5, 0.4) if percept % 2 else (1.0, 0.0)), percept)
-        assert (track.ahead, track.left) == (1.0, 0.0)
+@given(st.floats(-0.8, 0.8))
+def test_noise_along_the_line_of_sight_moves_no_ball_but_the_same_across_it_does(bearing):
+    c, s = math.cos(bearing), math.sin(bearing)
+    track = BallTrack(3.0 * c, 3.0 * s, 0.0, 0.0, 1e-3, 0)
+    for off, surprising in ((0.7, False), (0.9, True)):  # 16 cm of noise at 3 m, half as much across
+        along = sight((3.0 + off) * c, (3.0 + off) * s, 0.0256, 0.0064, bearing)
+        seen = ball_track.see(track, along, 0.0, 80_000_000)
+        assert ((seen.ahead, seen.left) == (along.ahead, along.left)) == surprising
+    across = sight(3.0 * c - 0.7 * s, 3.0 * s + 0.7 * c, 0.0256, 0.0064, bearing)
+    assert ball_track.see(track, across, 0.0, 80_000_000).ahead == across.ahead
 
 
 def test_rolling_ball_is_tracked_with_its_speed():
@@ -119,6 +126,7 @@ def test_rolling_ball_is_tracked_with_its_speed():
         x = 1.0 + 0.8 * 0.08 * step
         if track is not None:
             track = ball_track.move(track, 0.0, 0.0, 0.0, 0.08, 0.0)
-        track = ball_track.see(track, x + 0.02 * rng.standard_normal(), 0.0, 4e-4, 0.0, 80_000_000 * step)
+        percept = sight(x + 0.02 * rng.standard_normal(), 0.0, 4e-4, 4e-4)
+        track = ball_track.see(track, percept, 0.0, 80_000_000 * step)
     assert track.vx == pytest.approx(0.8, abs=0.15)
     assert track.ahead == pytest.approx(x, abs=0.05)

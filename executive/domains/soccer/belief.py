@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from executive.belief import ball_track, planar_ekf
 from executive.belief.angles import difference
-from executive.belief.ball_track import BallTrack
+from executive.belief.ball_track import BallTrack, Seen
 from executive.belief.planar_ekf import OdometryNoise, Pose
 from executive.domains.soccer import robot
 from schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
@@ -182,6 +182,12 @@ def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> Soc
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
     b = belief
-    variance = _bounded(0.5 * (seen.var_x + seen.var_y))
-    ball = ball_track.see(b.ball, seen.x, seen.y, variance, b.pose.phi, b.time_ns)
+    ball = ball_track.see(b.ball, _sight(seen), b.pose.phi, b.time_ns)
     return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, b.poses_seen, b.poses_doubted, b.odom)
+
+
+def _sight(seen: BallPercept) -> Seen:
+    """A percept with a covariance that can be one, whatever was sent."""
+    var_ahead, var_left = _bounded(seen.var_x), _bounded(seen.var_y)
+    most = math.sqrt(var_ahead * var_left)
+    return Seen(seen.x, seen.y, var_ahead, var_left, min(most, max(-most, seen.cov_xy)))
