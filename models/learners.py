@@ -18,6 +18,7 @@ from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from models.taught_forest import TaughtForest
 from schemas.errors import UsageError
 
 # A missed failure costs so many false alarms. On held-out approaches 4 keeps missed failures below 1 %, as the
@@ -47,6 +48,7 @@ DURATION: Mapping[str, Callable[[int], Any]] = {
     "network": lambda seed: BorrowedRegressor(_network(MLPRegressor, seed)),
 }
 SUCCESS: Mapping[str, Callable[[int], Any]] = {
+    "taught": lambda seed: TaughtForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
     "distilled": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),

@@ -18,6 +18,7 @@ from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from models.onnx_features import as_rows
 from models.onnx_graph import ML, ML_OPSET, OPSET
 from models.onnx_trees import add_bag, add_probability, add_tree
+from models.taught_forest import TaughtForest
 
 TYPES = {"f4": TensorProto.FLOAT, "u2": TensorProto.UINT16, "i4": TensorProto.INT32, "i8": TensorProto.INT64}
 
@@ -48,7 +49,7 @@ def register() -> None:
     """Register all converters; may be called again."""
     for estimator in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
         update_registered_converter(estimator, f"Tailor{estimator.__name__}", _regressor_shape, _convert_regressor)
-    for estimator in (FailureTree, FailureForest, DistilledFailureTree):
+    for estimator in (FailureTree, FailureForest, TaughtForest, DistilledFailureTree):
         update_registered_converter(
             estimator,
             f"Tailor{estimator.__name__}",

@@ -18,7 +18,7 @@ from tools.terminal import table_console
 from tools.training_order import command_of, data_sets, spaces_of
 
 DURATIONS = "bag, robust, distilled, linear, m5, boosting, network"  # named here to spare --help the libraries
-SUCCESSES = "forest, distilled, tree, boosting, network, svm"
+SUCCESSES = "taught, forest, distilled, tree, boosting, network, svm"
 RARE = 0.02  # a smaller share of failures is too few to learn from
 
 EPILOG = """\
@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--features", help="feature space (default: projective, or the one of the data's arguments)")
     parser.add_argument("--energy-features", help="the same for energy (default: joints-relative instead of joints)")
     parser.add_argument("--learner", default="bag", help=f"of durations: {DURATIONS} (default: %(default)s)")
-    parser.add_argument("--failure-learner", default="forest", help=f"of successes: {SUCCESSES} (default: %(default)s)")
+    parser.add_argument("--failure-learner", default="taught", help=f"of successes: {SUCCESSES} (default: %(default)s)")
     seed = at_least(0, "--seed")
     parser.add_argument(
         "--seed", type=seed, default=1, help="draws folds and resampled episodes (default: %(default)s)"

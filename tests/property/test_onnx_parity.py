@@ -11,6 +11,7 @@ from models.features import SPACES, joints, projective
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
 from models.onnx_export import export_duration, export_success
 from models.split_tree import LEAF
+from models.taught_forest import TaughtForest
 from models.tree_boxes import tree_boxes
 from tests import standin
 
@@ -94,7 +95,7 @@ def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> 
     assert len(boxes.low) == sum(tree.leaves for tree in bag.trees_)
 
 
-@pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20)])
+@pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20), TaughtForest()])
 def test_probabilities_agree(learner, episodes) -> None:
     arguments, _, _ = standin.examples(episodes, 1)
     learner.fit(projective(arguments), np.array([success for _, _, success in episodes]))

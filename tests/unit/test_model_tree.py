@@ -9,6 +9,7 @@ from models.distilling import DistilledModelTree
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from models.taught_forest import TaughtForest
 
 ESTIMATORS = [
     ModelTreeRegressor(),
@@ -16,6 +17,7 @@ ESTIMATORS = [
     BaggedModelTrees(trees=3),
     FailureTree(),
     FailureForest(trees=5),
+    TaughtForest(trees=3, rounds=20),
     DistilledFailureTree(trees=5),
     DistilledModelTree(trees=3),
 ]

@@ -11,6 +11,7 @@ from models import onnx_converters
 from models.failure_forest import FailureForest
 from models.failure_tree import FailureTree
 from models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from models.taught_forest import TaughtForest
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-1, 1, (800, 3)).astype(np.float32)
@@ -40,7 +41,7 @@ def test_a_pipeline_with_a_model_tree_converts() -> None:
     assert np.quantile(off, 0.99) <= 1e-4  # scaling in single precision may move a row over a threshold
 
 
-@pytest.mark.parametrize("model", [FailureTree(cost_ratio=5), FailureForest(trees=7, cost_ratio=2)])
+@pytest.mark.parametrize("model", [FailureTree(cost_ratio=5), FailureForest(trees=7, cost_ratio=2), TaughtForest()])
 def test_failure_models_convert(model) -> None:
     model.fit(X, (X[:, 0] + RNG.normal(0, 0.3, len(X)) > 0).astype(int))
     label, probability = run(model, options={"zipmap": False})
