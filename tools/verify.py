@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import gc
 import json
 import time
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING
 from executive.composition import recompose
 from executive.core.context import Context
 from executive.replay import replay
+from runtime.heap import heap_set_aside
 from runtime.machine import contrast, machine, same_kind
 from schemas.errors import UsageError
 from tools.differences import ROUNDING, Difference
@@ -92,19 +92,11 @@ def verify(
       proofs: Whether to prove choices again and compare how near to the optimum they are.
     """
     here, there = machine(), run.provenance.get("machine", {})
-    gc.freeze()  # as live: looking for garbage in all that was loaded would take longer than many ticks
-    began = time.perf_counter()
     comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
-    difference, context = None, context if proofs else without_proofs(context)
-    ticks, again = tee(runs.ticks(run))
-    for tick, (_, outputs) in zip(ticks, replay(context, again), strict=True):
-        difference = difference or comparison.tick(tick.tick, outputs)
-        if tape is not None:
-            tape.write(tick, runs.inputs(tick), outputs)
-        elif difference is not None:
-            break
-    difference = difference or comparison.unsaid()
-    took_s = time.perf_counter() - began
+    with heap_set_aside():  # as live
+        began = time.perf_counter()
+        difference = _compared(comparison, runs, run, context if proofs else without_proofs(context), tape)
+        took_s = time.perf_counter() - began
     return Verdict(
         run.sender,
         comparison.ticks,
@@ -115,6 +107,21 @@ def verify(
         runs.left_out_text(),
         took_s,
     )
+
+
+def _compared(
+    comparison: RunComparison, runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape | None
+) -> Difference | None:
+    """The first difference."""
+    difference = None
+    ticks, again = tee(runs.ticks(run))
+    for tick, (_, outputs) in zip(ticks, replay(context, again), strict=True):
+        difference = difference or comparison.tick(tick.tick, outputs)
+        if tape is not None:
+            tape.write(tick, runs.inputs(tick), outputs)
+        elif difference is not None:
+            break
+    return difference or comparison.unsaid()
 
 
 def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
