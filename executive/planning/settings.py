@@ -56,6 +56,9 @@ class Settings:
             raise UsageError(f"planner settings: expected a tolerance in [1e-6, 1000] s, found {self.tolerance_s}")
         if self.seed < 0:
             raise UsageError(f"planner settings: expected a seed of at least 0, found {self.seed}")
+        for name in ("node_limit", "step_limit", "ground_limit"):
+            if getattr(self, name) < 0:
+                raise UsageError(f"planner settings: expected {name} to be at least 0, found {getattr(self, name)}")
 
 
 DEFAULT_RANKINGS = ("ADDR", "ADDR_WORK", "BUC", "LIFO")

@@ -228,6 +228,9 @@ def test_unknown_rankings_and_bad_settings_are_told():
         Settings(weight=float("nan"))
     with pytest.raises(UsageError, match="tolerance"):
         Settings(tolerance_s=0)
+    for name in ("node_limit", "step_limit", "ground_limit"):
+        with pytest.raises(UsageError, match=name):
+            Settings(**{name: -1})
 
 
 def test_action_cost_by_duration_prefers_the_quick_way():
