@@ -13,6 +13,7 @@ import zenoh
 
 from runtime import bus_config
 from runtime.attachment import SENDER_BYTES
+from runtime.clock import wall_ns
 from runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
 from runtime.intake import Intake
 from runtime.publisher import Publisher
@@ -144,8 +145,12 @@ class Session:
 
     def tap(self, pattern: str) -> tuple[Intake, Any]:
         """Everything under a key pattern from now on, and the subscription: undeclare it at the end."""
-        intake = Intake(read=_taken)
-        handler: Any = zenoh.handlers.Callback(intake.put, indirect=False)  # in zenoh's own thread
+        intake = Intake()
+
+        def put(sample: zenoh.Sample) -> None:  # read in zenoh's own thread: a sample that waits pins its whole batch
+            intake.put(_taken(sample, wall_ns()))
+
+        handler: Any = zenoh.handlers.Callback(put, indirect=False)
         return intake, self._zenoh.declare_subscriber(pattern, handler)
 
 

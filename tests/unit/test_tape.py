@@ -3,7 +3,6 @@
 import errno
 import os
 import struct
-import time
 from collections import Counter
 from dataclasses import replace
 
@@ -238,17 +237,6 @@ def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
     assert intake.drops == Counter({"agilo/odom": 100 - kept})
 
 
-def test_what_waited_is_read_by_its_taker_with_the_time_when_it_came():
-    sample, began = raw(EStop(True), 1, "estop"), time.time_ns()
-    intake = Intake(read=lambda waited, at_ns: replace(waited, received_wall_ns=at_ns))
-    intake.put(sample)
-    came = time.time_ns()
-    time.sleep(0.01)
-    (taken,) = intake.take()
-    assert began <= taken.received_wall_ns <= came
-    assert intake.take() == []
-
-
 def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
     intake = Intake()
     recorder = make_recorder(tmp_path, intake, most_bytes=1)
@@ -299,13 +287,11 @@ def test_a_misspelt_topic_is_told():
 
 
 def status(mode, sequence=1):
-    from dataclasses import replace
 
     return raw(replace(example(ExecStatus), mode=mode, reason="why"), sequence, "exec/status")
 
 
 def driver(mode):
-    from dataclasses import replace
 
     return raw(replace(example(DriverState), mode=mode, reason="why"), 1, "agilo/driver")
 
