@@ -117,7 +117,6 @@ def _surprising(track: BallTrack, seen: Seen) -> bool:
     """
     d_ahead, d_left = seen.ahead - track.ahead, seen.left - track.left
     a, b, c = seen.var_ahead + track.variance, seen.var_left + track.variance, seen.covariance
-    distance = (
-        b * d_ahead * d_ahead - 2.0 * c * d_ahead * d_left + a * d_left * d_left
-    )  # squared, times the determinant
-    return distance > SURPRISING**2 * (a * b - c * c) and d_ahead * d_ahead + d_left * d_left > 0.01
+    determinant = a * b - c * c
+    scaled = b * d_ahead * d_ahead - 2.0 * c * d_ahead * d_left + a * d_left * d_left  # distance² x determinant
+    return scaled > SURPRISING**2 * determinant and d_ahead * d_ahead + d_left * d_left > 0.01
