@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from executive import domains
-from executive.core.context import Context, Settings, make_context
-from executive.library import Models
-from executive.refinement.benefit import check_benefit
-from models.runtime import BENEFIT, load_benefit, load_robot
-from schemas.errors import UsageError
-from schemas.settings import from_table
+from tailor.executive import domains
+from tailor.executive.core.context import Context, Settings, make_context
+from tailor.executive.library import Models
+from tailor.executive.refinement.benefit import check_benefit
+from tailor.models.runtime import BENEFIT, load_benefit, load_robot
+from tailor.schemas.errors import UsageError
+from tailor.schemas.settings import from_table
 
 PLACE_UNIT = "m"
 

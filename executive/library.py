@@ -13,7 +13,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Message, Sample
+from tailor.schemas.messages import Message, Sample
 
 Array = NDArray[np.float64]
 Fact = tuple[str, ...]  # a ground atom: ("robot", "pos1")
@@ -136,7 +136,7 @@ class Domain(Protocol):
     actions: Mapping[str, Action]  # by executable name
     executables: Mapping[str, str]  # PDDL action name (lower case) -> executable name
     axes: tuple[Axis, ...]
-    command_topic: str  # name in schemas.topics
+    command_topic: str  # name in tailor.schemas.topics
     sensors: tuple[str, ...]  # topic names that the belief is made from
     required: tuple[str, ...]  # those of them that must be fresh while moving
     belief_names: tuple[str, ...]  # names of belief_values, with units in parentheses

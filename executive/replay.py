@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from executive.budget import CheckBudget
-from executive.core.context import Context
-from executive.core.state import Inputs, Output, initial_state
-from executive.core.step import step
+from tailor.executive.budget import CheckBudget
+from tailor.executive.core.context import Context
+from tailor.executive.core.state import Inputs, Output, initial_state
+from tailor.executive.core.step import step
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,17 +6,17 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from executive.core.asking import awaited
-from executive.core.context import PERIOD_NS, Context, check_goal
-from executive.core.state import Inputs, Output, State, initial_state
-from executive.core.step import control, deliberate
-from runtime import realtime
-from runtime.budget import ClockBudget
-from runtime.clock import Clock
-from runtime.external_planner import ExternalPlanner
-from runtime.loop import Loop, Turn
-from runtime.session import Session
-from schemas.messages import PlanRequest, Provenance, Sample, TickReport
+from tailor.executive.core.asking import awaited
+from tailor.executive.core.context import PERIOD_NS, Context, check_goal
+from tailor.executive.core.state import Inputs, Output, State, initial_state
+from tailor.executive.core.step import control, deliberate
+from tailor.runtime import realtime
+from tailor.runtime.budget import ClockBudget
+from tailor.runtime.clock import Clock
+from tailor.runtime.external_planner import ExternalPlanner
+from tailor.runtime.loop import Loop, Turn
+from tailor.runtime.session import Session
+from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began

@@ -1,1 +1,1 @@
-"""EXPERIENCE: episodes, features, learners, ONNX, cards. The executive loads models.runtime only."""
+"""EXPERIENCE: episodes, features, learners, ONNX, cards. The executive loads tailor.models.runtime only."""

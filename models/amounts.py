@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from models.episodes import Episode
-from models.examples import Examples, duration_examples, energy_examples
+from tailor.models.episodes import Episode
+from tailor.models.examples import Examples, duration_examples, energy_examples
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.tree import DecisionTreeRegressor
 
-from models.card import Card
-from models.distilling import distil
-from models.features import SPACES, FeatureSpace
-from models.grown_tree import means_of, splits_of
-from models.linear_tree import LinearTree
-from models.runtime import OnnxDuration, OnnxSuccess
-from models.split_tree import SplitTree
+from tailor.models.card import Card
+from tailor.models.distilling import distil
+from tailor.models.features import SPACES, FeatureSpace
+from tailor.models.grown_tree import means_of, splits_of
+from tailor.models.linear_tree import LinearTree
+from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.models.split_tree import SplitTree
 
 Array = NDArray[np.float64]
 ROWS = 30_000

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.benefit_trees import LEARNERS, RiskTrees, grow_tree
-from models.features import FeatureSpace, Quantity
-from models.rules import success_rules
-from schemas.errors import UsageError
+from tailor.models.benefit_trees import LEARNERS, RiskTrees, grow_tree
+from tailor.models.features import FeatureSpace, Quantity
+from tailor.models.rules import success_rules
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from models.benefit import Pairs, TrainedBenefit, space
-from models.card import FORMAT, Card, card_path, identity
-from models.onnx_features import add_features, as_columns
-from models.onnx_graph import Graph
-from models.onnx_trees import add_probability
-from models.placing import place
-from models.publishing import GOLDEN, versions
-from models.runtime import BENEFIT
+from tailor.models.benefit import Pairs, TrainedBenefit, space
+from tailor.models.card import FORMAT, Card, card_path, identity
+from tailor.models.onnx_features import add_features, as_columns
+from tailor.models.onnx_graph import Graph
+from tailor.models.onnx_trees import add_probability
+from tailor.models.placing import place
+from tailor.models.publishing import GOLDEN, versions
+from tailor.models.runtime import BENEFIT
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models import scores
+from tailor.models import scores
 
 Array = NDArray[np.float64]
 

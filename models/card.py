@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from models.card_shape import card_error
-from schemas.errors import UsageError
+from tailor.models.card_shape import card_error
+from tailor.schemas.errors import UsageError
 
 FORMAT = 1
 KINDS = ("duration", "success", "energy", "benefit")

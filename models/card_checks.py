@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from models.card import Card, identity
-from schemas.errors import UsageError
+from tailor.models.card import Card, identity
+from tailor.schemas.errors import UsageError
 
 COVER_TOLERANCE = 1e-6  # of a range's bounds, for decimals that were rounded
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from models.json_shape import arguments_error, is_number, is_range, short
+from tailor.models.json_shape import arguments_error, is_number, is_range, short
 
 OUTPUTS = {
     "duration": ["mean_s", "std_s"],

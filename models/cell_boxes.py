@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from models import tree_names
-from models.onnx_wire import Contents
+from tailor.models import tree_names
+from tailor.models.onnx_wire import Contents
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]

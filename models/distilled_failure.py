@@ -7,10 +7,10 @@ from typing import Any, Self
 import numpy as np
 from sklearn.tree import DecisionTreeRegressor
 
-from models.distilling import between
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureModel
-from models.grown_tree import means_of, splits_of
+from tailor.models.distilling import between
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureModel
+from tailor.models.grown_tree import means_of, splits_of
 
 ROWS = 40_000  # asked of the forest, at most
 ROWS_EACH = 40  # for each row of the examples

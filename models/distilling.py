@@ -8,9 +8,9 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from models.linear_flavour import TreeSettings, fit_linear
-from models.linear_tree import LinearTree
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.linear_flavour import TreeSettings, fit_linear
+from tailor.models.linear_tree import LinearTree
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
 
 Floats = NDArray[np.float32]
 Answers = tuple[NDArray[Any], NDArray[Any]]  # mean and spread, (n,) each

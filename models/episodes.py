@@ -19,8 +19,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from models.manifest import read_manifest
-from schemas.errors import UsageError
+from tailor.models.manifest import read_manifest
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models.episodes import TICK_S, Episode
+from tailor.models.episodes import TICK_S, Episode
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

@@ -7,9 +7,9 @@ from typing import Any, Self
 import numpy as np
 from sklearn.tree import DecisionTreeClassifier
 
-from models.episode_rows import resampled
-from models.failure_tree import FailureModel
-from models.grown_tree import shares_of, splits_of
+from tailor.models.episode_rows import resampled
+from tailor.models.failure_tree import FailureModel
+from tailor.models.grown_tree import shares_of, splits_of
 
 
 class FailureForest(FailureModel):

@@ -12,9 +12,9 @@ from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from models.episode_rows import held_out, numbered
-from models.grown_tree import Step, splits_of
-from models.split_tree import SplitTree
+from tailor.models.episode_rows import held_out, numbered
+from tailor.models.grown_tree import Step, splits_of
+from tailor.models.split_tree import SplitTree
 
 Ints = NDArray[np.int64]
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models import features
-from models.features import NUMPY
-from models.spans import ANGLE_ERROR, ARGUMENT_ERROR, NEAR, TURN, Span, direction, length, magnitude, unsigned
+from tailor.models import features
+from tailor.models.features import NUMPY
+from tailor.models.spans import ANGLE_ERROR, ARGUMENT_ERROR, NEAR, TURN, Span, direction, length, magnitude, unsigned
 
 Bools = NDArray[np.bool_]
 Spans = tuple[Span, ...]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from models import moments
+from tailor.models import moments
 
 Array = NDArray[np.float64]
 

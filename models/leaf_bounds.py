@@ -13,8 +13,8 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from models.spans import Span
-from models.tree_boxes import TreeBoxes
+from tailor.models.spans import Span
+from tailor.models.tree_boxes import TreeBoxes
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]

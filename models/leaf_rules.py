@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from models.features import Quantity
-from models.rules import NAMES, Bounds, conditions, formula
-from models.tree_boxes import TreeBoxes
-from schemas.errors import UsageError
+from tailor.models.features import Quantity
+from tailor.models.rules import NAMES, Bounds, conditions, formula
+from tailor.models.tree_boxes import TreeBoxes
+from tailor.schemas.errors import UsageError
 
 Floats = NDArray[np.float32]
 

@@ -12,14 +12,14 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
-from models.borrowed import BorrowedClassifier, BorrowedRegressor
-from models.distilled_failure import DistilledFailureTree
-from models.distilling import DistilledModelTree
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureTree
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.taught_forest import TaughtForest
-from schemas.errors import UsageError
+from tailor.models.borrowed import BorrowedClassifier, BorrowedRegressor
+from tailor.models.distilled_failure import DistilledFailureTree
+from tailor.models.distilling import DistilledModelTree
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureTree
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.taught_forest import TaughtForest
+from tailor.schemas.errors import UsageError
 
 # A missed failure costs so many false alarms. On held-out approaches 4 keeps missed failures below 1 %, as the
 # paper's 5 did for its tree; 5 would cost two points of accuracy more.

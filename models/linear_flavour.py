@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from models.growing import Examples, Growth, Node, grow, quantile_bins
-from models.linear_tree import LinearTree
-from models.robust_fit import refit
-from models.scaling import Scale
-from models.tree_writing import Source, write_down
+from tailor.models.growing import Examples, Growth, Node, grow, quantile_bins
+from tailor.models.linear_tree import LinearTree
+from tailor.models.robust_fit import refit
+from tailor.models.scaling import Scale
+from tailor.models.tree_writing import Source, write_down
 
 Array = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models import moments
-from models.linear_tree import LinearTree
-from models.scaling import Scale
-from models.split_tree import LEAF
+from tailor.models import moments
+from tailor.models.linear_tree import LinearTree
+from tailor.models.scaling import Scale
+from tailor.models.split_tree import LEAF
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from models.json_shape import arguments_error
-from schemas.errors import UsageError
+from tailor.models.json_shape import arguments_error
+from tailor.schemas.errors import UsageError
 
 MANIFEST = "manifest.json"
 

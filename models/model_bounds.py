@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.bag_bounds import least_of_bag
-from models.feature_spans import FEATURE_SPANS, Spans
-from models.leaf_bounds import Floats, LeafBounds, Meeting, Side
-from models.spans import Array, Span
-from models.tree_boxes import tree_boxes
+from tailor.models.bag_bounds import least_of_bag
+from tailor.models.feature_spans import FEATURE_SPANS, Spans
+from tailor.models.leaf_bounds import Floats, LeafBounds, Meeting, Side
+from tailor.models.spans import Array, Span
+from tailor.models.tree_boxes import tree_boxes
 
 Columns = tuple[Array, ...]  # one array an argument; they broadcast to one shape of three axes
 MARGIN = 1e-4  # m or rad: far more than the bounds of a part can reach beyond those of the whole, by rounding

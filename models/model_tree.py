@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from models.episode_rows import held_out, numbered, resampled
-from models.linear_flavour import TreeSettings, fit_linear
-from models.linear_tree import LinearTree
-from models.m5_flavour import fit_m5
+from tailor.models.episode_rows import held_out, numbered, resampled
+from tailor.models.linear_flavour import TreeSettings, fit_linear
+from tailor.models.linear_tree import LinearTree
+from tailor.models.m5_flavour import fit_m5
 
 Array = NDArray[np.float64]
 Generator = np.random.Generator

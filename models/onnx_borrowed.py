@@ -10,7 +10,7 @@ import onnx
 from onnx import TensorProto
 from skl2onnx import to_onnx
 
-from models.onnx_graph import ML, ML_OPSET, OPSET, Graph, single
+from tailor.models.onnx_graph import ML, ML_OPSET, OPSET, Graph, single
 
 TARGETS = {"": OPSET, ML: ML_OPSET}
 

@@ -10,15 +10,15 @@ from onnx import TensorProto
 from skl2onnx import update_registered_converter
 from skl2onnx.common.data_types import FloatTensorType, Int64TensorType, guess_tensor_type
 
-from models.distilled_failure import DistilledFailureTree
-from models.distilling import DistilledModelTree
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureTree
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_features import as_rows
-from models.onnx_graph import ML, ML_OPSET, OPSET
-from models.onnx_trees import add_bag, add_probability, add_tree
-from models.taught_forest import TaughtForest
+from tailor.models.distilled_failure import DistilledFailureTree
+from tailor.models.distilling import DistilledModelTree
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureTree
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.onnx_features import as_rows
+from tailor.models.onnx_graph import ML, ML_OPSET, OPSET
+from tailor.models.onnx_trees import add_bag, add_probability, add_tree
+from tailor.models.taught_forest import TaughtForest
 
 TYPES = {"f4": TensorProto.FLOAT, "u2": TensorProto.UINT16, "i4": TensorProto.INT32, "i8": TensorProto.INT64}
 

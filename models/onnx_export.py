@@ -7,13 +7,13 @@ from typing import Any
 
 import onnx
 
-from models.borrowed import BorrowedClassifier, BorrowedRegressor
-from models.failure_tree import FailureModel
-from models.features import FeatureSpace
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_features import add_features, as_columns
-from models.onnx_graph import Graph
-from models.onnx_trees import add_bag, add_probability, add_tree
+from tailor.models.borrowed import BorrowedClassifier, BorrowedRegressor
+from tailor.models.failure_tree import FailureModel
+from tailor.models.features import FeatureSpace
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.onnx_features import add_features, as_columns
+from tailor.models.onnx_graph import Graph
+from tailor.models.onnx_trees import add_bag, add_probability, add_tree
 
 
 def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str], unit: str = "s") -> onnx.ModelProto:
@@ -32,7 +32,7 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
         case ModelTreeRegressor():
             mean, spread = add_tree(graph, features, learner.tree_)
         case BorrowedRegressor():
-            from models.onnx_borrowed import add_regressor
+            from tailor.models.onnx_borrowed import add_regressor
 
             columns = as_columns(graph, features)
             mean, spread = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.spread_)
@@ -53,7 +53,7 @@ def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) 
         case FailureModel():
             success = add_probability(graph, features, learner.steps_)
         case BorrowedClassifier():
-            from models.onnx_borrowed import add_classifier
+            from tailor.models.onnx_borrowed import add_classifier
 
             success = add_classifier(graph, features, learner.inner_)
         case _:

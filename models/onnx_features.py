@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from onnx import TensorProto
 
-from models.features import FeatureSpace
-from models.onnx_graph import Sink, single
+from tailor.models.features import FeatureSpace
+from tailor.models.onnx_graph import Sink, single
 
 
 @dataclass(frozen=True, slots=True)

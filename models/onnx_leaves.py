@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from onnx import TensorProto
 
-from models import tree_names
-from models.cells import Cells, cells_of
-from models.features import STEEP
-from models.onnx_features import as_columns
-from models.onnx_graph import ML, Sink
-from models.split_tree import LEAF, SplitTree
+from tailor.models import tree_names
+from tailor.models.cells import Cells, cells_of
+from tailor.models.features import STEEP
+from tailor.models.onnx_features import as_columns
+from tailor.models.onnx_graph import ML, Sink
+from tailor.models.split_tree import LEAF, SplitTree
 
 ENSEMBLE = (
     "nodes_treeids", "nodes_nodeids", "nodes_featureids", "nodes_modes", "nodes_values", "nodes_truenodeids",

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from models import tree_names
-from models.linear_tree import LinearTree
-from models.onnx_graph import Sink, single
-from models.onnx_leaves import add_leaves, add_steps
-from models.split_tree import SplitTree
+from tailor.models import tree_names
+from tailor.models.linear_tree import LinearTree
+from tailor.models.onnx_graph import Sink, single
+from tailor.models.onnx_leaves import add_leaves, add_steps
+from tailor.models.split_tree import SplitTree
 
 Tables = NDArray[np.float32]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from models.card import Card, card_path, sha256_of, write_card
+from tailor.models.card import Card, card_path, sha256_of, write_card
 
 
 def place(zoo: Path, content: bytes, card: Card) -> Path:

@@ -13,13 +13,13 @@ import numpy as np
 import onnx
 from numpy.typing import NDArray
 
-from models.amounts import AMOUNTS
-from models.card import FORMAT, Card, identity
-from models.episodes import DataSet
-from models.features import FeatureSpace
-from models.onnx_export import export_duration, export_success
-from models.placing import place
-from models.training import Trained
+from tailor.models.amounts import AMOUNTS
+from tailor.models.card import FORMAT, Card, identity
+from tailor.models.episodes import DataSet
+from tailor.models.features import FeatureSpace
+from tailor.models.onnx_export import export_duration, export_success
+from tailor.models.placing import place
+from tailor.models.training import Trained
 
 Array = NDArray[np.float64]
 GOLDEN = 32

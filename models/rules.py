@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models.features import Quantity
-from models.linear_tree import LinearTree
-from models.split_tree import LEAF, SplitTree
-from models.tree_boxes import TreeBoxes
+from tailor.models.features import Quantity
+from tailor.models.linear_tree import LinearTree
+from tailor.models.split_tree import LEAF, SplitTree
+from tailor.models.tree_boxes import TreeBoxes
 
 DEGREES = 180 / np.pi
 TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term

@@ -14,18 +14,10 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from models.card import (
-    KINDS,
-    MAX_MODEL_BYTES,
-    Card,
-    card_path,
-    read_bytes,
-    read_card,
-    sha256_of,
-)
-from models.card_checks import check_identity, check_made_with, check_place, check_ranges
-from models.model_bounds import ModelBounds, model_bounds
-from schemas.errors import UsageError
+from tailor.models.card import KINDS, MAX_MODEL_BYTES, Card, card_path, read_bytes, read_card, sha256_of
+from tailor.models.card_checks import check_identity, check_made_with, check_place, check_ranges
+from tailor.models.model_bounds import ModelBounds, model_bounds
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 

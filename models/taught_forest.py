@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingClassifier
 from sklearn.tree import DecisionTreeRegressor
 
-from models.episode_rows import resampled
-from models.failure_tree import FailureModel
-from models.grown_tree import means_of, splits_of
+from tailor.models.episode_rows import resampled
+from tailor.models.failure_tree import FailureModel
+from tailor.models.grown_tree import means_of, splits_of
 
 Array = NDArray[np.float64]
 

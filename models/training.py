@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models import learners, scores
-from models.amounts import DURATION, Amount
-from models.calibration import calibrated
-from models.episodes import UNOBSERVED, Episode
-from models.examples import Examples, folds, split, success_examples
-from models.features import FeatureSpace
-from schemas.errors import UsageError
+from tailor.models import learners, scores
+from tailor.models.amounts import DURATION, Amount
+from tailor.models.calibration import calibrated
+from tailor.models.episodes import UNOBSERVED, Episode
+from tailor.models.examples import Examples, folds, split, success_examples
+from tailor.models.features import FeatureSpace
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models import tree_names
-from models.cell_boxes import boxes_of_cells
-from models.onnx_wire import Contents, Node, read_graph
+from tailor.models import tree_names
+from tailor.models.cell_boxes import boxes_of_cells
+from tailor.models.onnx_wire import Contents, Node, read_graph
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]

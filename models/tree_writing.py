@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models.growing import Node
-from models.linear_tree import LeafRow, LinearTree
-from models.scaling import Scale
-from models.split_tree import LEAF, SplitRow
+from tailor.models.growing import Node
+from tailor.models.linear_tree import LeafRow, LinearTree
+from tailor.models.scaling import Scale
+from tailor.models.split_tree import LEAF, SplitRow
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass
 
-from schemas.errors import Rejected
+from tailor.schemas.errors import Rejected
 
 _LAYOUT = struct.Struct("<qqB16s")  # sequence, source time ns, length of the sender id, sender id
 SENDER_BYTES = 16

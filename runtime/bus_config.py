@@ -9,7 +9,7 @@ import json
 import re
 from typing import Any
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a partner that is silent for so long is gone

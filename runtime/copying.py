@@ -10,9 +10,9 @@ from typing import Any
 from mcap import records as r
 from mcap.writer import CompressionType, Writer
 
-from runtime.mcap_scan import Account, scan
-from runtime.tape import CHUNK_BYTES
-from schemas.errors import UsageError
+from tailor.runtime.mcap_scan import Account, scan
+from tailor.runtime.tape import CHUNK_BYTES
+from tailor.schemas.errors import UsageError
 
 Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from runtime.planner_process import PlannerProcess
-from schemas.errors import UsageError
-from schemas.messages import PlanAnswer, PlanRequest
+from tailor.runtime.planner_process import PlannerProcess
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 MAX_ANSWER_BYTES = 131_072  # read within a tick; a plan of a hundred steps with all its links and orderings has half
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from runtime.inbox import Raw
-from schemas.codec import decode
-from schemas.messages import Provenance
-from schemas.topics import TOPICS
+from tailor.runtime.inbox import Raw
+from tailor.schemas.codec import decode
+from tailor.schemas.messages import Provenance
+from tailor.schemas.topics import TOPICS
 
 CLOCKS = {
     "log_time": "wall time of reception, Unix nanoseconds",

@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from runtime.arrival import Instant, arrival_ns
-from runtime.attachment import unpack
-from runtime.clock import wall_ns
-from schemas.codec import decode
-from schemas.errors import Rejected
-from schemas.messages import Sample
-from schemas.topics import Topic
+from tailor.runtime.arrival import Instant, arrival_ns
+from tailor.runtime.attachment import unpack
+from tailor.runtime.clock import wall_ns
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Sample
+from tailor.schemas.topics import Topic
 
 EVENT_DEPTH = 16  # event topics and commands: more than one in a tick, e.g. two people who arm, or a foreign command
 

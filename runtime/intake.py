@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from threading import Lock
 
-from runtime.inbox import Raw
+from tailor.runtime.inbox import Raw
 
 MOST_BYTES = 32_000_000  # about a minute of a busy robot on a disk that has stopped
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from runtime.clock import Clock
+from tailor.runtime.clock import Clock
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,8 +22,8 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
-from runtime.mcap_chunk import records_of
-from schemas.errors import UsageError
+from tailor.runtime.mcap_chunk import records_of
+from tailor.schemas.errors import UsageError
 
 MAGIC = b"\x89MCAP0\r\n"
 MOST_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from runtime.processes import leashed
-from schemas.errors import UsageError
+from tailor.runtime.processes import leashed
+from tailor.schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
 MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share the machine with it

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from runtime.attachment import Origin
-from runtime.clock import Clock
-from runtime.pacing import Pace
-from runtime.publisher import Publisher
-from runtime.recording import Recorded
+from tailor.runtime.attachment import Origin
+from tailor.runtime.clock import Clock
+from tailor.runtime.pacing import Pace
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.recording import Recorded
 
 SLICE_NS = 20_000_000  # how long a player sleeps before it looks at the keyboard again
 

@@ -76,7 +76,7 @@ class Child:
 
 def tailor(*arguments: str) -> list[str]:
     """The command line of one of our own commands, run by this interpreter."""
-    return [sys.executable, "-m", "tools.main", *arguments]
+    return [sys.executable, "-P", "-m", "tailor.tools.main", *arguments]
 
 
 @contextmanager

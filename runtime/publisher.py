@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from runtime.attachment import Origin, pack
-from runtime.clock import wall_ns
-from schemas.codec import encode
-from schemas.messages import Message
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.clock import wall_ns
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import Message
 
 
 class Wire(Protocol):

@@ -9,12 +9,12 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from runtime.clock import wall_ns
-from runtime.facts import Facts
-from runtime.inbox import Raw
-from runtime.intake import Intake
-from runtime.selection import Selection
-from runtime.tape import ENCODING, Tape
+from tailor.runtime.clock import wall_ns
+from tailor.runtime.facts import Facts
+from tailor.runtime.inbox import Raw
+from tailor.runtime.intake import Intake
+from tailor.runtime.selection import Selection
+from tailor.runtime.tape import ENCODING, Tape
 
 FLUSH_NS = 600_000_000  # with a turn and the disk's own time, kill -9 loses less than a second
 MOST_KINDS = 10_000  # of messages that are remembered: a bus has some 30

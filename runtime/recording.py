@@ -10,11 +10,11 @@ from typing import Any
 
 from mcap import records as r
 
-from runtime.mcap_scan import Account, scan
-from schemas.codec import decode
-from schemas.errors import Rejected, UsageError
-from schemas.messages import Message
-from schemas.typesystem import definition, type_hash, type_of
+from tailor.runtime.mcap_scan import Account, scan
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import Message
+from tailor.schemas.typesystem import definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
 _LATEST_NS = 2**63 - 1  # of a sender's clock: the bus has no more bits for it

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from schemas.errors import UsageError
-from schemas.topics import TOPICS
+from tailor.schemas.errors import UsageError
+from tailor.schemas.topics import TOPICS
 
 
 @dataclass(frozen=True, slots=True)

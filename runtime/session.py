@@ -11,17 +11,17 @@ from typing import Any
 
 import zenoh
 
-from runtime import bus_config
-from runtime.attachment import SENDER_BYTES
-from runtime.clock import wall_ns
-from runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
-from runtime.intake import Intake
-from runtime.publisher import Publisher
-from runtime.questions import Question, Questions
-from runtime.realtime import elevate_bus_threads
-from schemas.errors import UsageError
-from schemas.topics import TOPICS, key_of
-from schemas.typesystem import ros_type
+from tailor.runtime import bus_config
+from tailor.runtime.attachment import SENDER_BYTES
+from tailor.runtime.clock import wall_ns
+from tailor.runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.intake import Intake
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.questions import Question, Questions
+from tailor.runtime.realtime import elevate_bus_threads
+from tailor.schemas.errors import UsageError
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.typesystem import ros_type
 
 SELF_CONNECT_MS = 500
 LONGEST_KEY = 1000  # bytes; a message of zenoh has room for 65 535
@@ -87,7 +87,7 @@ class Session:
         return bool(self._zenoh.info.routers_zid())
 
     def publisher(self, name: str, robot: str) -> Publisher:
-        """An outlet for a topic of schemas.topics."""
+        """An outlet for a topic of tailor.schemas.topics."""
         topic, key = TOPICS[name], key_of(name, robot)
         declared = self._zenoh.declare_publisher(
             key,

@@ -6,11 +6,11 @@ from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
 
-from runtime.inbox import Raw
-from runtime.tape import Tape
-from schemas.codec import decode
-from schemas.messages import DriverState, ExecStatus
-from schemas.topics import TOPICS
+from tailor.runtime.inbox import Raw
+from tailor.runtime.tape import Tape
+from tailor.schemas.codec import decode
+from tailor.schemas.messages import DriverState, ExecStatus
+from tailor.schemas.topics import TOPICS
 
 MOST_BYTES = 256_000_000  # of memory, whatever the time span
 AFTER_NS = 1_000_000_000  # of what follows a failure goes into its file too

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from runtime.clock import wall_ns
-from runtime.facts import Facts
-from runtime.inbox import Raw
-from runtime.intake import Intake
-from runtime.recorder import Health
-from runtime.selection import Selection
-from runtime.snapshot import AFTER_NS, Alarm, Ring
-from runtime.tape import ENCODING
+from tailor.runtime.clock import wall_ns
+from tailor.runtime.facts import Facts
+from tailor.runtime.inbox import Raw
+from tailor.runtime.intake import Intake
+from tailor.runtime.recorder import Health
+from tailor.runtime.selection import Selection
+from tailor.runtime.snapshot import AFTER_NS, Alarm, Ring
+from tailor.runtime.tape import ENCODING
 
 
 class SnapshotRecorder:

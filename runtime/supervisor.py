@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from runtime.processes import Child
-from runtime.restart import Restart
+from tailor.runtime.processes import Child
+from tailor.runtime.restart import Restart
 
 FINAL_CODES = (0, 2)  # done; bad input, which another start would not mend
 STARTUP_NS = 30_000_000_000  # from start to the first sign of life

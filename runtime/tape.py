@@ -12,12 +12,12 @@ from typing import Any
 
 from mcap.writer import CompressionType, IndexType, Writer
 
-from runtime.attachment import UNSIGNED, Origin, unpack
-from runtime.inbox import Raw
-from runtime.sink import Sink
-from schemas.errors import Rejected
-from schemas.topics import TOPICS
-from schemas.typesystem import definition, ros_type, type_hash, type_of
+from tailor.runtime.attachment import UNSIGNED, Origin, unpack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.sink import Sink
+from tailor.schemas.errors import Rejected
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 
 CHUNK_BYTES = 131_072  # a damaged chunk loses little, and a chunk still compresses well
 # Of a small file that is read from front to back: one chunk, no index, nothing said twice. Half the size

@@ -11,13 +11,13 @@ from typing import Any
 
 from rosbags.serde import SerdeError
 
-from schemas.errors import Rejected
-from schemas.messages import Message
-from schemas.own import converters, example
-from schemas.ros_time import Refusal
-from schemas.standard import CONVERTERS
-from schemas.topics import TOPICS, Topic
-from schemas.typesystem import MESSAGES, from_bytes, ros_type, to_bytes
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.schemas.own import converters, example
+from tailor.schemas.ros_time import Refusal
+from tailor.schemas.standard import CONVERTERS
+from tailor.schemas.topics import TOPICS, Topic
+from tailor.schemas.typesystem import MESSAGES, from_bytes, ros_type, to_bytes
 
 TRAILING_BYTES = 7  # padding that real ROS 2 serializers leave behind a message
 DAMAGE = (SerdeError, struct.error, ValueError, IndexError, OverflowError)  # what rosbags raises on bad bytes

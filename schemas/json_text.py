@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from schemas.errors import Rejected
+from tailor.schemas.errors import Rejected
 
 
 def table_of(text: str) -> dict[str, Any] | Rejected:

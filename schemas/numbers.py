@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from schemas.ros_time import Refusal
+from tailor.schemas.ros_time import Refusal
 
 MOST = 1e15  # of anything: ROS drivers say 1e12 for a variance that they do not know, and no unit needs more
 

@@ -13,9 +13,9 @@ from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
-from schemas.numbers import check_array, check_numbers, check_variances
-from schemas.ros_time import header, stamp_ns
-from schemas.typesystem import ros_class, ros_type
+from tailor.schemas.numbers import check_array, check_numbers, check_variances
+from tailor.schemas.ros_time import header, stamp_ns
+from tailor.schemas.typesystem import ros_class, ros_type
 
 Convert = Callable[[Any], Any]
 FRAMES = {"BallPercept": "base_link", "SimTruth": "map"}

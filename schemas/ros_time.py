@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from schemas.typesystem import ros_class
+from tailor.schemas.typesystem import ros_class
 
 NS_PER_S = 1_000_000_000
 MAX_STAMP_NS = 2**31 * NS_PER_S - 1  # builtin_interfaces/Time holds int32 seconds

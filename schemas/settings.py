@@ -8,7 +8,7 @@ import typing
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 T = TypeVar("T")
 

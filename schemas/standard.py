@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from schemas import messages as m
-from schemas.numbers import check_array, check_numbers, check_variances
-from schemas.ros_time import Refusal, header, stamp_ns, time, time_ns
-from schemas.typesystem import ros_class
+from tailor.schemas import messages as m
+from tailor.schemas.numbers import check_array, check_numbers, check_variances
+from tailor.schemas.ros_time import Refusal, header, stamp_ns, time, time_ns
+from tailor.schemas.typesystem import ros_class
 
 UNIT_TOLERANCE = 1e-3  # of a quaternion's squared norm; drivers that send float32 stay far below
 COVARIANCE_X, COVARIANCE_Y, COVARIANCE_YAW = 0, 7, 35  # on the diagonal of ROS's 6x6 matrix

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from schemas import messages as m
+from tailor.schemas import messages as m
 
 Priority = Literal["real_time", "interactive_high", "data"]
 

@@ -12,7 +12,7 @@ from typing import Any, get_args
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from schemas import messages as m
+from tailor.schemas import messages as m
 
 PACKAGE = "tailor_msgs"
 STANDARD: dict[type, str] = {
@@ -36,7 +36,7 @@ def typestore() -> Any:
     own: dict[str, Any] = {}
     for kind in (*PARTS, *MESSAGES):
         if kind not in STANDARD:
-            text = resources.files("schemas").joinpath("msg", f"{kind.__name__}.msg").read_text(encoding="utf-8")
+            text = resources.files("tailor.schemas").joinpath("msg", f"{kind.__name__}.msg").read_text(encoding="utf-8")
             own.update(get_types_from_msg(text, ros_type(kind)))
     store.register(own)
     return store

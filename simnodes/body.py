@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from schemas.messages import Message
+from tailor.schemas.messages import Message
 
 STEP_NS = 10_000_000  # every duration handed to a body is a multiple of this
 
@@ -20,7 +20,7 @@ STEP_NS = 10_000_000  # every duration handed to a body is a multiple of this
 class Reading:
     """What a sensor says, and when it comes out of the driver."""
 
-    topic: str  # name in schemas.topics
+    topic: str  # name in tailor.schemas.topics
     message: Message
     time_ns: int  # body time
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
-from simnodes.guard import Limit
+from tailor.simnodes.guard import Limit
 
 LONGEST_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is none
 
@@ -18,7 +18,7 @@ LONGEST_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is non
 class Declaration:
     """A driver's command: its topic, and its axes with their limits, in one order."""
 
-    command_topic: str  # name in schemas.topics
+    command_topic: str  # name in tailor.schemas.topics
     axes: tuple[str, ...]
     limits: tuple[Limit, ...]
     timeout_ns: int = 300_000_000
@@ -26,7 +26,9 @@ class Declaration:
 
 def declaration(robot: str) -> Declaration:
     """The declaration of a robot that ships with us."""
-    return read_declaration(resources.files("simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8"))
+    return read_declaration(
+        resources.files("tailor.simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
+    )
 
 
 def read_declaration(text: str) -> Declaration:

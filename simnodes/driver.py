@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
-from simnodes.declaration import Declaration
-from simnodes.guard import Guard, Mode
+from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
+from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.guard import Guard, Mode
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
 TOPICS = ("arm_request", "estop")  # that every driver listens to, besides its command

@@ -7,15 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from runtime.clock import Clock, wall_ns
-from runtime.loop import Loop, Turn
-from runtime.publisher import Publisher
-from runtime.session import Session
-from simnodes.body import Reading
-from simnodes.declaration import Declaration
-from simnodes.driver import TOPICS, Driver
-from simnodes.services import NAMES, Services
-from simnodes.world import World
+from tailor.runtime.clock import Clock, wall_ns
+from tailor.runtime.loop import Loop, Turn
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.session import Session
+from tailor.simnodes.body import Reading
+from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.driver import TOPICS, Driver
+from tailor.simnodes.services import NAMES, Services
+from tailor.simnodes.world import World
 
 PERIOD_NS = 10_000_000  # of world time a turn; the guard's stop is late by at most as much
 MOST_AT_ONCE = 10  # periods to catch up with after a stall; what is beyond is lost to the world

@@ -6,8 +6,8 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from runtime.questions import Question, Questions
-from simnodes.world import World
+from tailor.runtime.questions import Question, Questions
+from tailor.simnodes.world import World
 
 NAMES = ("reset", "place", "pause", "step")
 MOST_STEPS = 6000  # in one request: a minute of 10 ms

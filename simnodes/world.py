@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simnodes.body import STEP_NS, Body, Reading
+from tailor.simnodes.body import STEP_NS, Body, Reading
 
 NOISE_STREAM = 1  # of the seed; the scenario is drawn from stream 0
 

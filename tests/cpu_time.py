@@ -4,7 +4,7 @@ import gc
 import time
 from collections.abc import Callable
 
-from runtime.heap import heap_set_aside
+from tailor.runtime.heap import heap_set_aside
 
 TRIES = 3  # what other processes take from the caches only ever adds: the least of several tries is the nearest
 

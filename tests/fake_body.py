@@ -2,14 +2,14 @@
 
 import math
 
-from schemas.messages import BallPercept, Odometry, PoseEstimate, SimTruth
-from simnodes.body import STEP_NS, Reading
+from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, SimTruth
+from tailor.simnodes.body import STEP_NS, Reading
 
 PERIODS_NS = {"odom": 20_000_000, "pose": 80_000_000, "ball": 80_000_000, "truth": 100_000_000}
 
 
 class FakeBody:
-    """See simnodes.body.Body."""
+    """See tailor.simnodes.body.Body."""
 
     robot = "agilo"
     names = ("x", "y", "phi", "ball_x", "ball_y")

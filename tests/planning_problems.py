@@ -3,8 +3,8 @@
 import csv
 from pathlib import Path
 
-from executive.budget import CheckBudget
-from executive.planning import MATCHING, Search, parse_domain, parse_problem
+from tailor.executive.budget import CheckBudget
+from tailor.executive.planning import MATCHING, Search, parse_domain, parse_problem
 
 DATA = Path(__file__).parent / "data" / "pddl"
 SHARED = Path(__file__).parents[2] / "shared" / "pddl"

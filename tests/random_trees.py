@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.library import Array
-from models.features import SPACES
-from models.leaf_bounds import LeafBounds
-from models.model_bounds import ModelBounds
-from models.tree_boxes import TreeBoxes
+from tailor.executive.library import Array
+from tailor.models.features import SPACES
+from tailor.models.leaf_bounds import LeafBounds
+from tailor.models.model_bounds import ModelBounds
+from tailor.models.tree_boxes import TreeBoxes
 
 RANGES = {  # where the features of the spaces lie, for thresholds to fall within
     "projective": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.library import Action, Array, Control, Models, Parameter
-from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.library import Action, Array, Control, Models, Parameter
+from tailor.executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
 
 PI = float(np.pi)
 

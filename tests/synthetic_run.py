@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.budget import CheckBudget
-from executive.refinement.refinement import Refinement
-from executive.refinement.settings import RefinementSettings
-from schemas import messages as m
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas import messages as m
 from tests.synthetic_models import MODELS, approach_dribble
 
 PLAN = """;approach-dribble

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.core.context import Context, Settings, make_context
-from executive.core.state import Inputs
-from executive.library import Action, Axis, Control, Interval, Models, Parameter, Scenario
-from schemas.messages import DriverState, Odometry, Sample, VelocityCommand
+from tailor.executive.core.context import Context, Settings, make_context
+from tailor.executive.core.state import Inputs
+from tailor.executive.library import Action, Axis, Control, Interval, Models, Parameter, Scenario
+from tailor.schemas.messages import DriverState, Odometry, Sample, VelocityCommand
 
 PDDL = """
 (define (domain line) (:requirements :strips)

@@ -6,10 +6,10 @@ import argparse
 import re
 import time
 
-from runtime.session import Session, open_client
-from schemas.errors import UsageError
-from schemas.messages import ArmRequest, DriverState, ExecStatus
-from tools.endpoint import configure_bus, endpoint_of
+from tailor.runtime.session import Session, open_client
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
+from tailor.tools.endpoint import configure_bus, endpoint_of
 
 WAIT_S = 2.0  # for the executive to show itself, and for the driver's answer
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 
 def at_least(least: int, flag: str) -> Callable[[str], int]:

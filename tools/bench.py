@@ -7,7 +7,7 @@ import importlib
 
 from rich.console import Console
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and with CPU burners; time from percept to command",
@@ -34,6 +34,6 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console()
     for name in arguments.names or BENCHMARKS:
         console.rule(name)
-        module = importlib.import_module(f"tools.benchmarks.{name}")
+        module = importlib.import_module(f"tailor.tools.benchmarks.{name}")
         module.run(console, arguments.quick)
     return 0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import time
 
-from runtime.session import open_router
-from runtime.stopping import stop_on_signals
-from tools.endpoint import configure_bus, endpoint_of
+from tailor.runtime.session import open_router
+from tailor.runtime.stopping import stop_on_signals
+from tailor.tools.endpoint import configure_bus, endpoint_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

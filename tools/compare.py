@@ -12,10 +12,10 @@ from typing import Any
 
 from rich.table import Table
 
-from schemas.errors import UsageError
-from schemas.messages import ActionFinished, PlanReport
-from tools.comparison import Run, chosen, commands_apart, compared_run
-from tools.terminal import table_console
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import ActionFinished, PlanReport
+from tailor.tools.comparison import Run, chosen, commands_apart, compared_run
+from tailor.tools.terminal import table_console
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         _show(a, b, told)
     if arguments.plot:
-        from tools.figures.comparison import draw_comparison
+        from tailor.tools.figures.comparison import draw_comparison
 
         draw_comparison(a, b, arguments.plot)
     return 0 if told["equal"] else 1

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import ActionFinished, ExecStatus, PlanReport, Subgoals
-from schemas.topics import TOPICS
-from tools.recorded_run import RecordedRun, RecordedRuns, decoded
+from tailor.schemas.messages import ActionFinished, ExecStatus, PlanReport, Subgoals
+from tailor.schemas.topics import TOPICS
+from tailor.tools.recorded_run import RecordedRun, RecordedRuns, decoded
 
 COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from runtime.copying import copy
-from runtime.recording import open_recording
-from runtime.selection import selection
-from schemas.errors import UsageError
+from tailor.runtime.copying import copy
+from tailor.runtime.recording import open_recording
+from tailor.runtime.selection import selection
+from tailor.schemas.errors import UsageError
 
 LONGEST_S = 1e10  # what the file's clock can tell
 

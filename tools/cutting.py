@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.library import Action, Array, Domain
-from models.episodes import UNOBSERVED, Episode
-from schemas.errors import UsageError
-from schemas.messages import (
+from tailor.executive.library import Action, Array, Domain
+from tailor.models.episodes import UNOBSERVED, Episode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import (
     ActionFinished,
     ExecStatus,
     InstantiatedAction,
@@ -25,8 +25,8 @@ from schemas.messages import (
     SimTruth,
     Subgoals,
 )
-from tools.lockstep import trials_of
-from tools.trials.soccer import COLLIDED_M
+from tailor.tools.lockstep import trials_of
+from tailor.tools.trials.soccer import COLLIDED_M
 
 LEAST_TICKS = 3
 

@@ -9,15 +9,15 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from runtime.stopping import Stop, stop_on_signals
-from schemas.errors import UsageError
-from tools.deployment import Deployment, order_of
-from tools.figures.page import write_paths_page
-from tools.figures.paths import draw_paths
-from tools.figures.recorded import recorded_track
-from tools.figures.track import Track
-from tools.live_status import screen
-from tools.system import Plan, free_endpoint, run_system
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas.errors import UsageError
+from tailor.tools.deployment import Deployment, order_of
+from tailor.tools.figures.page import write_paths_page
+from tailor.tools.figures.paths import draw_paths
+from tailor.tools.figures.recorded import recorded_track
+from tailor.tools.figures.track import Track
+from tailor.tools.live_status import screen
+from tailor.tools.system import Plan, free_endpoint, run_system
 
 RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 

@@ -7,14 +7,14 @@ import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from executive.composition import Order
-from executive.core.context import PlannerCommand, Settings
-from runtime.bus_config import DEFAULT_ENDPOINT
-from runtime.planner_process import words_of
-from schemas.errors import UsageError
-from schemas.settings import from_table
-from tools.asked import checked
-from tools.endpoint import configure_bus
+from tailor.executive.composition import Order
+from tailor.executive.core.context import PlannerCommand, Settings
+from tailor.runtime.bus_config import DEFAULT_ENDPOINT
+from tailor.runtime.planner_process import words_of
+from tailor.schemas.errors import UsageError
+from tailor.schemas.settings import from_table
+from tailor.tools.asked import checked
+from tailor.tools.endpoint import configure_bus
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def order_of(domain: str, read: Deployment) -> Order:
     Raises:
       UsageError: There is no such external planner.
     """
-    from executive import domains
+    from tailor.executive import domains
 
     scenario = read.scenario or domains.scenarios(domain)[0]
     settings = read.executive

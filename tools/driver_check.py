@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from executive.library import Domain
-from schemas.errors import UsageError
-from simnodes.declaration import Declaration, declaration, read_declaration
+from tailor.executive.library import Domain
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.declaration import Declaration, declaration, read_declaration
 
 
 def driver_of(robot: str, file: str | None) -> Declaration:

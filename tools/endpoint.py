@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 
-from runtime.bus_config import DEFAULT_ENDPOINT
+from tailor.runtime.bus_config import DEFAULT_ENDPOINT
 
 
 def configure_bus(parser: argparse.ArgumentParser) -> None:
@@ -20,10 +20,10 @@ def endpoint_of(arguments: argparse.Namespace) -> str:
     """The endpoint; a deployment file is read as a whole, so that a mistake anywhere in it is told.
 
     Raises:
-      UsageError: What `tools.deployment.deployment` raises.
+      UsageError: What `tailor.tools.deployment.deployment` raises.
     """
     if not arguments.config:
         return arguments.connect or DEFAULT_ENDPOINT
-    from tools.deployment import deployment
+    from tailor.tools.deployment import deployment
 
     return deployment(arguments).bus.endpoint

@@ -10,18 +10,18 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from executive.budget import CheckBudget
-from executive.core.context import PERIOD_NS, Context
-from executive.core.state import Inputs, Output, State, initial_state
-from executive.core.step import step
-from executive.library import Domain
-from executive.replay import RecordedTick
-from schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
-from schemas.topics import TOPICS, key_of
-from simnodes.body import Body, Reading
-from simnodes.declaration import declaration
-from simnodes.driver import Driver
-from simnodes.world import Event, World
+from tailor.executive.budget import CheckBudget
+from tailor.executive.core.context import PERIOD_NS, Context
+from tailor.executive.core.state import Inputs, Output, State, initial_state
+from tailor.executive.core.step import step
+from tailor.executive.library import Domain
+from tailor.executive.replay import RecordedTick
+from tailor.schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.simnodes.body import Body, Reading
+from tailor.simnodes.declaration import declaration
+from tailor.simnodes.driver import Driver
+from tailor.simnodes.world import Event, World
 
 CHECKS_PER_TICK = 300  # what a quiet machine grants in 60 ms, roughly
 SENDER = "00" * 16

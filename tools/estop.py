@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 import time
 
-from runtime.intake import Intake
-from runtime.publisher import Publisher
-from runtime.session import open_client
-from schemas.codec import decode
-from schemas.messages import DriverState, EStop
-from schemas.topics import TOPICS
-from tools.endpoint import configure_bus, endpoint_of
+from tailor.runtime.intake import Intake
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.session import open_client
+from tailor.schemas.codec import decode
+from tailor.schemas.messages import DriverState, EStop
+from tailor.schemas.topics import TOPICS
+from tailor.tools.endpoint import configure_bus, endpoint_of
 
 WAIT_S = 1.5  # for every driver to confirm; they speak at 10 Hz
 AGAIN_S = 0.1  # until all have, repeat it: a publication may be lost

@@ -8,28 +8,34 @@ import itertools
 import sys
 from typing import Any
 
-from executive import domains
-from schemas.errors import UsageError
-from tools.evaluations.overview import page_is_there, write_overview
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools.evaluations.overview import page_is_there, write_overview
 
 # name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 EVALUATIONS: dict[str, tuple[str, str]] = {
-    "table1": ("tools.evaluations.table1", "duration models: episodes, mean duration, error on fresh episodes"),
-    "table2": ("tools.evaluations.table2", "failure model: confusion matrix over fresh approaches"),
-    "feature-spaces": ("tools.evaluations.feature_spaces", "Figure 6 b: error in three feature spaces"),
-    "duration-learners": ("tools.evaluations.duration_learners", "ours, boosting and WEKA's M5P on the same folds"),
-    "failure-learners": ("tools.evaluations.failure_learners", "trees, forest, network, SVM, boosting, J48"),
-    "on-policy": ("tools.evaluations.on_policy", "what a round of the optimiser's own choices changes"),
-    "table3": ("tools.evaluations.table3", "refined against greedy subgoals, paired"),
-    "letters": ("tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
-    "table4": ("tools.evaluations.table4", "refinement by horizon over four waypoints"),
-    "benefit": ("tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
-    "energy": ("tools.evaluations.energy", "time against energy: what a joule's worth in seconds changes"),
-    "figure1": ("tools.evaluations.figure1", "paths, greedy and refined, and how smooth actions pass over"),
-    "figure11": ("tools.evaluations.figure11", "durations over the angle of approach, predicted and simulated"),
-    "figure15": ("tools.evaluations.figure15", "where an asserted subgoal may lie, and the runs without and with it"),
-    "figure16": ("tools.evaluations.figure16", "approaches with and without subgoal assertion"),
-    "live": ("tools.evaluations.live", "a sample live over the bus against the same starts in lock-step"),
+    "table1": ("tailor.tools.evaluations.table1", "duration models: episodes, mean duration, error on fresh episodes"),
+    "table2": ("tailor.tools.evaluations.table2", "failure model: confusion matrix over fresh approaches"),
+    "feature-spaces": ("tailor.tools.evaluations.feature_spaces", "Figure 6 b: error in three feature spaces"),
+    "duration-learners": (
+        "tailor.tools.evaluations.duration_learners",
+        "ours, boosting and WEKA's M5P on the same folds",
+    ),
+    "failure-learners": ("tailor.tools.evaluations.failure_learners", "trees, forest, network, SVM, boosting, J48"),
+    "on-policy": ("tailor.tools.evaluations.on_policy", "what a round of the optimiser's own choices changes"),
+    "table3": ("tailor.tools.evaluations.table3", "refined against greedy subgoals, paired"),
+    "letters": ("tailor.tools.evaluations.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
+    "table4": ("tailor.tools.evaluations.table4", "refinement by horizon over four waypoints"),
+    "benefit": ("tailor.tools.evaluations.benefit", "when not to refine: a tree that predicts slower episodes"),
+    "energy": ("tailor.tools.evaluations.energy", "time against energy: what a joule's worth in seconds changes"),
+    "figure1": ("tailor.tools.evaluations.figure1", "paths, greedy and refined, and how smooth actions pass over"),
+    "figure11": ("tailor.tools.evaluations.figure11", "durations over the angle of approach, predicted and simulated"),
+    "figure15": (
+        "tailor.tools.evaluations.figure15",
+        "where an asserted subgoal may lie, and the runs without and with it",
+    ),
+    "figure16": ("tailor.tools.evaluations.figure16", "approaches with and without subgoal assertion"),
+    "live": ("tailor.tools.evaluations.live", "a sample live over the bus against the same starts in lock-step"),
 }
 ALL = "all"
 RESUME = "--resume"

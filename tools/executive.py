@@ -6,18 +6,18 @@ import argparse
 import time
 from dataclasses import replace
 
-from executive.composition import compose, provenance
-from executive.core.context import Context, check_goal
-from executive.shell import Shell
-from runtime import realtime
-from runtime.clock import MonotonicClock, wall_ns
-from runtime.machine import machine
-from runtime.session import open_client
-from runtime.stopping import stop_on_signals
-from schemas import codec
-from schemas.errors import UsageError
-from tools.deployment import configure_system, deployment, order_of
-from tools.driver_check import check_driver, driver_of
+from tailor.executive.composition import compose, provenance
+from tailor.executive.core.context import Context, check_goal
+from tailor.executive.shell import Shell
+from tailor.runtime import realtime
+from tailor.runtime.clock import MonotonicClock, wall_ns
+from tailor.runtime.machine import machine
+from tailor.runtime.session import open_client
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.deployment import configure_system, deployment, order_of
+from tailor.tools.driver_check import check_driver, driver_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from runtime.recording import Recorded
-from schemas.codec import decode
-from schemas.errors import Rejected, UsageError
-from schemas.json_text import table_of
-from schemas.messages import Message, Provenance, TickReport
-from schemas.topics import TOPICS
-from schemas.typesystem import type_of
+from tailor.runtime.recording import Recorded
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.json_text import table_of
+from tailor.schemas.messages import Message, Provenance, TickReport
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import type_of
 
 TICK_KEY = TOPICS["tick"].key
 PROVENANCE_KEY = TOPICS["provenance"].key

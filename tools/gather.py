@@ -12,14 +12,14 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from executive import domains
-from schemas.errors import UsageError
-from tools import gathering
-from tools.asked import at_least, processes
-from tools.gathering import Work
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools import gathering
+from tailor.tools.asked import at_least, processes
+from tailor.tools.gathering import Work
 
 if TYPE_CHECKING:
-    from tools.run_gathering import Policy
+    from tailor.tools.run_gathering import Policy
 
 EPILOG = """\
 examples:
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     """Episodes out of recordings, or out of whole runs with the current models."""
-    from tools import run_gathering
+    from tailor.tools import run_gathering
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from and --on-policy")
@@ -96,7 +96,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
 
 
 def _run_policy(policy: Policy, arguments: argparse.Namespace) -> int:
-    from tools.run_gathering import run_policy
+    from tailor.tools.run_gathering import run_policy
 
     done, console = 0, Console(stderr=True)
     try:

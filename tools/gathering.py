@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from executive import domains
-from executive.library import Domain
-from models.episodes import Episode, write_part
-from models.manifest import MANIFEST, read_manifest, write_manifest
-from schemas.errors import UsageError
-from tools import lockstep
+from tailor.executive import domains
+from tailor.executive.library import Domain
+from tailor.models.episodes import Episode, write_part
+from tailor.models.manifest import MANIFEST, read_manifest, write_manifest
+from tailor.schemas.errors import UsageError
+from tailor.tools import lockstep
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
 PART = 20  # episodes in a part: what a kill -9 loses at most, per process

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 
-from runtime.session import open_client
-from tools.endpoint import configure_bus, endpoint_of
+from tailor.runtime.session import open_client
+from tailor.tools.endpoint import configure_bus, endpoint_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -7,11 +7,11 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from runtime.recording import Recorded, open_recording
-from schemas.topics import TOPICS
-from tools.comparison import Run, compared_run
-from tools.differences import first_field
-from tools.recorded_run import PROVENANCE_KEY, RecordedRuns, decoded
+from tailor.runtime.recording import Recorded, open_recording
+from tailor.schemas.topics import TOPICS
+from tailor.tools.comparison import Run, compared_run
+from tailor.tools.differences import first_field
+from tailor.tools.recorded_run import PROVENANCE_KEY, RecordedRuns, decoded
 
 MESSAGE = Recorded | None
 

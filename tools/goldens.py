@@ -1,6 +1,7 @@
 """Make the golden recordings of the tests anew: one run in lock-step of every scenario, and what has changed in it.
 
-`make goldens` prints the changes and then overwrites; `python -m tools.goldens --check` only prints (1: some changed).
+`make goldens` prints the changes and then overwrites. `python -m tailor.tools.goldens --check` only prints them;
+its exit code is 1 if there are any.
 """
 
 from __future__ import annotations
@@ -12,17 +13,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from executive import domains
-from executive.composition import Order, compose, provenance
-from executive.core.context import Settings
-from runtime.machine import machine
-from schemas.errors import UsageError
-from tools.comparison import compared_run
-from tools.episodes import SENDER, run_episode
-from tools.golden_changes import changes, outcome
-from tools.lockstep_recording import LockstepRecording
-from tools.run_tape import RunTape
-from tools.sim import make_world
+from tailor.executive import domains
+from tailor.executive.composition import Order, compose, provenance
+from tailor.executive.core.context import Settings
+from tailor.runtime.machine import machine
+from tailor.schemas.errors import UsageError
+from tailor.tools.comparison import compared_run
+from tailor.tools.episodes import SENDER, run_episode
+from tailor.tools.golden_changes import changes, outcome
+from tailor.tools.lockstep_recording import LockstepRecording
+from tailor.tools.run_tape import RunTape
+from tailor.tools.sim import make_world
 
 FOLDER = Path(__file__).resolve().parents[1] / "tests" / "data" / "golden"
 LETTERS = ("word-I",)  # the arm's scenarios are without number
@@ -72,7 +73,7 @@ def record(golden: Golden, path: Path) -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Compare and overwrite; 0, or with --check 1 if something has changed."""
-    parser = argparse.ArgumentParser(prog="python -m tools.goldens", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tailor.tools.goldens", description=__doc__)
     parser.add_argument("names", nargs="*", help="only these, e.g. soccer-waypoints (default: all)")
     parser.add_argument("--check", action="store_true", help="only print what has changed")
     arguments = parser.parse_args(argv)

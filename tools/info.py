@@ -9,12 +9,12 @@ from typing import Any
 
 from rich.table import Table
 
-from runtime.recording import Recording, open_recording
-from schemas.errors import Rejected
-from schemas.json_text import table_of
-from tools.plain_text import plain
-from tools.survey import Stream, Survey, percentiles, survey
-from tools.terminal import table_console
+from tailor.runtime.recording import Recording, open_recording
+from tailor.schemas.errors import Rejected
+from tailor.schemas.json_text import table_of
+from tailor.tools.plain_text import plain
+from tailor.tools.survey import Stream, Survey, percentiles, survey
+from tailor.tools.terminal import table_console
 
 MOST_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
 

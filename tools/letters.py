@@ -10,19 +10,19 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from executive.domains.arm.letters import MOST_LETTERS, is_word
-from executive.refinement.settings import RefinementSettings
-from runtime.recording import open_recording
-from runtime.stopping import Stop, stop_on_signals
-from schemas.errors import Rejected, UsageError
-from schemas.messages import JointState
-from tools.deployment import Deployment, order_of
-from tools.figures.letters import draw_words
-from tools.live_status import screen
-from tools.system import Plan, free_endpoint, run_system
-from tools.writing.lockstep import Hand, ListenedBody, write
-from tools.writing.measures import roughness, waypoint_errors_rad
-from tools.writing.track import PERIOD_S, Written, written
+from tailor.executive.domains.arm.letters import MOST_LETTERS, is_word
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.runtime.recording import open_recording
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import JointState
+from tailor.tools.deployment import Deployment, order_of
+from tailor.tools.figures.letters import draw_words
+from tailor.tools.live_status import screen
+from tailor.tools.system import Plan, free_endpoint, run_system
+from tailor.tools.writing.lockstep import Hand, ListenedBody, write
+from tailor.tools.writing.measures import roughness, waypoint_errors_rad
+from tailor.tools.writing.track import PERIOD_S, Written, written
 
 REFINED = RefinementSettings()
 HANDS = (
@@ -83,8 +83,8 @@ def summary(rows: Sequence[Written]) -> Table:
 
 
 def _in_lockstep(text: str, hands: Sequence[Hand], seed: int) -> list[Written]:
-    from executive.library import Models
-    from models.runtime import load_robot
+    from tailor.executive.library import Models
+    from tailor.models.runtime import load_robot
 
     models, body = Models(*load_robot(ListenedBody.robot)), ListenedBody()
     return [write(text, hand, models, seed, body) for hand in hands]

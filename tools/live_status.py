@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, Subgoals, TickReport
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, Subgoals, TickReport
 
 
 class Screen(Protocol):

@@ -12,15 +12,15 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from executive.library import Action, Array, Belief, Domain
-from schemas.messages import Message, Sample
-from schemas.topics import TOPICS
-from simnodes.body import Body, Reading
+from tailor.executive.library import Action, Array, Belief, Domain
+from tailor.schemas.messages import Message, Sample
+from tailor.schemas.topics import TOPICS
+from tailor.simnodes.body import Body, Reading
 
 PERIOD_NS = 100_000_000  # 10 Hz
 LIMIT_S = 40.0  # an action that takes longer has failed
-BODIES = {"soccer": "simnodes.agilo.body:AgiloBody", "arm": "simnodes.powercube.body:PowerCubeBody"}
-TRIALS = {"soccer": "tools.trials.soccer:SoccerTrials", "arm": "tools.trials.arm:ArmTrials"}
+BODIES = {"soccer": "tailor.simnodes.agilo.body:AgiloBody", "arm": "tailor.simnodes.powercube.body:PowerCubeBody"}
+TRIALS = {"soccer": "tailor.tools.trials.soccer:SoccerTrials", "arm": "tailor.tools.trials.arm:ArmTrials"}
 
 
 class Trials(Protocol):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from executive.core.state import Output
-from executive.replay import RecordedTick
-from schemas.codec import decode, encode
-from schemas.errors import Rejected
-from schemas.messages import Message
-from tools.run_tape import RunTape
+from tailor.executive.core.state import Output
+from tailor.executive.replay import RecordedTick
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.tools.run_tape import RunTape
 
 
 class LockstepRecording:

@@ -8,37 +8,38 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from schemas.errors import UsageError
-from tools.plain_text import plain
+from tailor import __version__
+from tailor.schemas.errors import UsageError
+from tailor.tools.plain_text import plain
 
 # command -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
-    "up": ("tools.up", "start a whole system: bus, simulator, executive, recorder"),
-    "demo": ("tools.demo", "greedy against refined from the same seed, with a picture"),
-    "letters": ("tools.letters", "the arm writes capitals, with and without refined velocities"),
-    "bus": ("tools.bus", "run the bus router alone"),
-    "sim": ("tools.sim", "run a simulated robot on the bus"),
-    "executive": ("tools.executive", "run the executive on the bus"),
-    "goal": ("tools.goal", "send a PDDL goal to a running executive"),
-    "arm": ("tools.arm", "let a driver obey the running executive"),
-    "estop": ("tools.estop", "stop every driver until it is reset"),
-    "record": ("tools.record", "record the bus into an MCAP file"),
-    "replay": ("tools.replay", "play a recording on the bus"),
-    "info": ("tools.info", "what a recording holds"),
-    "recover": ("tools.recover", "make a whole recording of a damaged one"),
-    "cut": ("tools.cut", "cut a span of time or some topics out of a recording"),
-    "compare": ("tools.compare", "two recorded runs side by side"),
-    "verify": ("tools.verify", "feed a recording through today's core and compare bit for bit"),
-    "picture": ("tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
-    "view": ("tools.view", "show a run as a page, of a recording or live"),
-    "why": ("tools.why", "say why subgoals were chosen, and what greedy would have done"),
-    "plan": ("tools.plan", "plan with PDDL files, in VHPOP's manner"),
-    "gather": ("tools.gather", "run actions in simulation and keep the episodes"),
-    "train": ("tools.train", "make action models from episodes"),
-    "train-benefit": ("tools.train_benefit", "learn when not to refine, with the action models that there are"),
-    "models": ("tools.models", "list, show, plot and check action models"),
-    "evaluate": ("tools.evaluate", "reproduce the paper's tables and figures"),
-    "bench": ("tools.bench", "measure speed and memory"),
+    "up": ("tailor.tools.up", "start a whole system: bus, simulator, executive, recorder"),
+    "demo": ("tailor.tools.demo", "greedy against refined from the same seed, with a picture"),
+    "letters": ("tailor.tools.letters", "the arm writes capitals, with and without refined velocities"),
+    "bus": ("tailor.tools.bus", "run the bus router alone"),
+    "sim": ("tailor.tools.sim", "run a simulated robot on the bus"),
+    "executive": ("tailor.tools.executive", "run the executive on the bus"),
+    "goal": ("tailor.tools.goal", "send a PDDL goal to a running executive"),
+    "arm": ("tailor.tools.arm", "let a driver obey the running executive"),
+    "estop": ("tailor.tools.estop", "stop every driver until it is reset"),
+    "record": ("tailor.tools.record", "record the bus into an MCAP file"),
+    "replay": ("tailor.tools.replay", "play a recording on the bus"),
+    "info": ("tailor.tools.info", "what a recording holds"),
+    "recover": ("tailor.tools.recover", "make a whole recording of a damaged one"),
+    "cut": ("tailor.tools.cut", "cut a span of time or some topics out of a recording"),
+    "compare": ("tailor.tools.compare", "two recorded runs side by side"),
+    "verify": ("tailor.tools.verify", "feed a recording through today's core and compare bit for bit"),
+    "picture": ("tailor.tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
+    "view": ("tailor.tools.view", "show a run as a page, of a recording or live"),
+    "why": ("tailor.tools.why", "say why subgoals were chosen, and what greedy would have done"),
+    "plan": ("tailor.tools.plan", "plan with PDDL files, in VHPOP's manner"),
+    "gather": ("tailor.tools.gather", "run actions in simulation and keep the episodes"),
+    "train": ("tailor.tools.train", "make action models from episodes"),
+    "train-benefit": ("tailor.tools.train_benefit", "learn when not to refine, with the action models that there are"),
+    "models": ("tailor.tools.models", "list, show, plot and check action models"),
+    "evaluate": ("tailor.tools.evaluate", "reproduce the paper's tables and figures"),
+    "bench": ("tailor.tools.bench", "measure speed and memory"),
 }
 
 
@@ -47,6 +48,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_overview())
+        return 0
+    if arguments[0] == "--version":
+        print(f"tailor {__version__}")
         return 0
     name, *rest = arguments
     if name not in COMMANDS:

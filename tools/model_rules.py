@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models import leaf_rules
-from models.asking import distilled_duration, distilled_success, random_arguments, space_of
-from models.card import UNITS, Card
-from models.rules import duration_rules, success_rules
-from models.runtime import OnnxDuration, OnnxSuccess
-from models.tree_boxes import TreeBoxes, tree_boxes
-from schemas.errors import UsageError
+from tailor.models import leaf_rules
+from tailor.models.asking import distilled_duration, distilled_success, random_arguments, space_of
+from tailor.models.card import UNITS, Card
+from tailor.models.rules import duration_rules, success_rules
+from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.models.tree_boxes import TreeBoxes, tree_boxes
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 Model = OnnxDuration | OnnxSuccess
@@ -89,7 +89,7 @@ def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], 
 
 def _asked(card: Card, data: Path | None) -> tuple[Array, str]:
     """Arguments to compare on, and where they are from."""
-    from models.episodes import read_data_set
+    from tailor.models.episodes import read_data_set
 
     folder = (data or Path("data") / card["robot"]) / card["action"]
     if (folder / "manifest.json").exists():

@@ -11,12 +11,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from executive.composition import asked_ranges, load_models
-from models.card import Card
-from models.card_checks import check_ranges
-from models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
-from schemas.errors import UsageError
-from tools.terminal import table_console
+from tailor.executive.composition import asked_ranges, load_models
+from tailor.models.card import Card
+from tailor.models.card_checks import check_ranges
+from tailor.models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
+from tailor.schemas.errors import UsageError
+from tailor.tools.terminal import table_console
 
 EPILOG = """\
 examples:
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         for name, model in zip(names, loaded, strict=True):
             print(_rules(model, name, arguments))
     else:
-        from tools.figures import learned
+        from tailor.tools.figures import learned
 
         for model in loaded:
             if isinstance(model, OnnxBenefit):  # it has no surface that a plane could show; `rules` tells it
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
-    from tools.model_rules import DISTILLED, rules, tree_number
+    from tailor.tools.model_rules import DISTILLED, rules, tree_number
 
     if isinstance(model, OnnxBenefit):
         return _benefit_rules(model.card)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from schemas.messages import ExecStatus, Sample
+from tailor.schemas.messages import ExecStatus, Sample
 
 
 class OwnExecutive:

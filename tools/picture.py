@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tools.figures.paths import draw_paths
-from tools.figures.recorded import recorded_track
+from tailor.tools.figures.paths import draw_paths
+from tailor.tools.figures.recorded import recorded_track
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -15,7 +15,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from executive.planning import (
+from tailor.executive.planning import (
     Domain,
     FlawOrder,
     Problem,
@@ -31,12 +31,12 @@ from executive.planning import (
     parse_problem,
     validate,
 )
-from executive.planning.flaw_orders import NAMED
-from executive.planning.ranking import NAMES
-from executive.planning.s_expressions import MAX_CHARACTERS
-from runtime.planner_process import PlannerProcess
-from schemas.errors import UsageError
-from tools.plan_drawing import to_dot, to_svg
+from tailor.executive.planning.flaw_orders import NAMED
+from tailor.executive.planning.ranking import NAMES
+from tailor.executive.planning.s_expressions import MAX_CHARACTERS
+from tailor.runtime.planner_process import PlannerProcess
+from tailor.schemas.errors import UsageError
+from tailor.tools.plan_drawing import to_dot, to_svg
 
 MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # a search that gets there has used about 1 GB

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from html import escape
 
-from executive.planning import GOAL, Plan
-from executive.planning.vhpop_text import atom, number
+from tailor.executive.planning import GOAL, Plan
+from tailor.executive.planning.vhpop_text import atom, number
 
 _COLUMN, _ROW, _WIDTH, _HEIGHT, _MARGIN = 330, 84, 190, 40, 30  # pixels; literals stand between the columns
 _LINE = 11  # pixels from one literal to the next

@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from runtime.publisher import Publisher
-from runtime.recording import Recorded, Recording
-from runtime.selection import Selection
-from runtime.session import Session
-from schemas.errors import UsageError
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.recording import Recorded, Recording
+from tailor.runtime.selection import Selection
+from tailor.runtime.session import Session
+from tailor.schemas.errors import UsageError
 
 
 def _same(recorded: Recorded) -> Recorded:

@@ -17,19 +17,19 @@ from pathlib import Path
 from rich.console import Console
 from rich.live import Live
 
-from runtime.clock import wall_ns
-from runtime.facts import Facts
-from runtime.intake import Intake
-from runtime.questions import Questions
-from runtime.recorder import Health, Limits, Recorder
-from runtime.selection import selection
-from runtime.session import Session, open_client
-from runtime.snapshot import Ring
-from runtime.snapshot_recorder import SnapshotRecorder
-from runtime.stopping import Stop, stop_on_signals
-from schemas.errors import UsageError
-from tools.asked import check_within
-from tools.endpoint import configure_bus, endpoint_of
+from tailor.runtime.clock import wall_ns
+from tailor.runtime.facts import Facts
+from tailor.runtime.intake import Intake
+from tailor.runtime.questions import Questions
+from tailor.runtime.recorder import Health, Limits, Recorder
+from tailor.runtime.selection import selection
+from tailor.runtime.session import Session, open_client
+from tailor.runtime.snapshot import Ring
+from tailor.runtime.snapshot_recorder import SnapshotRecorder
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import check_within
+from tailor.tools.endpoint import configure_bus, endpoint_of
 
 TURN_S = 0.1  # so rarely for the sake of the CPU; with FLUSH_NS it bounds what kill -9 costs
 MOST = 1e9  # MB or seconds: no disk and no run is so large

@@ -6,15 +6,15 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from executive.core.state import Inputs
-from executive.replay import RecordedTick
-from runtime.recording import Recorded, Recording, open_recording
-from schemas.codec import decode, encode
-from schemas.errors import Rejected, UsageError
-from schemas.messages import Sample
-from schemas.topics import TOPICS
-from schemas.typesystem import type_of
-from tools.executive_run import PROVENANCE_KEY, TICK_KEY, RecordedRun, decoded, executives, in_order, take
+from tailor.executive.core.state import Inputs
+from tailor.executive.replay import RecordedTick
+from tailor.runtime.recording import Recorded, Recording, open_recording
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import Sample
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import type_of
+from tailor.tools.executive_run import PROVENANCE_KEY, TICK_KEY, RecordedRun, decoded, executives, in_order, take
 
 __all__ = ["PROVENANCE_KEY", "TICK_KEY", "RecordedRun", "RecordedRuns", "decoded"]
 

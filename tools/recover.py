@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from runtime.copying import copy
-from runtime.mcap_scan import Account, scan
+from tailor.runtime.copying import copy
+from tailor.runtime.mcap_scan import Account, scan
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -14,22 +14,22 @@ from typing import Any
 
 import numpy as np
 
-from runtime.clock import MonotonicClock
-from runtime.pacing import FASTEST, SLOWEST, Pace
-from runtime.player import Played, Player
-from runtime.recording import open_recording
-from runtime.selection import Selection, selection
-from runtime.session import Session, open_client
-from runtime.stopping import Stop, stop_on_signals
-from schemas import codec
-from schemas.errors import UsageError
-from schemas.messages import Clock
-from schemas.topics import TOPICS
-from tools.asked import check_within
-from tools.endpoint import configure_bus, endpoint_of
-from tools.keyboard import Keyboard
-from tools.playback import Outlets, Passage, remapping
-from tools.substitution import SILENCED, SUBSTITUTES, armed_for, live_executive
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.pacing import FASTEST, SLOWEST, Pace
+from tailor.runtime.player import Played, Player
+from tailor.runtime.recording import open_recording
+from tailor.runtime.selection import Selection, selection
+from tailor.runtime.session import Session, open_client
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Clock
+from tailor.schemas.topics import TOPICS
+from tailor.tools.asked import check_within
+from tailor.tools.endpoint import configure_bus, endpoint_of
+from tailor.tools.keyboard import Keyboard
+from tailor.tools.playback import Outlets, Passage, remapping
+from tailor.tools.substitution import SILENCED, SUBSTITUTES, armed_for, live_executive
 
 DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.priority == "real_time"))
 LISTEN_S = 0.5  # for a live driver; they speak at 10 Hz

@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from executive.core.context import Context
-from executive.core.state import Output
-from runtime.recording import Recorded
-from schemas.codec import encode
-from schemas.messages import Message, RefinementReport
-from schemas.topics import TOPICS, key_of
-from tools.differences import Difference, first_field, rounding_apart
-from tools.recorded_run import RecordedRun, decoded
+from tailor.executive.core.context import Context
+from tailor.executive.core.state import Output
+from tailor.runtime.recording import Recorded
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import Message, RefinementReport
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.tools.differences import Difference, first_field, rounding_apart
+from tailor.tools.recorded_run import RecordedRun, decoded
 
 REFINEMENT = TOPICS["refinement"].key
 

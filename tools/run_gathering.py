@@ -13,17 +13,17 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from executive import domains
-from executive.composition import load_models
-from executive.core.context import Settings, make_context
-from executive.library import Models
-from executive.refinement.settings import RefinementSettings
-from models.episodes import Episode, write_part
-from models.manifest import write_manifest
-from schemas.errors import Rejected, UsageError
-from schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
-from tools import gathering, lockstep
-from tools.cutting import Cutter
+from tailor.executive import domains
+from tailor.executive.composition import load_models
+from tailor.executive.core.context import Settings, make_context
+from tailor.executive.library import Models
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.episodes import Episode, write_part
+from tailor.models.manifest import write_manifest
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
+from tailor.tools import gathering, lockstep
+from tailor.tools.cutting import Cutter
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
 CHUNK = 10  # runs whose episodes are kept together
@@ -145,9 +145,9 @@ def cut_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dic
 
 def _messages(path: Path) -> Iterator[Message]:
     """What the cutter reads, in the order in which it was said."""
-    from runtime.recording import open_recording
-    from schemas.codec import decode
-    from schemas.typesystem import type_of
+    from tailor.runtime.recording import open_recording
+    from tailor.schemas.codec import decode
+    from tailor.schemas.typesystem import type_of
 
     for recorded in sorted(open_recording(path).messages(), key=lambda m: m.publish_ns):
         kind = type_of(recorded.ros_type)
@@ -175,7 +175,7 @@ def _chunk(policy: Policy, first: int) -> int:
 
 
 def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
-    from tools.episodes import SENDER, run_episode
+    from tailor.tools.episodes import SENDER, run_episode
 
     domain = domains.load(policy.domain)
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)

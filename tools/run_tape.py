@@ -12,18 +12,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from executive.core.context import Context
-from executive.core.state import Output
-from executive.replay import RecordedTick
-from executive.shell import tick_report
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.loop import Turn
-from runtime.tape import ENCODING, Tape
-from schemas.codec import encode
-from schemas.messages import Message, Provenance
-from schemas.topics import TOPICS, key_of
-from schemas.typesystem import ros_type
+from tailor.executive.core.context import Context
+from tailor.executive.core.state import Output
+from tailor.executive.replay import RecordedTick
+from tailor.executive.shell import tick_report
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.loop import Turn
+from tailor.runtime.tape import ENCODING, Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import Message, Provenance
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.typesystem import ros_type
 
 
 class RunTape:

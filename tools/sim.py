@@ -8,22 +8,22 @@ import secrets
 from collections.abc import Callable
 from typing import Any
 
-from runtime import realtime
-from runtime.clock import MonotonicClock
-from runtime.session import open_client
-from runtime.stopping import stop_on_signals
-from schemas import codec
-from schemas.errors import UsageError
-from simnodes.declaration import Declaration, declaration
-from simnodes.node import Node
-from simnodes.world import Event, World
-from tools.deployment import deployment
-from tools.endpoint import configure_bus
+from tailor.runtime import realtime
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.session import open_client
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.declaration import Declaration, declaration
+from tailor.simnodes.node import Node
+from tailor.simnodes.world import Event, World
+from tailor.tools.deployment import deployment
+from tailor.tools.endpoint import configure_bus
 
 # robot -> (module and class of its body, the domain whose scenarios it plays)
 ROBOTS = {
-    "agilo": ("simnodes.agilo.body", "AgiloBody", "soccer"),
-    "powercube": ("simnodes.powercube.body", "PowerCubeBody", "arm"),
+    "agilo": ("tailor.simnodes.agilo.body", "AgiloBody", "soccer"),
+    "powercube": ("tailor.simnodes.powercube.body", "PowerCubeBody", "arm"),
 }
 MOST_SPEED = 10.0
 
@@ -68,7 +68,7 @@ def make_world(robot: str, scenario: str, seed: int) -> World:
     Raises:
       UsageError: The scenario is not known.
     """
-    from executive import domains
+    from tailor.executive import domains
 
     module, kind, domain = ROBOTS[robot]
     name = scenario or domains.scenarios(domain)[0]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-from runtime.recording import Recorded
-from runtime.session import Session
-from schemas.codec import decode, encode
-from schemas.errors import UsageError
-from schemas.messages import DriverState
-from schemas.topics import TOPICS
-from schemas.typesystem import type_of
+from tailor.runtime.recording import Recorded
+from tailor.runtime.session import Session
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import type_of
 
 SUBSTITUTES = ("executive",)
 SILENCED = tuple(name for name, topic in TOPICS.items() if topic.source in ("executive", "people"))

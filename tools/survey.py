@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from runtime.recording import Recorded, Recording
-from schemas.codec import decode
-from schemas.errors import Rejected
-from schemas.messages import ActionFinished, DriverState, ExecStatus, TickReport
-from schemas.typesystem import type_of
+from tailor.runtime.recording import Recorded, Recording
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, TickReport
+from tailor.schemas.typesystem import type_of
 
 
 @dataclass(slots=True)

@@ -9,18 +9,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from executive.composition import Order, compose
-from runtime.clock import MonotonicClock
-from runtime.inbox import Inbox
-from runtime.loop import Loop
-from runtime.processes import Child, tailor
-from runtime.session import Session, open_router
-from runtime.stopping import Stop
-from runtime.supervisor import Charge, Supervisor
-from schemas.errors import UsageError
-from schemas.messages import DriverState, ExecStatus
-from tools.live_status import Screen
-from tools.own_executive import OwnExecutive
+from tailor.executive.composition import Order, compose
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.inbox import Inbox
+from tailor.runtime.loop import Loop
+from tailor.runtime.processes import Child, tailor
+from tailor.runtime.session import Session, open_router
+from tailor.runtime.stopping import Stop
+from tailor.runtime.supervisor import Charge, Supervisor
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState, ExecStatus
+from tailor.tools.live_status import Screen
+from tailor.tools.own_executive import OwnExecutive
 
 LOOK_NS = 50_000_000
 SILENCE_NS = 1_000_000_000  # faults.md, row 2

@@ -11,11 +11,11 @@ from typing import Any
 from rich.console import Console
 from rich.table import Column, Table
 
-from models.runtime import ZOO
-from schemas.errors import UsageError
-from tools.asked import at_least
-from tools.terminal import table_console
-from tools.training_order import command_of, data_sets, spaces_of
+from tailor.models.runtime import ZOO
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least
+from tailor.tools.terminal import table_console
+from tailor.tools.training_order import command_of, data_sets, spaces_of
 
 DURATIONS = "bag, robust, distilled, linear, m5, boosting, network"  # named here to spare --help the libraries
 SUCCESSES = "taught, forest, distilled, tree, boosting, network, svm"
@@ -69,8 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check_names(arguments: argparse.Namespace) -> None:
     """Whether there are such learners and features; told before hours of learning, not after them."""
-    from models import learners
-    from models.features import SPACES
+    from tailor.models import learners
+    from tailor.models.features import SPACES
 
     learners.make("duration", arguments.learner, arguments.seed)
     learners.make("success", arguments.failure_learner, arguments.seed)
@@ -81,7 +81,7 @@ def _check_names(arguments: argparse.Namespace) -> None:
 
 def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
     """A benefit tree judges the choices of the models that it was learned with: these are gone now."""
-    from models.benefit_publishing import withdraw_benefit
+    from tailor.models.benefit_publishing import withdraw_benefit
 
     if withdraw_benefit(arguments.zoo, arguments.robot):
         again = f"tailor train-benefit {arguments.robot}"
@@ -92,9 +92,9 @@ def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
 
 def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
     """Train the models of one action and write them to the zoo; returns what they reached in the test."""
-    from models import publishing, runtime, training
-    from models.amounts import ENERGY
-    from models.episodes import UNOBSERVED, merge, read_data_set
+    from tailor.models import publishing, runtime, training
+    from tailor.models.amounts import ENERGY
+    from tailor.models.episodes import UNOBSERVED, merge, read_data_set
 
     sets = [read_data_set(folder) for folder in folders]
     data = merge(sets)

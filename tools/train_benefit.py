@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from executive.refinement.settings import RefinementSettings
-from models.runtime import ZOO
-from schemas.errors import UsageError
-from tools.asked import at_least, finite, processes
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.runtime import ZOO
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least, finite, processes
 
 if TYPE_CHECKING:
-    from models.benefit import Pairs
-    from models.benefit_publishing import AboutBenefit
-    from tools.evaluations.outcome import Outcome, Task
+    from tailor.models.benefit import Pairs
+    from tailor.models.benefit_publishing import AboutBenefit
+    from tailor.tools.evaluations.outcome import Outcome, Task
 
 DEFAULT_SEED = 700_000
 PRICE = "of improvement that fewer slower episodes may cost, in percentage points (default: %(default)s)"
@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Gather, learn, publish, check; exit code 0."""
-    from models.runtime import load_model
+    from tailor.models.runtime import load_model
 
     path, test = train(arguments)
     load_model(path)  # a model that does not pass its own check must not ship
@@ -87,11 +87,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     """Make the tree and write it to the zoo; returns where it lies, and its test."""
-    from executive.refinement.benefit import SITUATION
-    from models.benefit import check_learner, train_benefit
-    from models.benefit_publishing import publish_benefit
-    from tools import gathering
-    from tools.evaluations.outcome import Task
+    from tailor.executive.refinement.benefit import SITUATION
+    from tailor.models.benefit import check_learner, train_benefit
+    from tailor.models.benefit_publishing import publish_benefit
+    from tailor.tools import gathering
+    from tailor.tools.evaluations.outcome import Task
 
     check_learner(arguments.learner, arguments.episodes)  # told before an hour of runs, not after
     domain = gathering.domain_of(arguments.robot)
@@ -116,9 +116,9 @@ def _about(
     episodes: dict[str, Any],
 ) -> AboutBenefit:
     """What the card is to say, the action models that the tree was learned with among it."""
-    from executive.composition import load_models
-    from executive.refinement.benefit import SITUATION
-    from models.benefit_publishing import AboutBenefit
+    from tailor.executive.composition import load_models
+    from tailor.executive.refinement.benefit import SITUATION
+    from tailor.models.benefit_publishing import AboutBenefit
 
     loaded: Any = load_models(arguments.robot, "" if arguments.zoo == ZOO else str(arguments.zoo))
     models = {**loaded.durations, **loaded.successes}
@@ -141,8 +141,8 @@ def gathered(task: Task, settings: RefinementSettings, arguments: argparse.Names
     Raises:
       UsageError: Seeds that are kept for evaluations.
     """
-    from tools.evaluations.outcome import FIRST_SEED, Variant
-    from tools.evaluations.trials import run_all
+    from tailor.tools.evaluations.outcome import FIRST_SEED, Variant
+    from tailor.tools.evaluations.trials import run_all
 
     end = arguments.seed + arguments.episodes
     if not 0 <= arguments.seed < end <= FIRST_SEED:
@@ -158,7 +158,7 @@ def pairs_of(outcomes: Sequence[tuple[Outcome, Outcome]]) -> Pairs:
     """The pairs (greedy, refined) that reached their goal both ways and in which there was something to choose."""
     import numpy as np
 
-    from models.benefit import Pairs
+    from tailor.models.benefit import Pairs
 
     usable = [(g, r) for g, r in outcomes if g.achieved and r.achieved and r.situation]
     return Pairs(

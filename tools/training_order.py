@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
-    from models.features import FeatureSpace
+    from tailor.models.features import FeatureSpace
 
 DEFAULT_FEATURES = "projective"
 ENERGY_FEATURES = {"joints": "joints-relative"}  # gravity's work depends on where the joints are, durations do not
@@ -22,7 +22,7 @@ def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> Featur
     Raises:
       UsageError: It is of other arguments.
     """
-    from models.features import SPACES
+    from tailor.models.features import SPACES
 
     fitting = [each for each, space in SPACES.items() if tuple(q.name for q in space.arguments) == arguments]
     wanted = name or (DEFAULT_FEATURES if DEFAULT_FEATURES in fitting else next(iter(fitting), DEFAULT_FEATURES))

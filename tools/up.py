@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from runtime.stopping import stop_on_signals
-from tools.deployment import configure_system, deployment, order_of
-from tools.live_status import screen
-from tools.system import Plan, run_system
+from tailor.runtime.stopping import stop_on_signals
+from tailor.tools.deployment import configure_system, deployment, order_of
+from tailor.tools.live_status import screen
+from tailor.tools.system import Plan, run_system
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -15,18 +15,18 @@ from itertools import tee
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from executive.composition import recompose
-from executive.core.context import Context
-from executive.replay import replay
-from runtime.heap import heap_set_aside
-from runtime.machine import contrast, machine, same_kind
-from schemas.errors import UsageError
-from tools.differences import ROUNDING, Difference
-from tools.recorded_run import RecordedRun, RecordedRuns
-from tools.run_comparison import RunComparison, without_proofs
+from tailor.executive.composition import recompose
+from tailor.executive.core.context import Context
+from tailor.executive.replay import replay
+from tailor.runtime.heap import heap_set_aside
+from tailor.runtime.machine import contrast, machine, same_kind
+from tailor.schemas.errors import UsageError
+from tailor.tools.differences import ROUNDING, Difference
+from tailor.tools.recorded_run import RecordedRun, RecordedRuns
+from tailor.tools.run_comparison import RunComparison, without_proofs
 
 if TYPE_CHECKING:
-    from tools.run_tape import RunTape
+    from tailor.tools.run_tape import RunTape
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ def verify(
 ) -> Verdict:
     """Compare one run with what today's core makes of it, up to the first difference.
 
-    Rounding is forgiven only if the recording comes from another kind of machine (`runtime.machine`).
+    Rounding is forgiven only if the recording comes from another kind of machine (`tailor.runtime.machine`).
 
     Args:
       runs: The recording.
@@ -125,7 +125,7 @@ def _compared(
 
 
 def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
-    from tools.run_tape import RunTape  # it brings the live shell, and with it the bus
+    from tailor.tools.run_tape import RunTape  # it brings the live shell, and with it the bus
 
     if path.exists():
         raise UsageError(f"--output {path}: there is such a file already, expected a new one")

@@ -8,19 +8,19 @@ from pathlib import Path
 
 from rich.console import Console
 
-from runtime.clock import MonotonicClock
-from runtime.session import open_client
-from runtime.stopping import stop_on_signals
-from schemas import codec
-from schemas.errors import UsageError
-from tools.endpoint import configure_bus, endpoint_of
-from tools.viewer.explainer import Explainer
-from tools.viewer.feed import Feed
-from tools.viewer.listening import Listener
-from tools.viewer.page import page
-from tools.viewer.recorded import recorded_rows
-from tools.viewer.server import serving
-from tools.viewer.story import Story
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.session import open_client
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.endpoint import configure_bus, endpoint_of
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.feed import Feed
+from tailor.tools.viewer.listening import Listener
+from tailor.tools.viewer.page import page
+from tailor.tools.viewer.recorded import recorded_rows
+from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.story import Story
 
 PORT = 7450
 NICENESS = 10  # whoever watches gives way to whoever acts

@@ -15,13 +15,13 @@ from typing import Any
 from rich.console import Console
 from rich.markup import escape
 
-from schemas.errors import UsageError
-from tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
-from tools.viewer.explainer import Explainer, fields_of
-from tools.viewer.explanation import Explanation
-from tools.viewer.recorded import timed
-from tools.viewer.rows import number
-from tools.viewer.wording import advice, durations, effort, in_words, nearness, proven, seen
+from tailor.schemas.errors import UsageError
+from tailor.tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
+from tailor.tools.viewer.explainer import Explainer, fields_of
+from tailor.tools.viewer.explanation import Explanation
+from tailor.tools.viewer.recorded import timed
+from tailor.tools.viewer.rows import number
+from tailor.tools.viewer.wording import advice, durations, effort, in_words, nearness, proven, seen
 
 NAMED = 3  # actions of a sequence; a word that the arm writes has dozens
 
@@ -147,8 +147,10 @@ def _told(reason: Reason) -> dict[str, Any]:
 
 def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     """The picture itself, or a page around it."""
-    from tools.figures.alternatives import draw_alternatives  # with matplotlib: only who wants a picture waits for it
-    from tools.figures.page import image, page
+    from tailor.tools.figures.alternatives import (
+        draw_alternatives,  # with matplotlib: only who wants a picture waits for it
+    )
+    from tailor.tools.figures.page import image, page
 
     if output.suffix == ".png":
         draw_alternatives(explained, output)

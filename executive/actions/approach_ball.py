@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from executive.actions.go_to_pose import GoToPose
-from executive.actions.planar import PHIG, XG, YG, BallBelief
-from executive.library import Array, Control
+from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.actions.planar import PHIG, XG, YG, BallBelief
+from tailor.executive.library import Array, Control
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class ApproachBall:
     follow_m: float  # a ball farther off has been moved: another task, for which the executive thinks again
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
-        """See executive.library.Controller; the command is (v m/s, omega rad/s)."""
+        """See tailor.executive.library.Controller; the command is (v m/s, omega rad/s)."""
         return self.go(memory, now_ns, belief, self._followed(arguments, belief.ball_xy))
 
     def _followed(self, arguments: Array, ball_xy: tuple[float, float] | None) -> Array:

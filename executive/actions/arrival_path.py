@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.actions.dubins import DubinsPath, Pose2
-from executive.belief.angles import difference
+from tailor.executive.actions.dubins import DubinsPath, Pose2
+from tailor.executive.belief.angles import difference
 
 NO_BEND = 1e-6  # rad short of a full circle: a bend of nothing, but for rounding
 

@@ -6,15 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from executive.actions.dribble_path import DribblePath
-from executive.actions.fetch_ball import SEEKING, FetchBall, Stage
-from executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
-from executive.actions.planar import VG, XG, BallBelief
-from executive.actions.rail_grip import RailGrip
-from executive.belief.angles import difference
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
-from executive.library import Array, Control
+from tailor.executive.actions.dribble_path import DribblePath
+from tailor.executive.actions.fetch_ball import SEEKING, FetchBall, Stage
+from tailor.executive.actions.path_follower import Pace, Progress, project, speed_limit, tracking_curvature
+from tailor.executive.actions.planar import VG, XG, BallBelief
+from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.belief.angles import difference
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.library import Array, Control
 
 TICK_S = 0.1  # the controller's period
 SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
@@ -71,7 +71,7 @@ class DribbleBall:
     speed_mps: float = 0.10
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
-        """See executive.library.Controller; arguments are poses of the axle, not of the ball."""
+        """See tailor.executive.library.Controller; arguments are poses of the axle, not of the ball."""
         goal = tuple(arguments[XG : VG + 1].tolist())
         ball = belief.ball
         if ball is None:

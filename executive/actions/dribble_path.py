@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.actions.dubins import DubinsPath, Pose2, shortest, straight_on
-from executive.belief.planar_ekf import Pose
+from tailor.executive.actions.dubins import DubinsPath, Pose2, shortest, straight_on
+from tailor.executive.belief.planar_ekf import Pose
 
 
 @dataclass(frozen=True, slots=True)

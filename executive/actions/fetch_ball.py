@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from executive.belief.ball_track import BallTrack
+from tailor.executive.belief.ball_track import BallTrack
 
 Stage = Literal["chase", "clear", "seek left", "seek right"]
 SEEKING = ("seek left", "seek right")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.actions.dubins import DubinsPath
-from executive.belief.angles import difference
-from executive.belief.planar_ekf import Pose
+from tailor.executive.actions.dubins import DubinsPath
+from tailor.executive.belief.angles import difference
+from tailor.executive.belief.planar_ekf import Pose
 
 BEND_RESERVE_M = 0.15  # braking ends so far before a bend
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
 
 # arguments of goToPose and dribbleBall: robot's pose and speed now and at the goal (paper Table 6)
 X, Y, PHI, V, XG, YG, PHIG, VG = range(8)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.belief.angles import difference, wrap
+from tailor.executive.belief.angles import difference, wrap
 
 Covariance = tuple[float, float, float, float, float, float]  # xx, xy, xφ, yy, yφ, φφ in m², m·rad, rad²
 _Estimate = tuple[float, float, float, float, float, float, float, float, float]  # three values and their covariance

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from executive import planning
-from executive.core.command_guard import at_rest, checked
-from executive.core.context import Context
-from executive.core.deliberation import Decision
-from executive.core.execution import Running, control_step
-from executive.core.modes import Mode
-from executive.core.state import State, Task
-from executive.library import Control, Fact
-from schemas.messages import ActionFinished
+from tailor.executive import planning
+from tailor.executive.core.command_guard import at_rest, checked
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Decision
+from tailor.executive.core.execution import Running, control_step
+from tailor.executive.core.modes import Mode
+from tailor.executive.core.state import State, Task
+from tailor.executive.library import Control, Fact
+from tailor.schemas.messages import ActionFinished
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive import planning
-from executive.core.context import Context
-from executive.core.deliberation import Deliberation
-from executive.core.plan_finding import PlanFinding, request_for
-from executive.core.state import Inputs, State
-from schemas.messages import PlanAnswer, PlanRequest
+from tailor.executive import planning
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Deliberation
+from tailor.executive.core.plan_finding import PlanFinding, request_for
+from tailor.executive.core.state import Inputs, State
+from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 GRACE_S = 2.0  # beyond the planner's own limit; then whoever was to ask it is not there
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from executive import planning
-from executive.library import Domain, Models, Scenario
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
+from tailor.executive import planning
+from tailor.executive.library import Domain, Models, Scenario
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
 
 PERIOD_NS = 100_000_000  # 10 Hz
 LONGEST_GOAL = 8000  # bytes: each status tells the goal, and must not become longer than its topic allows

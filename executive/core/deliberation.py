@@ -7,16 +7,16 @@ from typing import Literal
 
 import numpy as np
 
-from executive import planning
-from executive.budget import Budget
-from executive.core.context import Context
-from executive.core.plan_finding import PlanFinding, PlanFound
-from executive.library import Belief
-from executive.refinement.assertion import Assertion
-from executive.refinement.instantiation import ActionSequence, Failure, Pattern
-from executive.refinement.refinement import Choice, Refinement
-from executive.refinement.watching import Watch
-from schemas.messages import PlanAnswer, PlanRequest
+from tailor.executive import planning
+from tailor.executive.budget import Budget
+from tailor.executive.core.context import Context
+from tailor.executive.core.plan_finding import PlanFinding, PlanFound
+from tailor.executive.library import Belief
+from tailor.executive.refinement.assertion import Assertion
+from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
+from tailor.executive.refinement.refinement import Choice, Refinement
+from tailor.executive.refinement.watching import Watch
+from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
 

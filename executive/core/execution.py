@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from executive.library import Action, Array, Belief, Control
+from tailor.executive.library import Action, Array, Belief, Control
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from schemas.messages import Sample
-from schemas.topics import TOPICS, key_of
+from tailor.schemas.messages import Sample
+from tailor.schemas.topics import TOPICS, key_of
 
 
 def newest_arrivals(arrivals: Mapping[str, int], samples: tuple[Sample, ...]) -> dict[str, int]:

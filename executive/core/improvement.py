@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from executive import planning
-from executive.budget import Budget
-from executive.core.context import Context
-from executive.core.plan_finding import PlanFound, problem_of_now, validated
-from executive.library import Fact
+from tailor.executive import planning
+from tailor.executive.budget import Budget
+from tailor.executive.core.context import Context
+from tailor.executive.core.plan_finding import PlanFound, problem_of_now, validated
+from tailor.executive.library import Fact
 
 
 class Improvement:

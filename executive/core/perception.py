@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive.core.context import Context
-from executive.core.freshness import newest_arrivals, stale_topics
-from executive.core.modes import Conditions, Mode, next_mode
-from executive.core.state import Arming, Inputs, State, Task
-from schemas.messages import DriverState
-from schemas.topics import key_of
+from tailor.executive.core.context import Context
+from tailor.executive.core.freshness import newest_arrivals, stale_topics
+from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.state import Arming, Inputs, State, Task
+from tailor.schemas.messages import DriverState
+from tailor.schemas.topics import key_of
 
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:

@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from executive import planning
-from executive.budget import Budget
-from executive.core.context import Context
-from executive.library import Fact
-from schemas.messages import PlanAnswer, PlanRequest
+from tailor.executive import planning
+from tailor.executive.budget import Budget
+from tailor.executive.core.context import Context
+from tailor.executive.library import Fact
+from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Way = Literal["searched", "suffix", "improved", "external"]
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive import planning
-from executive.core.action_cycle import ending
-from executive.core.context import Context
-from executive.core.deliberation import Decision, Deliberation
-from executive.core.execution import Running
-from executive.core.plan_finding import PlanFound
-from executive.core.state import Output, State
-from executive.refinement.sequence import InstantiatedAction, Variable
-from schemas import messages as m
+from tailor.executive import planning
+from tailor.executive.core.action_cycle import ending
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Decision, Deliberation
+from tailor.executive.core.execution import Running
+from tailor.executive.core.plan_finding import PlanFound
+from tailor.executive.core.state import Output, State
+from tailor.executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.schemas import messages as m
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive import planning
-from executive.budget import Budget
-from executive.core.context import Context
-from executive.core.improvement import Improvement, better
-from executive.core.plan_finding import PlanFound
-from executive.core.state import State, Task
+from tailor.executive import planning
+from tailor.executive.budget import Budget
+from tailor.executive.core.context import Context
+from tailor.executive.core.improvement import Improvement, better
+from tailor.executive.core.plan_finding import PlanFound
+from tailor.executive.core.state import State, Task
 
 
 def reusable(

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from executive.core.command_guard import at_rest
-from executive.core.context import Context
-from executive.core.deliberation import Decision, Deliberation
-from executive.core.execution import Running
-from executive.core.improvement import Improvement
-from executive.core.modes import Mode
-from executive.library import Belief, Fact
-from executive.planning import GroundCache, Plan
-from schemas.messages import DriverState, Message, Sample
+from tailor.executive.core.command_guard import at_rest
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Decision, Deliberation
+from tailor.executive.core.execution import Running
+from tailor.executive.core.improvement import Improvement
+from tailor.executive.core.modes import Mode
+from tailor.executive.library import Belief, Fact
+from tailor.executive.planning import GroundCache, Plan
+from tailor.schemas.messages import DriverState, Message, Sample
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Inputs:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """One message to publish under the name of a topic in schemas.topics."""
+    """One message to publish under the name of a topic in tailor.schemas.topics."""
 
     topic: str
     message: Message

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive.budget import Budget
-from executive.core.action_cycle import running_from
-from executive.core.asking import finding_for, noting_failure
-from executive.core.context import Context
-from executive.core.deliberation import Decision, Deliberation
-from executive.core.execution import Running
-from executive.core.modes import Mode
-from executive.core.plan_finding import problem_of_now
-from executive.core.reusing import look_further, reusable
-from executive.core.state import State, Task
+from tailor.executive.budget import Budget
+from tailor.executive.core.action_cycle import running_from
+from tailor.executive.core.asking import finding_for, noting_failure
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Decision, Deliberation
+from tailor.executive.core.execution import Running
+from tailor.executive.core.modes import Mode
+from tailor.executive.core.plan_finding import problem_of_now
+from tailor.executive.core.reusing import look_further, reusable
+from tailor.executive.core.state import State, Task
 
 
 def think(context: Context, state: State, budget: Budget) -> State:

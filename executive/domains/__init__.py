@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from executive.library import Domain, Scenario
-from schemas.errors import UsageError
+from tailor.executive.library import Domain, Scenario
+from tailor.schemas.errors import UsageError
 
 SCENARIO_STREAM = 0  # of a run's seed; noise and search are drawn from others
 DOMAINS = ("soccer", "arm")
@@ -51,7 +51,7 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
     if scenario not in known:
         raise UsageError(f"no scenario {scenario!r} in {name}, expected one of: {', '.join(known)}")
     declared = _declaration(name, scenario)
-    problem = resources.files(f"executive.domains.{name}.scenarios").joinpath(declared["problem"]).read_text()
+    problem = resources.files(f"tailor.executive.domains.{name}.scenarios").joinpath(declared["problem"]).read_text()
     start, places, events = _package(name).draw(declared, rng)
     settings = {**declared.get("settings", {}), "events": events}
     return Scenario(scenario, problem, places, settings), start
@@ -67,7 +67,7 @@ def _package(name: str) -> Any:
 
     One that makes its scenarios up offers `scenarios()` and `load_scenario(scenario, rng)` instead of `draw` and files.
     """
-    return importlib.import_module(f"executive.domains.{name}")
+    return importlib.import_module(f"tailor.executive.domains.{name}")
 
 
 def _invents(name: str) -> bool:
@@ -76,10 +76,10 @@ def _invents(name: str) -> bool:
 
 
 def _scenario_files(name: str) -> list[str]:
-    folder = resources.files(f"executive.domains.{name}.scenarios")
+    folder = resources.files(f"tailor.executive.domains.{name}.scenarios")
     return [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
 
 
 def _declaration(name: str, scenario: str) -> Mapping[str, Any]:
-    folder = resources.files(f"executive.domains.{name}.scenarios")
+    folder = resources.files(f"tailor.executive.domains.{name}.scenarios")
     return tomllib.loads(folder.joinpath(f"{scenario}.toml").read_text())

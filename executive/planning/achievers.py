@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from executive.planning.additive_heuristic import Estimates
-from executive.planning.ground_action import GroundAction, GroundEffect
+from tailor.executive.planning.additive_heuristic import Estimates
+from tailor.executive.planning.ground_action import GroundAction, GroundEffect
 
 Achiever = tuple[GroundAction, GroundEffect]
 

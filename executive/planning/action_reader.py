@@ -6,8 +6,16 @@ from dataclasses import replace
 from typing import Literal as OneOf
 from typing import cast
 
-from executive.planning.formula_reader import Scope, expect, moment_of, read_atom, read_formula, read_terms, read_timed
-from executive.planning.language import (
+from tailor.executive.planning.formula_reader import (
+    Scope,
+    expect,
+    moment_of,
+    read_atom,
+    read_formula,
+    read_terms,
+    read_timed,
+)
+from tailor.executive.planning.language import (
     Action,
     Condition,
     Domain,
@@ -18,8 +26,8 @@ from executive.planning.language import (
     Numeric,
     Operation,
 )
-from executive.planning.s_expressions import Form, Node, Word, form_of, word_of
-from executive.planning.typed_lists import variables_of
+from tailor.executive.planning.s_expressions import Form, Node, Word, form_of, word_of
+from tailor.executive.planning.typed_lists import variables_of
 
 NUMERIC_EFFECTS = frozenset({"assign", "increase", "decrease", "scale-up", "scale-down"})
 MAX_NUMBERS = 100  # of a duration, which is worked out anew for every ground action; those at hand have 3 at most

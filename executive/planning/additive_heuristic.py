@@ -10,9 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from executive.planning.connectives import Every
-from executive.planning.ground_action import GroundAction, Span
-from executive.planning.ground_formula import GroundCondition
+from tailor.executive.planning.connectives import Every
+from tailor.executive.planning.ground_action import GroundAction, Span
+from tailor.executive.planning.ground_formula import GroundCondition
 
 Spanned = Iterable[tuple[GroundCondition, Span]]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive.planning.language import Domain
-from executive.planning.linking import links_of
-from executive.planning.plan import Link, Plan
-from executive.planning.problem import Problem
-from executive.planning.suffix import relink
-from executive.planning.validator import validate
+from tailor.executive.planning.language import Domain
+from tailor.executive.planning.linking import links_of
+from tailor.executive.planning.plan import Link, Plan
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.suffix import relink
+from tailor.executive.planning.validator import validate
 
 
 def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:

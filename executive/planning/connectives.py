@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
-    from executive.planning.lifted.formula import Leaf
+    from tailor.executive.planning.lifted.formula import Leaf
 
 L = TypeVar("L", int, "Leaf")  # what is joined: ground literals, or lifted ones with equalities
 

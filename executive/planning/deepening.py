@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 from typing import Generic
 
-from executive.planning.plan import Result, dead_end, unreachable
-from executive.planning.plan_space import P, PlanSpace
-from executive.planning.ranking import Rank
-from executive.planning.settings import Settings
+from tailor.executive.planning.plan import Result, dead_end, unreachable
+from tailor.executive.planning.plan_space import P, PlanSpace
+from tailor.executive.planning.ranking import Rank
+from tailor.executive.planning.settings import Settings
 
 
 class Deepening(Generic[P]):

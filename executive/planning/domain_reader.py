@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from executive.planning.action_reader import read_action
-from executive.planning.language import Domain, Typed
-from executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
-from executive.planning.typed_lists import read_typed, variables_of
+from tailor.executive.planning.action_reader import read_action
+from tailor.executive.planning.language import Domain, Typed
+from tailor.executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
+from tailor.executive.planning.typed_lists import read_typed, variables_of
 
 MAX_TYPES = 500  # the largest competition domain has 30
 SUPPORTED = frozenset(

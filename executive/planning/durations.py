@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from functools import partial, reduce
 
-from executive.library import Fact
-from executive.planning.ground_formula import Binding, World
-from executive.planning.language import DurationBound, Function, Number, Numeric, Operation
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground_formula import Binding, World
+from tailor.executive.planning.language import DurationBound, Function, Number, Numeric, Operation
 
 
 def evaluate(number: Numeric, binding: Binding, world: World) -> float | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 
 class PddlError(UsageError):

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from executive.library import Fact
-from executive.planning.ground_formula import Binding, World, bindings
-from executive.planning.ground_task import GroundTask
-from executive.planning.language import Action, And, Atom, Formula, Literal, Not
-from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import PartialPlan, step_of
-from executive.planning.plan import GOAL, Link, Plan, Step
-from executive.planning.problem import Problem
-from executive.planning.temporal_network import TemporalNetwork
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground_formula import Binding, World, bindings
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.language import Action, And, Atom, Formula, Literal, Not
+from tailor.executive.planning.orderings import Orderings
+from tailor.executive.planning.partial_plan import PartialPlan, step_of
+from tailor.executive.planning.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.temporal_network import TemporalNetwork
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 # n, s: threat that no separation mends, one that separation mends; o: open condition; of these t: static, l: local to
 # the step of the newest one, u: unsafe (a step may undo it)

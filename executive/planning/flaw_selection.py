@@ -9,10 +9,10 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from executive.planning.additive_heuristic import Value
-from executive.planning.cells import cells_of
-from executive.planning.flaw_orders import Criterion
-from executive.planning.refinable import Refinable
+from tailor.executive.planning.additive_heuristic import Value
+from tailor.executive.planning.cells import cells_of
+from tailor.executive.planning.flaw_orders import Criterion
+from tailor.executive.planning.refinable import Refinable
 
 P = TypeVar("P", bound=Refinable)
 P_contra = TypeVar("P_contra", bound=Refinable, contravariant=True)

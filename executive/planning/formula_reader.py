@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from executive.planning.language import (
+from tailor.executive.planning.language import (
     And,
     Atom,
     Condition,
@@ -18,8 +18,8 @@ from executive.planning.language import (
     Typed,
     When,
 )
-from executive.planning.s_expressions import Form, Node, Place, form_of, word_of
-from executive.planning.typed_lists import variables_of
+from tailor.executive.planning.s_expressions import Form, Node, Place, form_of, word_of
+from tailor.executive.planning.typed_lists import variables_of
 
 COMPARISONS = frozenset({"<", ">", "<=", ">="})
 MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end"): "end", ("over", "all"): "over"}

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from executive.library import Fact
-from executive.planning.ground_formula import GroundCondition
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground_formula import GroundCondition
 
 Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end
 MOMENTS: dict[str, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from executive.planning.ground_task import GroundTask
-from executive.planning.makespan import makespan_estimate
-from executive.planning.partial_plan import PartialPlan
-from executive.planning.ranking import Estimate
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.makespan import makespan_estimate
+from tailor.executive.planning.partial_plan import PartialPlan
+from tailor.executive.planning.ranking import Estimate
 
 
 class GroundEstimates:

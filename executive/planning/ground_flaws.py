@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from executive.planning.additive_heuristic import Value, literals_of
-from executive.planning.connectives import Some
-from executive.planning.ground_task import GroundTask
-from executive.planning.open_conditions import reusable
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat
-from executive.planning.threats import choices
+from tailor.executive.planning.additive_heuristic import Value, literals_of
+from tailor.executive.planning.connectives import Some
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.open_conditions import reusable
+from tailor.executive.planning.partial_plan import OpenCondition, PartialPlan, Threat
+from tailor.executive.planning.threats import choices
 
 
 class GroundFlaws:

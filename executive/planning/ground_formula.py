@@ -9,9 +9,9 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from executive.library import Fact
-from executive.planning.connectives import FALSE, TRUE, Every, Some, conjunction, disjunction
-from executive.planning.language import And, Atom, Domain, Equal, Formula, Literal, Not, Or, Quantified, Typed
+from tailor.executive.library import Fact
+from tailor.executive.planning.connectives import FALSE, TRUE, Every, Some, conjunction, disjunction
+from tailor.executive.planning.language import And, Atom, Domain, Equal, Formula, Literal, Not, Or, Quantified, Typed
 
 GroundCondition = int | Every[int] | Some[int]
 MAX_FORMULAS = 60_000  # a third of a second of grounding; the competition problems at hand need 20 000

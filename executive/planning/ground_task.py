@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from executive.planning.achievers import Achiever, achievers_of
-from executive.planning.additive_heuristic import Estimates, action_costs, estimate
-from executive.planning.connectives import FALSE, conjuncts
-from executive.planning.ground_formula import Facts, GroundCondition, contradictory, ground
-from executive.planning.grounding import GroundActions
-from executive.planning.language import Literal
-from executive.planning.orderings import FIRST
-from executive.planning.problem import Problem
+from tailor.executive.planning.achievers import Achiever, achievers_of
+from tailor.executive.planning.additive_heuristic import Estimates, action_costs, estimate
+from tailor.executive.planning.connectives import FALSE, conjuncts
+from tailor.executive.planning.ground_formula import Facts, GroundCondition, contradictory, ground
+from tailor.executive.planning.grounding import GroundActions
+from tailor.executive.planning.language import Literal
+from tailor.executive.planning.orderings import FIRST
+from tailor.executive.planning.problem import Problem
 
 CostOf = OneOf["unit", "duration", "relative"]
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.planning.connectives import FALSE, conjunction, conjuncts
-from executive.planning.durations import duration_range, ticks_of
-from executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
-from executive.planning.ground_formula import (
+from tailor.executive.planning.connectives import FALSE, conjunction, conjuncts
+from tailor.executive.planning.durations import duration_range, ticks_of
+from tailor.executive.planning.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
+from tailor.executive.planning.ground_formula import (
     Binding,
     Facts,
     GroundCondition,
@@ -25,8 +25,8 @@ from executive.planning.ground_formula import (
     ground,
     negation,
 )
-from executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
-from executive.planning.problem import Problem
+from tailor.executive.planning.language import Action, And, Atom, Condition, Equal, Formula, Not, When
+from tailor.executive.planning.problem import Problem
 
 MAX_ACTIONS = 10_000  # of a ground task; the competition problems at hand have 756 at most
 MAX_WAYS = 64  # to escape the additions of the same action: they double with each that looks at two moments

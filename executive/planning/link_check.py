@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from executive.library import Fact
-from executive.planning.language import Action, Effect
-from executive.planning.plan import GOAL, Link, Plan
-from executive.planning.problem import Problem
-from executive.planning.state import Binding, Objects, fact_of
+from tailor.executive.library import Fact
+from tailor.executive.planning.language import Action, Effect
+from tailor.executive.planning.plan import GOAL, Link, Plan
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.state import Binding, Objects, fact_of
 
 Bound = dict[int, tuple[Action, Binding]]  # by step
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 
-from executive.planning.language import Domain, Literal
-from executive.planning.plan import GOAL, Link, Plan, Step
-from executive.planning.problem import Problem
-from executive.planning.rehearsal import Need, rehearse
-from executive.planning.state import Objects, fact_of
+from tailor.executive.planning.language import Domain, Literal
+from tailor.executive.planning.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.rehearsal import Need, rehearse
+from tailor.executive.planning.state import Objects, fact_of
 
 
 def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:

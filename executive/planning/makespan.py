@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from executive.planning.orderings import GOAL, INITIAL, Orderings
-from executive.planning.temporal_network import UNBOUNDED, TemporalNetwork
+from tailor.executive.planning.orderings import GOAL, INITIAL, Orderings
+from tailor.executive.planning.temporal_network import UNBOUNDED, TemporalNetwork
 
 
 def makespan_estimate(orderings: Orderings, conditions: Iterable[tuple[int, float]]) -> float:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from executive.planning.ground_action import GroundAction, GroundEffect
-from executive.planning.ground_task import GroundTask
-from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import Link, OpenCondition, PartialPlan, Threat, new
-from executive.planning.step_effects import StepEffects
-from executive.planning.threat_detection import Spanned, guarded_links, threats_by, threats_to
+from tailor.executive.planning.ground_action import GroundAction, GroundEffect
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.orderings import Orderings
+from tailor.executive.planning.partial_plan import Link, OpenCondition, PartialPlan, Threat, new
+from tailor.executive.planning.step_effects import StepEffects
+from tailor.executive.planning.threat_detection import Spanned, guarded_links, threats_by, threats_to
 
 
 class _Place(NamedTuple):

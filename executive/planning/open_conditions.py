@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from executive.planning.cells import without
-from executive.planning.connectives import Every, Some
-from executive.planning.ground_formula import GroundCondition
-from executive.planning.ground_task import GroundTask
-from executive.planning.new_steps import new_step_plans, opened_by
-from executive.planning.orderings import INITIAL, Orderings
-from executive.planning.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
-from executive.planning.threat_detection import Spanned, threats_to
+from tailor.executive.planning.cells import without
+from tailor.executive.planning.connectives import Every, Some
+from tailor.executive.planning.ground_formula import GroundCondition
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.new_steps import new_step_plans, opened_by
+from tailor.executive.planning.orderings import INITIAL, Orderings
+from tailor.executive.planning.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
+from tailor.executive.planning.threat_detection import Spanned, threats_to
 
 
 def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from executive.planning.ground_action import GroundAction, Span
-from executive.planning.ground_formula import GroundCondition
-from executive.planning.ground_task import GroundTask
-from executive.planning.orderings import FIRST, GOAL, Closure, Orderings
-from executive.planning.step_effects import StepEffects
-from executive.planning.temporal_network import TemporalNetwork
+from tailor.executive.planning.ground_action import GroundAction, Span
+from tailor.executive.planning.ground_formula import GroundCondition
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.orderings import FIRST, GOAL, Closure, Orderings
+from tailor.executive.planning.step_effects import StepEffects
+from tailor.executive.planning.temporal_network import TemporalNetwork
 
 GOAL_STEP = -1  # what links and orderings call the goal; the initial state is step 0
 new = tuple.__new__  # makes a named tuple of a plain one in half the time of its constructor, a Python function

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from executive.library import Fact
-from executive.planning.language import Literal
-from executive.planning.partial_plan import GOAL_STEP
+from tailor.executive.library import Fact
+from tailor.executive.planning.language import Literal
+from tailor.executive.planning.partial_plan import GOAL_STEP
 
 Status = OneOf["solved", "unsolvable", "limit", "unsupported"]
 

@@ -6,20 +6,20 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from executive.planning.extraction import extract
-from executive.planning.flaw_orders import parse_flaw_order
-from executive.planning.flaw_selection import FlawSelection
-from executive.planning.ground_estimates import GroundEstimates
-from executive.planning.ground_flaws import GroundFlaws
-from executive.planning.ground_formula import World
-from executive.planning.ground_task import GroundTask
-from executive.planning.open_conditions import refine_open
-from executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
-from executive.planning.plan import Plan
-from executive.planning.ranking import Rank, Ranking
-from executive.planning.refinable import Refinable
-from executive.planning.settings import Settings, rankings_for
-from executive.planning.threats import refine_threat
+from tailor.executive.planning.extraction import extract
+from tailor.executive.planning.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaw_selection import FlawSelection
+from tailor.executive.planning.ground_estimates import GroundEstimates
+from tailor.executive.planning.ground_flaws import GroundFlaws
+from tailor.executive.planning.ground_formula import World
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.open_conditions import refine_open
+from tailor.executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
+from tailor.executive.planning.plan import Plan
+from tailor.executive.planning.ranking import Rank, Ranking
+from tailor.executive.planning.refinable import Refinable
+from tailor.executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.threats import refine_threat
 
 P = TypeVar("P", bound=Refinable)
 

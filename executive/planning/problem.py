@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal as OneOf
 
-from executive.library import Fact
-from executive.planning.formula_reader import Scope, read_formula
-from executive.planning.language import Domain, Formula, Literal, Typed
-from executive.planning.s_expressions import read_form
+from tailor.executive.library import Fact
+from tailor.executive.planning.formula_reader import Scope, read_formula
+from tailor.executive.planning.language import Domain, Formula, Literal, Typed
+from tailor.executive.planning.s_expressions import read_form
 
 
 @dataclass(frozen=True, slots=True)

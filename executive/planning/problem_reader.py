@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from executive.library import Fact
-from executive.planning.action_reader import number_of
-from executive.planning.domain_reader import check_requirements, define_name
-from executive.planning.formula_reader import Scope, expect, read_atom, read_formula, read_terms
-from executive.planning.language import Domain, Formula, Literal, Typed
-from executive.planning.problem import Problem, TimedLiteral
-from executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
-from executive.planning.typed_lists import read_typed
+from tailor.executive.library import Fact
+from tailor.executive.planning.action_reader import number_of
+from tailor.executive.planning.domain_reader import check_requirements, define_name
+from tailor.executive.planning.formula_reader import Scope, expect, read_atom, read_formula, read_terms
+from tailor.executive.planning.language import Domain, Formula, Literal, Typed
+from tailor.executive.planning.problem import Problem, TimedLiteral
+from tailor.executive.planning.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
+from tailor.executive.planning.typed_lists import read_typed
 
 MAX_OBJECTS = 10_000
 MAX_TIMED = 200  # each is a node of every temporal network

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from executive.planning.language import Typed
-from executive.planning.problem import Problem
-from executive.planning.vhpop_text import atom, number
+from tailor.executive.planning.language import Typed
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.vhpop_text import atom, number
 
 
 def format_problem(problem: Problem) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from executive.library import Fact
-from executive.planning.language import Domain
-from executive.planning.problem import Problem
-from executive.planning.state import Objects
-from executive.planning.validator import affected
+from tailor.executive.library import Fact
+from tailor.executive.planning.language import Domain
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.state import Objects
+from tailor.executive.planning.validator import affected
 
 
 def progress(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:

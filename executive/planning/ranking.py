@@ -9,8 +9,8 @@ import math
 from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 
-from executive.planning.refinable import Refinable
-from schemas.errors import UsageError
+from tailor.executive.planning.refinable import Refinable
+from tailor.schemas.errors import UsageError
 
 Rank = tuple[float, ...]
 Estimate = tuple[float, float]  # cost, work of the open conditions

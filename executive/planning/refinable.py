@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sized
 from typing import Any, Protocol
 
-from executive.planning.orderings import Orderings
+from tailor.executive.planning.orderings import Orderings
 
 
 class Refinable(Protocol):

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from executive.planning.language import Action, Domain, Effect, Formula, Literal, Not, When
-from executive.planning.plan import GOAL, Plan
-from executive.planning.problem import Problem
-from executive.planning.state import Binding, Objects, State, fact_of, holds, support
+from tailor.executive.planning.language import Action, Domain, Effect, Formula, Literal, Not, When
+from tailor.executive.planning.plan import GOAL, Plan
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.state import Binding, Objects, State, fact_of, holds, support
 
 
 @dataclass(frozen=True, slots=True)

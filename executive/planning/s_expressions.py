@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from executive.planning.errors import PddlError, Unsupported, error_at
+from tailor.executive.planning.errors import PddlError, Unsupported, error_at
 
 MAX_CHARACTERS = 250_000  # read in a quarter of a second; the problems at hand have 10 000 at most
 MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20

@@ -7,19 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.planning.best_first import BestFirst
-from executive.planning.deepening import Deepening
-from executive.planning.ground_formula import TooMuchToGround
-from executive.planning.ground_task import make_task
-from executive.planning.grounding import GroundActions, ground_actions, shuffled, world_of
-from executive.planning.language import Domain
-from executive.planning.lifted.space import LiftedSpace
-from executive.planning.lifted.task import lifted_task
-from executive.planning.plan import Result
-from executive.planning.plan_space import GroundSpace, P, PlanSpace
-from executive.planning.problem import Problem
-from executive.planning.settings import DEFAULT, Settings
+from tailor.executive.budget import Budget
+from tailor.executive.planning.best_first import BestFirst
+from tailor.executive.planning.deepening import Deepening
+from tailor.executive.planning.ground_formula import TooMuchToGround
+from tailor.executive.planning.ground_task import make_task
+from tailor.executive.planning.grounding import GroundActions, ground_actions, shuffled, world_of
+from tailor.executive.planning.language import Domain
+from tailor.executive.planning.lifted.space import LiftedSpace
+from tailor.executive.planning.lifted.task import lifted_task
+from tailor.executive.planning.plan import Result
+from tailor.executive.planning.plan_space import GroundSpace, P, PlanSpace
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.settings import DEFAULT, Settings
 
 
 class GroundCache:

@@ -6,9 +6,21 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from executive.library import Fact
-from executive.planning.language import And, Atom, Condition, Equal, Formula, Literal, Not, Or, Quantified, Typed, When
-from executive.planning.problem import Problem
+from tailor.executive.library import Fact
+from tailor.executive.planning.language import (
+    And,
+    Atom,
+    Condition,
+    Equal,
+    Formula,
+    Literal,
+    Not,
+    Or,
+    Quantified,
+    Typed,
+    When,
+)
+from tailor.executive.planning.problem import Problem
 
 Binding = Mapping[str, str]
 State = frozenset[Fact]

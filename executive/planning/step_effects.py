@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from executive.planning.ground_action import GroundAction
+from tailor.executive.planning.ground_action import GroundAction
 
 
 class StepEffects:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from executive.planning.language import Domain
-from executive.planning.linking import links_of, orderings_for
-from executive.planning.plan import Plan, Step
-from executive.planning.problem import Problem
-from executive.planning.schedule import closure, levels
-from executive.planning.validator import validate
+from tailor.executive.planning.language import Domain
+from tailor.executive.planning.linking import links_of, orderings_for
+from tailor.executive.planning.plan import Plan, Step
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.schedule import closure, levels
+from tailor.executive.planning.validator import validate
 
 
 def suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) -> Plan | None:

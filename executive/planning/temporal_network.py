@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from executive.planning.orderings import GOAL, INITIAL, Lasting
+from tailor.executive.planning.orderings import GOAL, INITIAL, Lasting
 
 UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
 _FAR = UNBOUNDED // 2  # as good as unbounded

@@ -5,11 +5,11 @@ Owns the order in which they are noted, which every count depends on.
 
 from __future__ import annotations
 
-from executive.planning.ground_action import GroundAction, Span
-from executive.planning.ground_formula import GroundCondition
-from executive.planning.ground_task import GroundTask
-from executive.planning.orderings import Orderings
-from executive.planning.partial_plan import Link, Threat, new, step_of
+from tailor.executive.planning.ground_action import GroundAction, Span
+from tailor.executive.planning.ground_formula import GroundCondition
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.orderings import Orderings
+from tailor.executive.planning.partial_plan import Link, Threat, new, step_of
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
 Threats = tuple[Threat | None, int]  # the list and its length

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from executive.planning.cells import without
-from executive.planning.connectives import conjunction
-from executive.planning.ground_action import Span
-from executive.planning.ground_formula import GroundCondition, negation
-from executive.planning.ground_task import GroundTask
-from executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, new
+from tailor.executive.planning.cells import without
+from tailor.executive.planning.connectives import conjunction
+from tailor.executive.planning.ground_action import Span
+from tailor.executive.planning.ground_formula import GroundCondition, negation
+from tailor.executive.planning.ground_task import GroundTask
+from tailor.executive.planning.partial_plan import OpenCondition, PartialPlan, Threat, new
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:

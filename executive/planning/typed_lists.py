@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from executive.planning.language import Typed
-from executive.planning.s_expressions import Form, Node, Word, word_of
+from tailor.executive.planning.language import Typed
+from tailor.executive.planning.s_expressions import Form, Node, Word, word_of
 
 
 def read_typed(nodes: Sequence[Node], known: Mapping[str, tuple[str, ...]] | None) -> tuple[Typed, ...]:

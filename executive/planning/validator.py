@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from executive.library import Fact
-from executive.planning.durations import duration_range
-from executive.planning.grounding import world_of
-from executive.planning.language import Action, Domain, Effect
-from executive.planning.link_check import Bound, faulty_link
-from executive.planning.plan import Plan, Step
-from executive.planning.problem import Problem
-from executive.planning.state import Binding, Objects, State, conditions_at, fact_of, holds
-from executive.planning.vhpop_text import atom
+from tailor.executive.library import Fact
+from tailor.executive.planning.durations import duration_range
+from tailor.executive.planning.grounding import world_of
+from tailor.executive.planning.language import Action, Domain, Effect
+from tailor.executive.planning.link_check import Bound, faulty_link
+from tailor.executive.planning.plan import Plan, Step
+from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.state import Binding, Objects, State, conditions_at, fact_of, holds
+from tailor.executive.planning.vhpop_text import atom
 
 SAME_TIME_S = 1e-6  # events closer than this happen together
 DURATION_SLACK_S = 0.0051  # half a tick of 0.01 s: durations are printed in whole ticks

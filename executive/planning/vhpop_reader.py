@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from executive.library import Fact
-from executive.planning.language import Literal
-from executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
-from executive.planning.schedule import levels
-from schemas.errors import UsageError
+from tailor.executive.library import Fact
+from tailor.executive.planning.language import Literal
+from tailor.executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
+from tailor.executive.planning.schedule import levels
+from tailor.schemas.errors import UsageError
 
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000

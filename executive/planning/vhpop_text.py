@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from executive.library import Fact
-from executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan
+from tailor.executive.library import Fact
+from tailor.executive.planning.plan import DEFAULT_TICK_S, GOAL, Link, Plan
 
 
 def format_plan(plan: Plan) -> str:

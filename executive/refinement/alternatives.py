@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.library import Array, Models
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.library import Array, Models
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
 
 
 @dataclass(frozen=True, slots=True)

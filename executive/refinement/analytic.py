@@ -9,9 +9,9 @@ from itertools import product
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.chain import ChainObjective, blocks_of, links_of, pairwise_costs, traced
-from executive.refinement.solver import Limits, Solver
+from tailor.executive.library import Array
+from tailor.executive.refinement.chain import ChainObjective, blocks_of, links_of, pairwise_costs, traced
+from tailor.executive.refinement.solver import Limits, Solver
 
 GRID_MAX = 20_000  # points of one subgoal's grid
 ROWS_AT_ONCE = 50_000  # keeps the memory of one model call small

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Models
-from executive.refinement.detour import with_detour
-from executive.refinement.examination import Examination
-from executive.refinement.sequence import ActionSequence, Failure
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.weighing import Weighing, accepting
+from tailor.executive.budget import Budget
+from tailor.executive.library import Models
+from tailor.executive.refinement.detour import with_detour
+from tailor.executive.refinement.examination import Examination
+from tailor.executive.refinement.sequence import ActionSequence, Failure
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.weighing import Weighing, accepting
 
 SLACK = 0.05  # above the least failure probability that was found; without it refinement had a single point to choose
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.library import BenefitModel
-from executive.refinement.choice import Choice
-from executive.refinement.sequence import ActionSequence, Variable
-from schemas.errors import UsageError
+from tailor.executive.library import BenefitModel
+from tailor.executive.refinement.choice import Choice
+from tailor.executive.refinement.sequence import ActionSequence, Variable
+from tailor.schemas.errors import UsageError
 
 # What the tree sees, in this order; training takes it from the telemetry, so it is computed in one place alone.
 # "First" is the next action with its detours, "rest" what follows it within the horizon; times are predicted means.

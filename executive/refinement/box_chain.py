@@ -13,9 +13,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.library import Array
-from executive.refinement.boxes import NOWHERE, Boxes, joined
-from executive.refinement.chain import forward_costs, through_costs, traced
+from tailor.executive.library import Array
+from tailor.executive.refinement.boxes import NOWHERE, Boxes, joined
+from tailor.executive.refinement.chain import forward_costs, through_costs, traced
 
 Places = NDArray[np.intp]
 

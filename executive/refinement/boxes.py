@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.ranges import Ranges
+from tailor.executive.library import Array
+from tailor.executive.refinement.ranges import Ranges
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.ranges import Ranges
-from executive.refinement.sequence import InstantiatedAction, Variable
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.library import Array
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.ranges import Ranges
+from tailor.executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.executive.refinement.settings import RefinementSettings
 
 POSE = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg")  # what models of pose actions take, in this order
 NUDGE = 2e-6  # of a range: from a threshold to either side of it, well above single precision

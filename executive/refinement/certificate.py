@@ -11,16 +11,16 @@ from itertools import count
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Array
-from executive.refinement.box_chain import BoxChain, Costs
-from executive.refinement.boxes import NOWHERE, box_of
-from executive.refinement.chain import Columns, blocks_of, links_of
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sensitivity import sensitivity
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
-from executive.refinement.stalling import Stalling
+from tailor.executive.budget import Budget
+from tailor.executive.library import Array
+from tailor.executive.refinement.box_chain import BoxChain, Costs
+from tailor.executive.refinement.boxes import NOWHERE, box_of
+from tailor.executive.refinement.chain import Columns, blocks_of, links_of
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sensitivity import sensitivity
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.stage_bounds import NoBound, StageBound, stage_bound
+from tailor.executive.refinement.stalling import Stalling
 
 EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 while boxes are wide
 HOPELESS = 0.3  # of the checks just to begin: what is left will not get far

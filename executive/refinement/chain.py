@@ -14,8 +14,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.library import Array
-from executive.refinement.solver import Limits, Objective, Solver
+from tailor.executive.library import Array
+from tailor.executive.refinement.solver import Limits, Objective, Solver
 
 Columns = NDArray[np.intp]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from executive.library import Array
-from executive.refinement.objective import SequenceObjective
+from tailor.executive.library import Array
+from tailor.executive.refinement.objective import SequenceObjective
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from executive.library import Action, Parameter
-from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.library import Action, Parameter
+from tailor.executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
 
 
 def with_detour(sequence: ActionSequence, position: int) -> ActionSequence:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.solver import Limits, Objective, Solver
+from tailor.executive.library import Array
+from tailor.executive.refinement.solver import Limits, Objective, Solver
 
 INDIVIDUALS_PER_PARAMETER = 5  # few, and most of them after the best: there is time for some 60 generations only
 INDIVIDUALS_MIN = 24

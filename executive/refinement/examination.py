@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Models
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import Budget
+from tailor.executive.library import Models
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
 
 SAMPLES_PER_CHECK = 256
 STARTS = 6  # of the values that succeed are handed on to refinement

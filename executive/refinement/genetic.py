@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.solver import Limits, Objective, Solver
+from tailor.executive.library import Array
+from tailor.executive.refinement.solver import Limits, Objective, Solver
 
 CHROMOSOMES_PER_PARAMETER = 25
 ELITE = 0.02  # passes to the next generation unmodified

@@ -7,12 +7,12 @@ from itertools import zip_longest
 
 import numpy as np
 
-from executive.library import Array, Models
-from executive.refinement.ranges import ranges_of
-from executive.refinement.sequence import InstantiatedAction, Variable
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.spoiling import spoiling
-from executive.refinement.stage import Prediction, Stage
+from tailor.executive.library import Array, Models
+from tailor.executive.refinement.ranges import ranges_of
+from tailor.executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.spoiling import spoiling
+from tailor.executive.refinement.stage import Prediction, Stage
 
 
 class SequenceObjective:

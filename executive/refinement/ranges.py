@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.library import Array
-from executive.refinement.sequence import Variable
+from tailor.executive.library import Array
+from tailor.executive.refinement.sequence import Variable
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,18 +10,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Array, Models
-from executive.refinement.benefit import Verdict, judge
-from executive.refinement.certificate import Certificate, certificate
-from executive.refinement.choice import Choice, choice_of
-from executive.refinement.greedy import Greedy, Polish, greedy
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.selection import solver_for
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.solver import Solver
-from executive.refinement.stage_bounds import NoBound
+from tailor.executive.budget import Budget
+from tailor.executive.library import Array, Models
+from tailor.executive.refinement.benefit import Verdict, judge
+from tailor.executive.refinement.certificate import Certificate, certificate
+from tailor.executive.refinement.choice import Choice, choice_of
+from tailor.executive.refinement.greedy import Greedy, Polish, greedy
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.solver import Solver
+from tailor.executive.refinement.stage_bounds import NoBound
 
 __all__ = ["Choice", "Refinement", "Report"]
 

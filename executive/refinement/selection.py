@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.chain import ChainSolver, Columns, blocks_of
-from executive.refinement.differential import DifferentialEvolution
-from executive.refinement.genetic import GeneticAlgorithm
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.solver import Limits, Solver
+from tailor.executive.library import Array
+from tailor.executive.refinement.chain import ChainSolver, Columns, blocks_of
+from tailor.executive.refinement.differential import DifferentialEvolution
+from tailor.executive.refinement.genetic import GeneticAlgorithm
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.solver import Limits, Solver
 
 SUBGOALS_MIN = 3  # from so many on, dynamic programming beats evolution for the same number of model rows
 PARAMETERS_MAX = 2  # of one subgoal: a few candidates of more dimensions are too thin, under constraints above all

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.objective import SequenceObjective
+from tailor.executive.library import Array
+from tailor.executive.refinement.objective import SequenceObjective
 
 PROBES = 16  # choices at which each parameter is moved
 PROBE_STEP = 0.05  # of its range

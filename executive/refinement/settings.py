@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "weighing_checks")
 NOT_NEGATIVE = (

@@ -12,9 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Array
-from executive.refinement.ranges import Ranges
+from tailor.executive.budget import Budget
+from tailor.executive.library import Array
+from tailor.executive.refinement.ranges import Ranges
 
 
 class Objective(Protocol):

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.library import Array
-from executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.executive.library import Array
+from tailor.executive.refinement.sequence import InstantiatedAction, Variable
 
 Spoiling = Callable[[Array], Array]  # parameters of a detour, shape (n, p), to risks, shape (n,)
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.library import Action, Array, DurationModel, Models, SuccessModel
-from executive.refinement.arrivals import displacements
-from executive.refinement.sequence import InstantiatedAction, Variable
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.spoiling import Spoiling
-from schemas.errors import UsageError
+from tailor.executive.library import Action, Array, DurationModel, Models, SuccessModel
+from tailor.executive.refinement.arrivals import displacements
+from tailor.executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.spoiling import Spoiling
+from tailor.schemas.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)

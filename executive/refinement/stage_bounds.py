@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.library import Array, Columns, ModelBounds, Spans, unchanged
-from executive.refinement.boxes import Boxes
-from executive.refinement.chain import Link
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.stage import Stage
+from tailor.executive.library import Array, Columns, ModelBounds, Spans, unchanged
+from tailor.executive.refinement.boxes import Boxes
+from tailor.executive.refinement.chain import Link
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.stage import Stage
 
 FIXED, BEFORE, OWN = -1, 0, 1  # whose box a parameter comes from
 AXES = {BEFORE: (slice(None), slice(None), None), OWN: (slice(None), None, slice(None))}  # ways, before, own

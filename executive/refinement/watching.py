@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from executive.library import Belief, Conflict
-from executive.refinement.instantiation import ActionSequence, Failure, Pattern
+from tailor.executive.library import Belief, Conflict
+from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
 
 
 class Watch:

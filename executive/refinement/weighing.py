@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.budget import Budget
-from executive.library import Models
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.selection import solver_for
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import Budget
+from tailor.executive.library import Models
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
 
 
 class Weighing:

@@ -5,13 +5,13 @@ A field of an own message has the name and the order that it has in `msg/<Type>.
 ROS 2 message names it, and holds what a planar robot says of it.
 """
 
-from schemas.messages.driving import ArmRequest, DriverState, EStop, JointCommand, VelocityCommand
-from schemas.messages.executing import ActionFinished, ExecStatus
-from schemas.messages.planning import PlanAnswer, PlanReport, PlanRequest
-from schemas.messages.recording import Clock, Provenance, SimTruth, TickReport
-from schemas.messages.refining import InstantiatedAction, Parameter, RefinementReport, Subgoals
-from schemas.messages.sample import Message, Sample
-from schemas.messages.sensing import BallPercept, JointState, MotorCurrents, Odometry, PoseEstimate
+from tailor.schemas.messages.driving import ArmRequest, DriverState, EStop, JointCommand, VelocityCommand
+from tailor.schemas.messages.executing import ActionFinished, ExecStatus
+from tailor.schemas.messages.planning import PlanAnswer, PlanReport, PlanRequest
+from tailor.schemas.messages.recording import Clock, Provenance, SimTruth, TickReport
+from tailor.schemas.messages.refining import InstantiatedAction, Parameter, RefinementReport, Subgoals
+from tailor.schemas.messages.sample import Message, Sample
+from tailor.schemas.messages.sensing import BallPercept, JointState, MotorCurrents, Odometry, PoseEstimate
 
 __all__ = [
     "ActionFinished",

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from schemas.messages.driving import ArmRequest, DriverState, EStop, JointCommand, VelocityCommand
-from schemas.messages.executing import ActionFinished, ExecStatus
-from schemas.messages.planning import PlanAnswer, PlanReport, PlanRequest
-from schemas.messages.recording import Clock, Provenance, SimTruth, TickReport
-from schemas.messages.refining import RefinementReport, Subgoals
-from schemas.messages.sensing import BallPercept, JointState, MotorCurrents, Odometry, PoseEstimate
+from tailor.schemas.messages.driving import ArmRequest, DriverState, EStop, JointCommand, VelocityCommand
+from tailor.schemas.messages.executing import ActionFinished, ExecStatus
+from tailor.schemas.messages.planning import PlanAnswer, PlanReport, PlanRequest
+from tailor.schemas.messages.recording import Clock, Provenance, SimTruth, TickReport
+from tailor.schemas.messages.refining import RefinementReport, Subgoals
+from tailor.schemas.messages.sensing import BallPercept, JointState, MotorCurrents, Odometry, PoseEstimate
 
 Message = (
     VelocityCommand

@@ -9,12 +9,12 @@ from dataclasses import asdict
 import mujoco
 import numpy as np
 
-from schemas.messages import SimTruth
-from simnodes.agilo import firmware as fw
-from simnodes.agilo.physique import Physique
-from simnodes.agilo.scene import compile_scene
-from simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
-from simnodes.body import STEP_NS, Reading
+from tailor.schemas.messages import SimTruth
+from tailor.simnodes.agilo import firmware as fw
+from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.scene import compile_scene
+from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
+from tailor.simnodes.body import STEP_NS, Reading
 
 TRUTH_PERIOD_NS = 100_000_000
 ROBOT, LEFT, BALL = 0, 7, 9  # offsets into qpos
@@ -22,7 +22,7 @@ ROBOT_V, LEFT_V, BALL_V = 0, 6, 8  # offsets into qvel
 
 
 class AgiloBody:
-    """See simnodes.body.Body. Start values: x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy (SI, field frame)."""
+    """See `Body`. Start values: x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy (SI, field frame)."""
 
     robot = "agilo"
     names = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")

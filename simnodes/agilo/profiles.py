@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-from simnodes.agilo.body import AgiloBody
-from simnodes.agilo.physique import Physique
-from simnodes.agilo.sensing import Sensing
+from tailor.simnodes.agilo.body import AgiloBody
+from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.sensing import Sensing
 
 PROFILES = {
     "nominal": (Physique(), Sensing()),

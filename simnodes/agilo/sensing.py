@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from schemas.messages import BallPercept, Odometry, PoseEstimate
+from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate
 
 POSE_PERIOD_NS = 80_000_000
 POSE_PERIOD_S = POSE_PERIOD_NS * 1e-9

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from schemas.messages import JointState, MotorCurrents
-from simnodes.body import Reading
-from simnodes.powercube.motor import PERIOD_NS, Motor
-from simnodes.powercube.physique import MODULES, NAMES, WRITING, Physique
-from simnodes.powercube.scene import PEN, compile_scene
+from tailor.schemas.messages import JointState, MotorCurrents
+from tailor.simnodes.body import Reading
+from tailor.simnodes.powercube.motor import PERIOD_NS, Motor
+from tailor.simnodes.powercube.physique import MODULES, NAMES, WRITING, Physique
+from tailor.simnodes.powercube.scene import PEN, compile_scene
 
 STATE_PERIOD_NS = 20_000_000
 CURRENT_PERIOD_NS = 100_000_000
@@ -20,7 +20,7 @@ LEGAL = ("a", "wa", "b", "wb")
 
 
 class PowerCubeBody:
-    """See simnodes.body.Body. Start values: a, b (rad), wa, wb (rad/s): pan and lift, as in the paper's Table 6."""
+    """See `Body`. Start values: a, b (rad), wa, wb (rad/s): pan and lift, as in the paper's Table 6."""
 
     robot = "powercube"
     names = LEGAL

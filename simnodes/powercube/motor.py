@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from simnodes.powercube.physique import Physique
+from tailor.simnodes.powercube.physique import Physique
 
 PERIOD_NS = 1_000_000
 PERIOD_S = PERIOD_NS * 1e-9

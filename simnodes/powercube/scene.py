@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mujoco
 
-from simnodes.powercube.physique import MODULES, WRITING, Module, Physique
+from tailor.simnodes.powercube.physique import MODULES, WRITING, Module, Physique
 
 TIMESTEP_S = 0.001
 PEN = "pen"  # the site at the tip

@@ -10,14 +10,14 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.session import encoding_of
-from runtime.tape import Tape
-from schemas import messages as m
-from schemas.codec import encode
-from schemas.own import example
-from schemas.typesystem import MESSAGES, STANDARD, ros_type
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.session import encoding_of
+from tailor.runtime.tape import Tape
+from tailor.schemas import messages as m
+from tailor.schemas.codec import encode
+from tailor.schemas.own import example
+from tailor.schemas.typesystem import MESSAGES, STANDARD, ros_type
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
 NPM = ["@mcap/core@2", "@foxglove/rosmsg@5", "@foxglove/rosmsg2-serialization@3", "fzstd"]

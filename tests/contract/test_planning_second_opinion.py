@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive import domains
-from executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
+from tailor.executive import domains
+from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
 from tests.planning_problems import DATA, OWN, SHARED, read, solve
 from tests.unit.test_planning_language import IRON, TIMED, WORKSHOP
 

@@ -6,7 +6,7 @@ the giving back away and finds no plan.
 
 import pytest
 
-from executive.planning import FlawOrder, Settings, validate
+from tailor.executive.planning import FlawOrder, Settings, validate
 from tests.pddl_mutations import text_of, tree_of
 from tests.planning_problems import SHARED, load, read, solve
 

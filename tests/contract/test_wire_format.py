@@ -4,9 +4,9 @@ from typing import get_type_hints
 
 import pytest
 
-from schemas import messages as m
-from schemas.codec import decode, encode
-from schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
+from tailor.schemas import messages as m
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
 

@@ -4,11 +4,11 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-from runtime.processes import Child
-from runtime.session import open_client, open_router
-from schemas.errors import UsageError
+from tailor.runtime.processes import Child
+from tailor.runtime.session import open_client, open_router
+from tailor.schemas.errors import UsageError
+from tailor.tools.system import free_endpoint
 from tests.patience import wait_until
-from tools.system import free_endpoint
 
 ROOT = Path(__file__).resolve().parents[2]
 

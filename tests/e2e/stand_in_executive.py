@@ -2,12 +2,12 @@
 
 import sys
 
-from runtime.clock import MonotonicClock
-from runtime.loop import Loop
-from runtime.session import open_client
-from runtime.stopping import stop_on_signals
-from schemas import codec
-from schemas.messages import ArmRequest, VelocityCommand
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.loop import Loop
+from tailor.runtime.session import open_client
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.messages import ArmRequest, VelocityCommand
 
 
 def main(endpoint, speed):

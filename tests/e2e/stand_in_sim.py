@@ -6,14 +6,14 @@ Arguments: endpoint, file.
 import sys
 import time
 
-from runtime.clock import MonotonicClock
-from runtime.session import open_client
-from runtime.stopping import stop_on_signals
-from schemas import codec
-from simnodes.declaration import Declaration
-from simnodes.guard import Limit
-from simnodes.node import Node
-from simnodes.world import World
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.session import open_client
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.guard import Limit
+from tailor.simnodes.node import Node
+from tailor.simnodes.world import World
 from tests.fake_body import FakeBody
 
 LIMITS = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))

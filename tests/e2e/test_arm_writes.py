@@ -2,12 +2,12 @@
 
 import pytest
 
-from runtime.stopping import Stop
-from tools.deployment import Deployment, order_of
-from tools.letters import recorded
-from tools.live_status import screen
-from tools.system import Plan, free_endpoint, run_system
-from tools.writing.measures import waypoint_errors_rad
+from tailor.runtime.stopping import Stop
+from tailor.tools.deployment import Deployment, order_of
+from tailor.tools.letters import recorded
+from tailor.tools.live_status import screen
+from tailor.tools.system import Plan, free_endpoint, run_system
+from tailor.tools.writing.measures import waypoint_errors_rad
 
 
 @pytest.mark.slow

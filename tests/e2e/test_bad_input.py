@@ -8,8 +8,8 @@ import subprocess
 
 import pytest
 
-from models.runtime import ZOO
-from runtime.processes import tailor
+from tailor.models.runtime import ZOO
+from tailor.runtime.processes import tailor
 from tests.e2e.bus_system import ROOT, free_endpoint
 from tests.patience import PATIENCE_S
 

@@ -6,11 +6,11 @@ from contextlib import ExitStack
 
 import pytest
 
-from runtime.session import open_client, open_router
-from schemas import codec
-from schemas.errors import UsageError
-from schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
-from schemas.own import example
+from tailor.runtime.session import open_client, open_router
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
+from tailor.schemas.own import example
 from tests.e2e.bus_system import free_endpoint
 from tests.patience import in_one_try_of, wait_until
 

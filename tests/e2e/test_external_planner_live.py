@@ -7,9 +7,9 @@ import sys
 
 import pytest
 
-from runtime.processes import tailor
-from runtime.recording import open_recording
-from schemas.messages import PlanAnswer, PlanReport, PlanRequest, TickReport, VelocityCommand
+from tailor.runtime.processes import tailor
+from tailor.runtime.recording import open_recording
+from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, TickReport, VelocityCommand
 from tests.e2e.bus_system import ROOT, bus_system, free_endpoint
 from tests.patience import PATIENCE_S, gone, in_one_try_of, wait_until
 
@@ -42,15 +42,15 @@ def run_with(tmp_path, planner, before_percepts=lambda: None, limit_s=PATIENCE_S
     config.write_text(f"[planner]\ncommand = {json.dumps(str(planner))}\nlimit_s = {limit_s}\n")
     with bus_system() as (session, endpoint, start):
         at = ("--scenario", "waypoints", "--seed", "1", "--connect", endpoint)
-        recorder = start("tools.main", "record", "--output", path, "--connect", endpoint)
+        recorder = start("tailor.tools.main", "record", "--output", path, "--connect", endpoint)
         wait_until(session.publisher("plan", "agilo").matched, "recorder")
         status = session.inbox(("status",), "agilo")
         executive = start(
-            "tools.main", "executive", "soccer", *at, "--config", config, "--once", "--goal", "(visited way1)"
+            "tailor.tools.main", "executive", "soccer", *at, "--config", config, "--once", "--goal", "(visited way1)"
         )
         wait_until(status.drain, "executive")
         before_percepts()
-        start("tools.main", "sim", "agilo", *at)
+        start("tailor.tools.main", "sim", "agilo", *at)
         assert executive.wait(2 * PATIENCE_S) == 0
         recorder.stop(PATIENCE_S)
     verify = command("verify", path, "--json")

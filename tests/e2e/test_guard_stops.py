@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from schemas.messages import DriverState
+from tailor.schemas.messages import DriverState
 from tests.e2e.bus_system import driving, guarded_robot, moving, outputs
 from tests.patience import in_one_try_of, wait_until
 

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from runtime.processes import tailor
+from tailor.runtime.processes import tailor
 from tests.e2e.bus_system import ROOT
 from tests.patience import PATIENCE_S
 

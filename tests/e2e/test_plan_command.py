@@ -7,10 +7,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from executive.planning import parse_plan, validate
+from tailor.executive.planning import parse_plan, validate
+from tailor.tools.main import main
 from tests.planning_problems import DATA, own, printed
 from tests.unit.test_planning_language import LAMPS, SWITCHES
-from tools.main import main
 
 OWN = DATA / "own"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -101,7 +101,7 @@ def test_searches_go_by_their_names_with_and_without_a_star(capsys, name):
 def test_a_pipe_is_read_once_even_when_another_program_plans(tmp_path):
     echo = tmp_path / "echo.py"
     echo.write_text("import sys; [open(f).read()[0] for f in sys.argv[1:]]; print('0:(approachball pos1 pos2)')")
-    command = [sys.executable, "-m", "tools.main", "plan", str(OWN / "soccer-domain.pddl"), "-"]
+    command = [sys.executable, "-P", "-m", "tailor.tools.main", "plan", str(OWN / "soccer-domain.pddl"), "-"]
     text = (OWN / "soccer-p1.pddl").read_text()
     for options in ([], ["--planner", f"{sys.executable} {echo}"]):
         done = subprocess.run([*command, *options], input=text, capture_output=True, text=True, cwd=DATA.parents[2])
@@ -224,7 +224,9 @@ def test_an_external_planners_unsound_plan_is_refused(capsys, tmp_path):
 
 def test_help_teaches():
     told = subprocess.run(
-        [sys.executable, "-c", "from tools.main import main; main()", "plan", "--help"], capture_output=True, text=True
+        [sys.executable, "-c", "from tailor.tools.main import main; main()", "plan", "--help"],
+        capture_output=True,
+        text=True,
     ).stdout
     for word in ("DOMAIN", "--links", "MW-Loc", "ADDR", "Exit codes", "Figure 10"):
         assert word in told

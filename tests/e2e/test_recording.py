@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.mcap_scan import Account
-from runtime.processes import Child
-from runtime.recording import open_recording
-from schemas.errors import Rejected
-from schemas.messages import Odometry, Provenance
+from tailor.runtime.mcap_scan import Account
+from tailor.runtime.processes import Child
+from tailor.runtime.recording import open_recording
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Odometry, Provenance
 from tests.e2e.bus_system import bus_system
 from tests.patience import PATIENCE_S, in_one_try_of, wait_until
 
@@ -27,7 +27,7 @@ def robot(tmp_path):
         wait_until(states.drain, "driver state")
 
         def record(path, *options):
-            return start("tools.main", "record", "-o", path, "--connect", endpoint, *options)
+            return start("tailor.tools.main", "record", "-o", path, "--connect", endpoint, *options)
 
         yield session, record
 
@@ -107,7 +107,7 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
     path = tmp_path / "old.mcap"
     path.write_bytes(b"precious")
     with bus_system() as (_, endpoint, _start):
-        command = [sys.executable, "-m", "tools.main", "record", "-o", str(path), "--connect", endpoint]
+        command = [sys.executable, "-P", "-m", "tailor.tools.main", "record", "-o", str(path), "--connect", endpoint]
         with (tmp_path / "said").open("w") as said:
             assert Child("recorder", command, said).wait(PATIENCE_S) == 2
     assert "exists already" in (tmp_path / "said").read_text()
@@ -127,7 +127,7 @@ def test_record_replay_record_is_byte_identical(tmp_path):
     with bus_system() as (session, endpoint, start):
 
         def record(name):
-            recorder = start("tools.main", "record", "-o", tmp_path / name, "--connect", endpoint)
+            recorder = start("tailor.tools.main", "record", "-o", tmp_path / name, "--connect", endpoint)
             marker = session.player("marker", "")
             wait_until(marker.matched, "recorder")
             return recorder
@@ -139,7 +139,7 @@ def test_record_replay_record_is_byte_identical(tmp_path):
         recorder.stop(PATIENCE_S)
         sim.stop()
         recorder = record("b.mcap")
-        player = start("tools.main", "replay", tmp_path / "a.mcap", "--rate", 2, "--connect", endpoint)
+        player = start("tailor.tools.main", "replay", tmp_path / "a.mcap", "--rate", 2, "--connect", endpoint)
         assert player.wait(PATIENCE_S) == 0
         recorder.stop(PATIENCE_S)
         first, second = (list(open_recording(tmp_path / name).messages()) for name in ("a.mcap", "b.mcap"))

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import pytest
 
-from runtime.session import open_client, open_router
-from schemas.codec import decode
-from schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
-from schemas.own import example
+from tailor.runtime.session import open_client, open_router
+from tailor.schemas.codec import decode
+from tailor.schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
+from tailor.schemas.own import example
 from tests.e2e.bus_system import ROOT, bus_system, free_endpoint
 from tests.patience import PATIENCE_S, in_one_try_of, wait_until
 from tests.unit.test_comparison import Script
@@ -42,7 +42,19 @@ def recording(tmp_path):
 
 
 def command(path, endpoint, *options):
-    return [sys.executable, "-m", "tools.main", "replay", path, "--connect", endpoint, "--wait", "1.0", *options]
+    return [
+        sys.executable,
+        "-P",
+        "-m",
+        "tailor.tools.main",
+        "replay",
+        path,
+        "--connect",
+        endpoint,
+        "--wait",
+        "1.0",
+        *options,
+    ]
 
 
 def run(*words):

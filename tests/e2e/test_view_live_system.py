@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from runtime.processes import Child, tailor
-from schemas.messages import TickReport
+from tailor.runtime.processes import Child, tailor
+from tailor.schemas.messages import TickReport
+from tailor.tools.viewer.recorded import timed
 from tests.browser import PROGRAM, Browser
 from tests.e2e.bus_system import ROOT, answers, free_endpoint
 from tests.patience import PATIENCE_S, wait_until
-from tools.viewer.recorded import timed
 
 pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),
@@ -75,7 +75,7 @@ def test_from_when_it_listens_the_live_page_shows_every_tick(watched) -> None:
 
 def test_why_explains_the_run_that_was_watched(watched, tmp_path) -> None:
     picture = tmp_path / "why.png"
-    words = [sys.executable, "-m", "tools.main", "why", str(watched[0]), "--json", "-o", str(picture)]
+    words = [sys.executable, "-P", "-m", "tailor.tools.main", "why", str(watched[0]), "--json", "-o", str(picture)]
     done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE_S, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     first = json.loads(done.stdout.splitlines()[0])[0]

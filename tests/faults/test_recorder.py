@@ -7,10 +7,10 @@ import time
 
 import pytest
 
-from runtime.processes import Child
-from runtime.recording import open_recording
-from schemas import codec
-from schemas.messages import Odometry
+from tailor.runtime.processes import Child
+from tailor.runtime.recording import open_recording
+from tailor.schemas import codec
+from tailor.schemas.messages import Odometry
 from tests.e2e.bus_system import bus_system
 from tests.patience import PATIENCE_S, wait_until
 
@@ -18,7 +18,7 @@ MOST_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full
 LIMITED = f"""
 import resource, sys
 resource.setrlimit(resource.RLIMIT_FSIZE, ({MOST_BYTES}, {MOST_BYTES}))
-from tools.main import main
+from tailor.tools.main import main
 sys.exit(main(sys.argv[1:]))
 """
 
@@ -61,7 +61,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
 def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     path = tmp_path / "flood.mcap"
     with bus_system() as (session, endpoint, start):
-        recorder = start("tools.main", "record", "--quiet", "-o", path, "--connect", endpoint)
+        recorder = start("tailor.tools.main", "record", "--quiet", "-o", path, "--connect", endpoint)
         publisher = session.publisher("odom", "agilo")
         wait_until(publisher.matched, "recorder")
         before_mb = memory_mb(recorder.pid)
@@ -74,7 +74,7 @@ def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     assert after_mb - before_mb < 80  # 32 MB of queue, and what it takes to write them
     assert sequences == sorted(set(sequences))
     assert len(sequences) > 2000
-    command = [sys.executable, "-m", "tools.main", "info", str(path), "--json"]
+    command = [sys.executable, "-P", "-m", "tailor.tools.main", "info", str(path), "--json"]
     said = json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
     lost = publisher.sequence - len(sequences)
     print(f"\nflood: {publisher.sequence} sent, {lost} lost, memory +{after_mb - before_mb:.0f} MB")

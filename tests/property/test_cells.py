@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.cell_boxes import boxes_of_cells
-from models.cells import CELLS_MAX, cells_of
-from models.features import projective
-from models.model_tree import BaggedModelTrees
-from models.onnx_export import export_duration
-from models.onnx_wire import read_graph
-from models.split_tree import LEAF, SplitTree
+from tailor.models.cell_boxes import boxes_of_cells
+from tailor.models.cells import CELLS_MAX, cells_of
+from tailor.models.features import projective
+from tailor.models.model_tree import BaggedModelTrees
+from tailor.models.onnx_export import export_duration
+from tailor.models.onnx_wire import read_graph
+from tailor.models.split_tree import LEAF, SplitTree
 from tests import standin
 
 FEATURES = 3

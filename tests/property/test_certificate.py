@@ -10,15 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.budget import CheckBudget
-from executive.library import Models
-from executive.refinement.certificate import Certificate, certificate
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.selection import solver_for
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.stage_bounds import NoBound
-from executive.refinement.stalling import PATIENCE, Stalling
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Models
+from tailor.executive.refinement.certificate import Certificate, certificate
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.stage_bounds import NoBound
+from tailor.executive.refinement.stalling import PATIENCE, Stalling
 from tests.random_trees import Trees
 from tests.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
 
@@ -147,7 +147,7 @@ def test_proof_stalls_only_where_its_bound_does_not_rise():
 
 
 def test_proof_that_would_spend_its_checks_on_its_first_boxes_is_not_begun(monkeypatch):
-    monkeypatch.setattr("executive.refinement.certificate.EFFORT", 1000)
+    monkeypatch.setattr("tailor.executive.refinement.certificate.EFFORT", 1000)
     cost, chosen = objective("detour", 0, 1.0, True)
     made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
     made.advance(CheckBudget(100))

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from schemas import messages as m
-from schemas.codec import decode, encode
-from schemas.errors import Rejected
-from schemas.numbers import MOST
-from schemas.own import example
-from schemas.ros_time import MAX_STAMP_NS
-from schemas.topics import TOPICS
-from schemas.typesystem import MESSAGES, STANDARD
+from tailor.schemas import messages as m
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.numbers import MOST
+from tailor.schemas.own import example
+from tailor.schemas.ros_time import MAX_STAMP_NS
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import MESSAGES, STANDARD
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
 FLOATS = st.floats(-MOST, MOST)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.belief import ball_track
-from executive.belief.angles import difference, wrap
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import OdometryNoise, Pose, correct, predict
+from tailor.executive.belief import ball_track
+from tailor.executive.belief.angles import difference, wrap
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import OdometryNoise, Pose, correct, predict
 
 NOISE = OdometryNoise(4e-4, 1e-4, 1e-3, 2e-5)
 moderate = st.floats(-20, 20)

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.bag_bounds import least_of_bag
-from models.card import card_path
-from models.feature_spans import FEATURE_SPANS
-from models.features import SPACES
-from models.leaf_bounds import LeafBounds, Side
-from models.runtime import ZOO
-from models.spans import Span
-from models.tree_boxes import tree_boxes
+from tailor.models.bag_bounds import least_of_bag
+from tailor.models.card import card_path
+from tailor.models.feature_spans import FEATURE_SPANS
+from tailor.models.features import SPACES
+from tailor.models.leaf_bounds import LeafBounds, Side
+from tailor.models.runtime import ZOO
+from tailor.models.spans import Span
+from tailor.models.tree_boxes import tree_boxes
 from tests.random_trees import Trees
 
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}

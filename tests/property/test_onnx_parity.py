@@ -4,15 +4,15 @@ import numpy as np
 import onnxruntime
 import pytest
 
-from models import cells
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureTree
-from models.features import SPACES, joints, projective
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.onnx_export import export_duration, export_success
-from models.split_tree import LEAF
-from models.taught_forest import TaughtForest
-from models.tree_boxes import tree_boxes
+from tailor.models import cells
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureTree
+from tailor.models.features import SPACES, joints, projective
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.onnx_export import export_duration, export_success
+from tailor.models.split_tree import LEAF
+from tailor.models.taught_forest import TaughtForest
+from tailor.models.tree_boxes import tree_boxes
 from tests import standin
 
 PI = np.pi

@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from executive.budget import CheckBudget
-from executive.planning import (
+from tailor.executive.budget import CheckBudget
+from tailor.executive.planning import (
     PddlError,
     PlanTextError,
     Search,

@@ -3,7 +3,7 @@
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.planning import Settings, validate
+from tailor.executive.planning import Settings, validate
 from tests.planning_problems import read, solve
 
 NAMES = ["?x", "?y", "a", "b"]

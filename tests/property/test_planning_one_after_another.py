@@ -5,8 +5,8 @@ from itertools import product
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from executive.planning import Settings, validate
-from executive.planning.state import Objects, fact_of, holds
+from tailor.executive.planning import Settings, validate
+from tailor.executive.planning.state import Objects, fact_of, holds
 from tests.planning_problems import read, solve
 from tests.property.test_planning_lifted import DURATIVE, tasks
 

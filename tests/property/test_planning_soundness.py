@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.planning import FlawOrder, Settings, validate
-from executive.planning.progress import progress
-from executive.planning.state import Objects, holds
+from tailor.executive.planning import FlawOrder, Settings, validate
+from tailor.executive.planning.progress import progress
+from tailor.executive.planning.state import Objects, holds
 from tests.planning_problems import read, solve
 
 FACTS = ["(p a)", "(p b)", "(q a)", "(q b)", "(r)"]

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.budget import CheckBudget
-from executive.refinement.assertion import Assertion
-from executive.refinement.ranges import Ranges
-from executive.refinement.refinement import Refinement
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.assertion import Assertion
+from tailor.executive.refinement.ranges import Ranges
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import MODELS, approach_dribble, sequence, waypoints
 
 SOLVERS = ("chain", "genetic", "differential")

@@ -5,11 +5,11 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive import domains
-from executive.domains.soccer import belief as soccer
-from schemas import messages as m
-from schemas.messages import Sample
-from schemas.numbers import MOST
+from tailor.executive import domains
+from tailor.executive.domains.soccer import belief as soccer
+from tailor.schemas import messages as m
+from tailor.schemas.messages import Sample
+from tailor.schemas.numbers import MOST
 
 SOCCER = domains.load("soccer")
 ANY = st.floats(-MOST, MOST) | st.sampled_from([0.0, MOST, -MOST, 5e-324])

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.library import Models
-from executive.refinement.boxes import NOWHERE, Boxes, box_of
-from executive.refinement.chain import blocks_of, links_of
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.stage_bounds import StageBound, stage_bound
-from models.runtime import load_robot
-from tools.benchmarks.refine_cases import Case, cases
+from tailor.executive.library import Models
+from tailor.executive.refinement.boxes import NOWHERE, Boxes, box_of
+from tailor.executive.refinement.chain import blocks_of, links_of
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.stage_bounds import StageBound, stage_bound
+from tailor.models.runtime import load_robot
+from tailor.tools.benchmarks.refine_cases import Case, cases
 
 TASKS = 2
 

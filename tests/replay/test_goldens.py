@@ -13,20 +13,20 @@ from dataclasses import replace
 import pytest
 from rosbags.highlevel import AnyReader
 
-from executive.composition import recompose
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.machine import machine
-from runtime.recording import open_recording
-from runtime.tape import ENCODING, Tape
-from schemas.codec import encode
-from schemas.errors import UsageError
-from schemas.messages import Provenance, RefinementReport, VelocityCommand
+from tailor.executive.composition import recompose
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.machine import machine
+from tailor.runtime.recording import open_recording
+from tailor.runtime.tape import ENCODING, Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Provenance, RefinementReport, VelocityCommand
+from tailor.tools import goldens
+from tailor.tools.main import main
+from tailor.tools.recorded_run import RecordedRuns, decoded
+from tailor.tools.verify import told, verify
 from tests.e2e.bus_system import ROOT
-from tools import goldens
-from tools.main import main
-from tools.recorded_run import RecordedRuns, decoded
-from tools.verify import told, verify
 
 GOLDENS = {golden.name: goldens.FOLDER / f"{golden.name}.mcap" for golden in goldens.goldens()}
 SOME = GOLDENS["soccer-waypoints"]
@@ -146,11 +146,11 @@ def test_without_proofs_all_else_is_compared(tmp_path, capsys):
 @pytest.mark.skipif(sys.platform != "linux", reason="needs glibc's switch for CPU features")
 def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
     switched = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-    asked = [sys.executable, "-c", "from runtime.machine import arithmetic; print(arithmetic())"]
+    asked = [sys.executable, "-c", "from tailor.runtime.machine import arithmetic; print(arithmetic())"]
     there = subprocess.run(asked, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
     if there == machine()["arithmetic"]:
         pytest.skip("this libm computes alike with and without")
-    command = [sys.executable, "-m", "tools.main", "verify", str(SOME)]
+    command = [sys.executable, "-P", "-m", "tailor.tools.main", "verify", str(SOME)]
     done = subprocess.run(command, env=switched, capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
 

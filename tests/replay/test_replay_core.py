@@ -8,9 +8,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.core.state import initial_state
-from executive.core.step import step
-from executive.replay import RecordedTick, replay
+from tailor.executive.core.state import initial_state
+from tailor.executive.core.step import step
+from tailor.executive.replay import RecordedTick, replay
 from tests.toy_domain import inputs, line_context
 
 TICK = 100_000_000

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.library import Models
-from executive.refinement.settings import RefinementSettings
-from models.runtime import load_robot
-from tools.writing.lockstep import Hand, ListenedBody, write
-from tools.writing.measures import waypoint_errors_rad
+from tailor.executive.library import Models
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.runtime import load_robot
+from tailor.tools.writing.lockstep import Hand, ListenedBody, write
+from tailor.tools.writing.measures import waypoint_errors_rad
 
 MODELS = Models(*load_robot("powercube"))
 BODY = ListenedBody()

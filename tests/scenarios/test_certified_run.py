@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import pytest
 
-from executive import domains
-from executive.composition import Order, compose
-from executive.core.context import Settings
-from executive.refinement.settings import RefinementSettings
-from executive.replay import replay
-from schemas.messages import RefinementReport, Subgoals
-from tools.episodes import SENDER, run_episode
-from tools.sim import make_world
+from tailor.executive import domains
+from tailor.executive.composition import Order, compose
+from tailor.executive.core.context import Settings
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.replay import replay
+from tailor.schemas.messages import RefinementReport, Subgoals
+from tailor.tools.episodes import SENDER, run_episode
+from tailor.tools.sim import make_world
 
 
 def told(outputs, kind):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tools.main import main
+from tailor.tools.main import main
 
 
 def test_a_letter_is_written_tabulated_and_drawn(tmp_path, capsys):

@@ -7,13 +7,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from executive import domains
-from executive.composition import Order, compose
-from executive.core.context import Settings
-from schemas.messages import PlanReport
-from simnodes.agilo.body import AgiloBody
-from tools.episodes import SENDER, run_episode
-from tools.sim import make_world
+from tailor.executive import domains
+from tailor.executive.composition import Order, compose
+from tailor.executive.core.context import Settings
+from tailor.schemas.messages import PlanReport
+from tailor.simnodes.agilo.body import AgiloBody
+from tailor.tools.episodes import SENDER, run_episode
+from tailor.tools.sim import make_world
 
 BODY = AgiloBody()
 

@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from executive.domains.soccer import robot
-from schemas.messages import BallPercept, Odometry, PoseEstimate
-from schemas.topics import TOPICS
-from simnodes.agilo import body as agilo_body
-from simnodes.agilo import firmware, scene
-from simnodes.agilo.body import AgiloBody
-from simnodes.agilo.physique import Physique, ball_in_rail_m
-from simnodes.agilo.sensing import Sensing
-from simnodes.body import STEP_NS
+from tailor.executive.domains.soccer import robot
+from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate
+from tailor.schemas.topics import TOPICS
+from tailor.simnodes.agilo import body as agilo_body
+from tailor.simnodes.agilo import firmware, scene
+from tailor.simnodes.agilo.body import AgiloBody
+from tailor.simnodes.agilo.physique import Physique, ball_in_rail_m
+from tailor.simnodes.agilo.sensing import Sensing
+from tailor.simnodes.body import STEP_NS
 
 ROOT = Path(__file__).resolve().parents[2]
 TICK_NS = 100_000_000
 DRIVE = """
 import numpy as np
-from simnodes.agilo.body import AgiloBody
+from tailor.simnodes.agilo.body import AgiloBody
 body = AgiloBody()
 body.reset(np.random.default_rng(3), {"x": 1.0, "phi": 0.4, "v": 0.2, "ball_x": 1.5, "ball_y": 0.2})
 heard = []

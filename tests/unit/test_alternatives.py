@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.refinement.alternatives import alternatives
-from executive.refinement.refinement import Refinement
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.alternatives import alternatives
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import MODELS, approach_dribble
 
 SETTINGS = RefinementSettings(k_std=0.0, arrival_spread=(), risk_cost_s=0.0)

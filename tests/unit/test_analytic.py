@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.library import Array, Models
-from executive.refinement.analytic import AnalyticSolver
-from executive.refinement.breakpoints import NotAnalytic, TreeEdges, breakpoints
-from executive.refinement.chain import ChainSolver
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.solver import Limits
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Array, Models
+from tailor.executive.refinement.analytic import AnalyticSolver
+from tailor.executive.refinement.breakpoints import NotAnalytic, TreeEdges, breakpoints
+from tailor.executive.refinement.chain import ChainSolver
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.solver import Limits
 from tests.synthetic_models import GO, norm, sequence
 
 FEATURES = ("v", "v_g", "dist", "angle_to", "angle_at")

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive import domains
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
-from executive.domains.soccer import robot
-from executive.domains.soccer.belief import unknown
-from executive.refinement.detour import with_detour
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.settings import RefinementSettings
+from tailor.executive import domains
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.belief import unknown
+from tailor.executive.refinement.detour import with_detour
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
 
 SOCCER = domains.load("soccer")

@@ -5,17 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive import domains, planning
-from executive.budget import CheckBudget
-from executive.domains.arm import belief as believing
-from executive.domains.arm import letters
-from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.library import LIFT_RAD, PAN_RAD, PASSING_RADPS, fastest_radps
-from executive.refinement.instantiation import instantiate
-from schemas.errors import UsageError
-from schemas.messages import JointState, Sample
-from simnodes.declaration import declaration
-from simnodes.powercube.physique import Physique
+from tailor.executive import domains, planning
+from tailor.executive.budget import CheckBudget
+from tailor.executive.domains.arm import belief as believing
+from tailor.executive.domains.arm import letters
+from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.library import LIFT_RAD, PAN_RAD, PASSING_RADPS, fastest_radps
+from tailor.executive.refinement.instantiation import instantiate
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import JointState, Sample
+from tailor.simnodes.declaration import declaration
+from tailor.simnodes.powercube.physique import Physique
 
 ARM = domains.load("arm")
 ALPHABET = [chr(code) for code in range(ord("A"), ord("Z") + 1)]

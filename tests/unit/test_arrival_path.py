@@ -8,9 +8,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from executive import domains
-from executive.actions.arrival_path import ArrivalPath, stops
-from executive.domains.soccer.bumping import BumpRisk
+from tailor.executive import domains
+from tailor.executive.actions.arrival_path import ArrivalPath, stops
+from tailor.executive.domains.soccer.bumping import BumpRisk
 
 WAYS = ArrivalPath(v_max_mps=0.9)
 STOPPING = replace(WAYS, stop_s=1.0)

@@ -16,7 +16,7 @@ PROJECT_FILES = sorted(p.relative_to(ROOT).as_posix() for f in OURS for p in (RO
 
 
 def imports(path: str) -> set[str]:
-    """Dotted names that a file imports, wherever in it."""
+    """Dotted names that a file imports, wherever in it; ours without the `tailor.` in front."""
     found: set[str] = set()
     for node in ast.walk(ast.parse((ROOT / path).read_text())):
         if isinstance(node, ast.Import):
@@ -24,7 +24,9 @@ def imports(path: str) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             found |= {f"{node.module}.{alias.name}" for alias in node.names} | {str(node.module)}
-    return found
+    bare = {name for name in found if name.split(".")[0] in OURS}
+    assert not bare, f"{path}: imports {bare}, expected tailor.…: a bare import loads a second copy of the module"
+    return {name.removeprefix("tailor.") for name in found}
 
 
 def tops(names: set[str]) -> set[str]:
@@ -68,6 +70,7 @@ LEARNING = ["sklearn", "skl2onnx", "onnx", "joblib", "pyarrow", "mujoco", "matpl
 
 
 def test_the_executive_process_loads_no_learning_library() -> None:
-    code = f"import sys, executive.shell, executive.composition; print(sorted(set({LEARNING}) & set(sys.modules)))"
+    loading = "import sys, tailor.executive.shell, tailor.executive.composition"
+    code = f"{loading}; print(sorted(set({LEARNING}) & set(sys.modules)))"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert out.stdout.strip() == "[]"

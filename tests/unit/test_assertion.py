@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.library import Action, Models
-from executive.refinement.assertion import Assertion
-from executive.refinement.refinement import Refinement
-from executive.refinement.sequence import ActionSequence, Failure
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Action, Models
+from tailor.executive.refinement.assertion import Assertion
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.sequence import ActionSequence, Failure
+from tailor.executive.refinement.settings import RefinementSettings
 from tests.synthetic_models import APPROACH, DRIBBLE, GO, LIBRARY, MODELS, ConeSuccess, NeverSucceeds, sequence
 
 HARD = RefinementSettings(weigh_detours=False, risk_cost_s=6.0)  # the paper's: a threshold decides

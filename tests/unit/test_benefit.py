@@ -5,17 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.refinement.benefit import SITUATION, situation
-from executive.refinement.refinement import Refinement
-from executive.refinement.settings import RefinementSettings
-from schemas.messages import RefinementReport
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.benefit import SITUATION, situation
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.messages import RefinementReport
+from tailor.tools.evaluations import benefit as judging
+from tailor.tools.evaluations import benefit_ceiling
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.train_benefit import pairs_of
+from tailor.tools.viewer.wording import advice
 from tests.synthetic_models import MODELS, approach_dribble
-from tools.evaluations import benefit as judging
-from tools.evaluations import benefit_ceiling
-from tools.evaluations.outcome import Outcome
-from tools.train_benefit import pairs_of
-from tools.viewer.wording import advice
 
 KIND = ("approachBall", "dribbleBall")
 

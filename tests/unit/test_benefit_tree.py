@@ -10,23 +10,23 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from executive.composition import Order, compose, load_models, provenance, recompose
-from executive.core.context import Settings
-from executive.refinement.benefit import SITUATION
-from executive.refinement.settings import RefinementSettings
-from models import runtime
-from models.benefit import Pairs, TrainedBenefit, train_benefit
-from models.benefit_publishing import AboutBenefit, publish_benefit, withdraw_benefit
-from models.benefit_trees import LEARNERS
-from models.card import card_path, read_card, write_card
-from schemas.errors import UsageError
-from schemas.messages import RefinementReport
-from tools import goldens, train
-from tools.evaluations.outcome import Outcome
-from tools.main import main
-from tools.recorded_run import RecordedRuns
-from tools.verify import verify
-from tools.viewer.recorded import timed
+from tailor.executive.composition import Order, compose, load_models, provenance, recompose
+from tailor.executive.core.context import Settings
+from tailor.executive.refinement.benefit import SITUATION
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models import runtime
+from tailor.models.benefit import Pairs, TrainedBenefit, train_benefit
+from tailor.models.benefit_publishing import AboutBenefit, publish_benefit, withdraw_benefit
+from tailor.models.benefit_trees import LEARNERS
+from tailor.models.card import card_path, read_card, write_card
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import RefinementReport
+from tailor.tools import goldens, train
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.main import main
+from tailor.tools.recorded_run import RecordedRuns
+from tailor.tools.verify import verify
+from tailor.tools.viewer.recorded import timed
 
 KIND = ("approachBall", "dribbleBall")
 TURNED = SITUATION.index("turned_rad")
@@ -122,7 +122,7 @@ def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes
         rows = list(zip(seeds, known.greedy_s, known.refined_s, known.situations, strict=True))
         return {v.name: {row[0]: made_up(row[0], v.name, *row[1:]) for row in rows} for v in variants}
 
-    monkeypatch.setattr("tools.evaluations.trials.run_all", run_all)
+    monkeypatch.setattr("tailor.tools.evaluations.trials.run_all", run_all)
     shutil.copytree(runtime.ZOO / "agilo", tmp_path / "agilo")
     words = ["agilo", "--episodes", "300", "--zoo", str(tmp_path), "--learner", "tree"]
     assert main(["train-benefit", *words]) == 0

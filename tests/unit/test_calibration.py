@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models import scores
-from models.calibration import LEAST_POLICY, calibrated
+from tailor.models import scores
+from tailor.models.calibration import LEAST_POLICY, calibrated
 
 
 def errors(count: int, deviation: float, seed: int) -> np.ndarray:

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.session import encoding_of
-from runtime.tape import Tape
-from schemas.codec import encode
-from schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand
-from schemas.own import example
-from tools.main import main
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.session import encoding_of
+from tailor.runtime.tape import Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand
+from tailor.schemas.own import example
+from tailor.tools.main import main
 
 EXECUTIVE, DRIVER = "ab" * 16, "cd" * 16
 MS = 1_000_000

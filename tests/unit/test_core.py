@@ -7,16 +7,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from executive import planning
-from executive.budget import CheckBudget
-from executive.core.command_guard import checked
-from executive.core.context import LONGEST_GOAL, Settings, check_goal
-from executive.core.modes import Conditions, Mode, next_mode
-from executive.core.state import Inputs, initial_state
-from executive.core.step import step
-from executive.library import Axis, Models
-from schemas import codec
-from schemas.messages import (
+from tailor.executive import planning
+from tailor.executive.budget import CheckBudget
+from tailor.executive.core.command_guard import checked
+from tailor.executive.core.context import LONGEST_GOAL, Settings, check_goal
+from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.state import Inputs, initial_state
+from tailor.executive.core.step import step
+from tailor.executive.library import Axis, Models
+from tailor.schemas import codec
+from tailor.schemas.messages import (
     ActionFinished,
     ArmRequest,
     ExecStatus,
@@ -25,7 +25,7 @@ from schemas.messages import (
     Subgoals,
     VelocityCommand,
 )
-from schemas.topics import TOPICS
+from tailor.schemas.topics import TOPICS
 from tests.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
 
 TICK = 100_000_000

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from executive import domains
-from models.episodes import UNOBSERVED
-from schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, SimTruth, Subgoals
-from tools.cutting import Cutter
+from tailor.executive import domains
+from tailor.models.episodes import UNOBSERVED
+from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, SimTruth, Subgoals
+from tailor.tools.cutting import Cutter
 
 DOMAIN = domains.load("soccer")
 START = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}

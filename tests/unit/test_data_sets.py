@@ -10,9 +10,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from models.episodes import Episode, merge, read_data_set, write_part
-from models.manifest import write_manifest
-from schemas.errors import UsageError
+from tailor.models.episodes import Episode, merge, read_data_set, write_part
+from tailor.models.manifest import write_manifest
+from tailor.schemas.errors import UsageError
 from tests import standin
 
 NAMES = ["x", "y", "phi", "v", "xg", "yg", "phig", "vg"]

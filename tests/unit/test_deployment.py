@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-from executive.core.context import PlannerCommand
-from schemas.errors import UsageError
-from tools.deployment import configure_system, deployment, order_of
+from tailor.executive.core.context import PlannerCommand
+from tailor.schemas.errors import UsageError
+from tailor.tools.deployment import configure_system, deployment, order_of
 
 
 def order(tmp_path, text, *flags):

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from executive import domains
-from executive.actions.dribble_path import DribblePath
-from executive.actions.rail_grip import RailGrip
-from executive.domains.soccer import robot
-from simnodes.agilo.body import AgiloBody
-from tools.lockstep import new_body, run_action, sample_arguments
+from tailor.executive import domains
+from tailor.executive.actions.dribble_path import DribblePath
+from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.domains.soccer import robot
+from tailor.simnodes.agilo.body import AgiloBody
+from tailor.tools.lockstep import new_body, run_action, sample_arguments
 
 GRIP = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 PATHS = DribblePath(0.75, 0.6, robot.IN_RAIL_M, braking_mps2=0.35)

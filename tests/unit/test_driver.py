@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
-from simnodes.declaration import Declaration, declaration
-from simnodes.driver import Driver, command_values
-from simnodes.guard import Limit, Mode
-from simnodes.services import Services
-from simnodes.world import Event, World
+from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
+from tailor.simnodes.declaration import Declaration, declaration
+from tailor.simnodes.driver import Driver, command_values
+from tailor.simnodes.guard import Limit, Mode
+from tailor.simnodes.services import Services
+from tailor.simnodes.world import Event, World
 from tests.fake_body import FakeBody
 
 A, B = "a" * 32, "b" * 32

@@ -7,11 +7,11 @@ from importlib import resources
 
 import pytest
 
-from executive import domains
-from schemas.errors import UsageError
-from simnodes.declaration import declaration
-from simnodes.guard import Limit
-from tools.driver_check import check_driver, driver_of
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.declaration import declaration
+from tailor.simnodes.guard import Limit
+from tailor.tools.driver_check import check_driver, driver_of
 
 
 @pytest.mark.parametrize("name", domains.DOMAINS)
@@ -48,7 +48,7 @@ def test_a_file_that_is_no_declaration_is_refused(tmp_path):
     ],
 )
 def test_a_declaration_that_would_leave_the_guard_without_teeth_is_refused(tmp_path, line, wrong, expected):
-    text = resources.files("simnodes").joinpath("agilo", "driver.toml").read_text()
+    text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
     assert line in text
     (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
     with pytest.raises(UsageError, match=expected):

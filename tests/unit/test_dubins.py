@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.actions.dubins import shortest
+from tailor.executive.actions.dubins import shortest
 
 coordinate = st.floats(-4, 4)
 angle = st.floats(-math.pi, math.pi)

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from executive import domains
-from executive.refinement.settings import RefinementSettings
-from models.episodes import Episode, read_data_set, write_part
-from models.examples import energy_examples
-from models.manifest import write_manifest
-from models.runtime import load_robot
-from schemas.messages import JointState, Odometry, SimTruth
-from tools import lockstep
-from tools.evaluations.outcome import Task, Variant
-from tools.evaluations.trials import run_one
-from tools.trials.drive_work import MASS_KG, joint_work_j, wheel_work_j
+from tailor.executive import domains
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.episodes import Episode, read_data_set, write_part
+from tailor.models.examples import energy_examples
+from tailor.models.manifest import write_manifest
+from tailor.models.runtime import load_robot
+from tailor.schemas.messages import JointState, Odometry, SimTruth
+from tailor.tools import lockstep
+from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.trials import run_one
+from tailor.tools.trials.drive_work import MASS_KG, joint_work_j, wheel_work_j
 
 
 def truth(at_s: float, v: float, omega: float = 0.0) -> SimTruth:

@@ -8,11 +8,11 @@ import types
 
 import pytest
 
-from schemas.errors import UsageError
-from tools import evaluate
-from tools.evaluations.overview import write_overview
-from tools.evaluations.report import Report, configure_report, tell
-from tools.main import main
+from tailor.schemas.errors import UsageError
+from tailor.tools import evaluate
+from tailor.tools.evaluations.overview import write_overview
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.main import main
 
 CALLS: list[str] = []
 

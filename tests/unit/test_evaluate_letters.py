@@ -5,12 +5,12 @@ from argparse import Namespace
 import numpy as np
 import pytest
 
-from executive.actions.cubic import best_duration_s
-from executive.actions.reach import PERIOD_S
-from executive.domains.arm.letters import font
-from executive.domains.arm.library import ACCELERATION_RADPS2
-from tools.evaluations import letters
-from tools.evaluations.perfect_reach import PerfectReach
+from tailor.executive.actions.cubic import best_duration_s
+from tailor.executive.actions.reach import PERIOD_S
+from tailor.executive.domains.arm.letters import font
+from tailor.executive.domains.arm.library import ACCELERATION_RADPS2
+from tailor.tools.evaluations import letters
+from tailor.tools.evaluations.perfect_reach import PerfectReach
 
 
 def test_the_oracle_says_what_the_controller_will_take():

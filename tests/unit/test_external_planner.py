@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.core.asking import GRACE_S, awaited
-from executive.core.context import PlannerCommand, Settings
-from executive.core.state import initial_state
-from executive.core.step import step
-from executive.planning import format_links, format_plan, parse_domain, parse_plan, parse_problem, validate
-from executive.replay import RecordedTick, replay
-from schemas.messages import PlanAnswer, PlanReport, PlanRequest, Sample
+from tailor.executive.budget import CheckBudget
+from tailor.executive.core.asking import GRACE_S, awaited
+from tailor.executive.core.context import PlannerCommand, Settings
+from tailor.executive.core.state import initial_state
+from tailor.executive.core.step import step
+from tailor.executive.planning import format_links, format_plan, parse_domain, parse_plan, parse_problem, validate
+from tailor.executive.replay import RecordedTick, replay
+from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, Sample
 from tests.planning_problems import solve
 from tests.replay.test_replay_core import FickleBudget
 from tests.toy_domain import SENDER, inputs, line_context

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.features import SPACES, joints, projective, projective_turn, relative
+from tailor.models.features import SPACES, joints, projective, projective_turn, relative
 
 PI = np.pi
 

@@ -8,18 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from schemas.messages import ActionFinished
+from tailor.schemas.messages import ActionFinished
+from tailor.tools.evaluations import figure11, figure15
+from tailor.tools.evaluations.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
+from tailor.tools.evaluations.figure16 import assertion_task, variants
+from tailor.tools.evaluations.ground import ground_of
+from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.sweep import sweep_of
+from tailor.tools.evaluations.watched import watch
+from tailor.tools.figures.ground import draw_ground
+from tailor.tools.figures.sweep import draw_sweep
+from tailor.tools.figures.track import Point, Track
 from tests.unit.test_refinement_evaluations import DONE
-from tools.evaluations import figure11, figure15
-from tools.evaluations.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
-from tools.evaluations.figure16 import assertion_task, variants
-from tools.evaluations.ground import ground_of
-from tools.evaluations.outcome import Task, Variant
-from tools.evaluations.sweep import sweep_of
-from tools.evaluations.watched import watch
-from tools.figures.ground import draw_ground
-from tools.figures.sweep import draw_sweep
-from tools.figures.track import Point, Track
 
 TRAINING_SEED = 700_000  # evaluation seeds begin at a million
 FORESEEN = (("goToPose", True, 2.0), ("approachBall", False, 3.0), ("dribbleBall", False, 4.0))

@@ -8,12 +8,12 @@ import joblib
 import numpy as np
 import pytest
 
-from models.episodes import read_data_set
-from schemas.errors import UsageError
+from tailor.models.episodes import read_data_set
+from tailor.schemas.errors import UsageError
+from tailor.tools import gathering
+from tailor.tools.gathering import EVALUATION_STREAM, PART, Work
+from tailor.tools.main import main
 from tests import far_backend
-from tools import gathering
-from tools.gathering import EVALUATION_STREAM, PART, Work
-from tools.main import main
 
 COUNT = PART + 4
 

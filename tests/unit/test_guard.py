@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from simnodes.guard import TIMEOUT_NS, Guard, Limit, Mode, Refusal
+from tailor.simnodes.guard import TIMEOUT_NS, Guard, Limit, Mode, Refusal
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000

@@ -8,23 +8,23 @@ from pathlib import Path
 import pytest
 from mcap.writer import Writer
 
-from executive.composition import recompose
-from runtime.attachment import Origin, pack
-from runtime.mcap_scan import MAGIC
-from runtime.recording import open_recording
-from runtime.selection import Selection
-from schemas.codec import decode, encode
-from schemas.errors import UsageError
-from schemas.messages import Provenance
-from schemas.topics import TOPICS
+from tailor.executive.composition import recompose
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.mcap_scan import MAGIC
+from tailor.runtime.recording import open_recording
+from tailor.runtime.selection import Selection
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Provenance
+from tailor.schemas.topics import TOPICS
+from tailor.tools import recorded_run
+from tailor.tools.main import main
+from tailor.tools.playback import Passage
+from tailor.tools.recorded_run import RecordedRuns
+from tailor.tools.survey import survey
 from tests.cpu_time import least_cpu_s
 from tests.e2e.bus_system import bus_system
 from tests.unit.test_tape import chunk_bounds, write_tape
-from tools import recorded_run
-from tools.main import main
-from tools.playback import Passage
-from tools.recorded_run import RecordedRuns
-from tools.survey import survey
 
 NOTHING = Selection(("no/such/key",))
 GOLDEN = Path(__file__).parents[1] / "data" / "golden" / "soccer-approach.mcap"

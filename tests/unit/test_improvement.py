@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive import planning
-from executive.budget import CheckBudget
-from executive.core.context import Settings
-from executive.core.improvement import better
-from executive.core.state import Inputs, initial_state
-from executive.core.step import step
-from executive.replay import RecordedTick, replay
-from schemas.messages import ActionFinished, PlanReport
+from tailor.executive import planning
+from tailor.executive.budget import CheckBudget
+from tailor.executive.core.context import Settings
+from tailor.executive.core.improvement import better
+from tailor.executive.core.state import Inputs, initial_state
+from tailor.executive.core.step import step
+from tailor.executive.replay import RecordedTick, replay
+from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.replay.test_replay_core import FickleBudget
 from tests.toy_domain import driver, line_context, odometry
 

@@ -2,15 +2,15 @@
 
 import pytest
 
-from runtime.arrival import Instant, arrival_ns
-from runtime.attachment import UNSIGNED, Origin, pack, unpack
-from runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
-from runtime.publisher import Publisher
-from runtime.session import encoding_of
-from schemas.codec import encode
-from schemas.errors import Rejected
-from schemas.messages import EStop, Odometry, Sample, VelocityCommand
-from schemas.topics import TOPICS
+from tailor.runtime.arrival import Instant, arrival_ns
+from tailor.runtime.attachment import UNSIGNED, Origin, pack, unpack
+from tailor.runtime.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.publisher import Publisher
+from tailor.runtime.session import encoding_of
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import EStop, Odometry, Sample, VelocityCommand
+from tailor.schemas.topics import TOPICS
 
 SENDER = "0123456789abcdef" * 2
 MS = 1_000_000

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from executive.budget import CheckBudget
-from executive.library import Conflict, Interval
-from executive.planning import Link, Literal, Plan, Search, parse_domain, parse_problem
-from executive.refinement.instantiation import ActionSequence, Failure, instantiate
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Conflict, Interval
+from tailor.executive.planning import Link, Literal, Plan, Search, parse_domain, parse_problem
+from tailor.executive.refinement.instantiation import ActionSequence, Failure, instantiate
 from tests.synthetic_models import LIBRARY, PI
 
 DOMAIN = """

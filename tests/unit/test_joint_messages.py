@@ -1,8 +1,8 @@
 """Joint messages survive their bytes, and an incomplete joint state is refused."""
 
-from schemas import messages as m
-from schemas.codec import decode, encode
-from schemas.errors import Rejected
+from tailor.schemas import messages as m
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
 
 STATE = m.JointState(5, ("pan", "lift"), (1.0, -2.0), (0.0, 0.1), (3.0, 4.0))
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.features import SPACES, Quantity
-from models.leaf_rules import applied
-from models.runtime import load_model
-from models.tree_boxes import TreeBoxes
+from tailor.models.features import SPACES, Quantity
+from tailor.models.leaf_rules import applied
+from tailor.models.runtime import load_model
+from tailor.models.tree_boxes import TreeBoxes
 
 QUANTITIES = (Quantity("dist", "m"), Quantity("angle_to", "rad"))
 INF = np.inf

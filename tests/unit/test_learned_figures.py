@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.features import SPACES
-from models.runtime import load_model
-from tools.figures.learned import flat_from
-from tools.figures.learned_regions import JOINTS, POSES, region_of, swept
-from tools.main import main
+from tailor.models.features import SPACES
+from tailor.models.runtime import load_model
+from tailor.tools.figures.learned import flat_from
+from tailor.tools.figures.learned_regions import JOINTS, POSES, region_of, swept
+from tailor.tools.main import main
 
 
 @pytest.mark.parametrize(

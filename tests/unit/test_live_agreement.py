@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tailor.tools.evaluations import live
+from tailor.tools.evaluations.agreement import agreement, starts_of
+from tailor.tools.evaluations.equivalence import equivalence
+from tailor.tools.evaluations.heard import episode_of
+from tailor.tools.evaluations.live_plot import draw_agreement
+from tailor.tools.evaluations.outcome import Task, Variant, outcome_of
+from tailor.tools.evaluations.trials import run_episode_of
 from tests.unit.test_refinement_evaluations import DONE
-from tools.evaluations import live
-from tools.evaluations.agreement import agreement, starts_of
-from tools.evaluations.equivalence import equivalence
-from tools.evaluations.heard import episode_of
-from tools.evaluations.live_plot import draw_agreement
-from tools.evaluations.outcome import Task, Variant, outcome_of
-from tools.evaluations.trials import run_episode_of
 
 MARGIN_PCT = 5.0
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from runtime.budget import ClockBudget
-from runtime.loop import Loop, Turn
+from tailor.runtime.budget import ClockBudget
+from tailor.runtime.loop import Loop, Turn
 
 MS = 1_000_000
 

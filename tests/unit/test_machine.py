@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from runtime.machine import KIND, contrast, machine, same_kind
+from tailor.runtime.machine import KIND, contrast, machine, same_kind
 
 ROOT = Path(__file__).resolve().parents[2]
 CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "spans.py"]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from runtime.mcap_chunk import records_of
-from runtime.recording import open_recording
-from tools.survey import percentiles
+from tailor.runtime.mcap_chunk import records_of
+from tailor.runtime.recording import open_recording
+from tailor.tools.survey import percentiles
 
 GOLDEN = Path(__file__).parents[1] / "data" / "golden" / "soccer-approach.mcap"
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from executive.composition import load_models
-from models import runtime
-from models.card import card_path, read_card, sha256_of, write_card
-from models.features import projective
-from schemas.errors import UsageError
-from tools.main import main
+from tailor.executive.composition import load_models
+from tailor.models import runtime
+from tailor.models.card import card_path, read_card, sha256_of, write_card
+from tailor.models.features import projective
+from tailor.schemas.errors import UsageError
+from tailor.tools.main import main
 
 SHIPPED = runtime.ZOO / "agilo"
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from sklearn.utils.estimator_checks import check_estimator
 
-from models.distilled_failure import DistilledFailureTree
-from models.distilling import DistilledModelTree
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureTree
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.taught_forest import TaughtForest
+from tailor.models.distilled_failure import DistilledFailureTree
+from tailor.models.distilling import DistilledModelTree
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureTree
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.taught_forest import TaughtForest
 
 ESTIMATORS = [
     ModelTreeRegressor(),

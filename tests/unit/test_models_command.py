@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models import runtime
-from models.features import projective
-from models.linear_tree import LinearTree
-from models.rules import duration_rules
-from tools.main import main
+from tailor.models import runtime
+from tailor.models.features import projective
+from tailor.models.linear_tree import LinearTree
+from tailor.models.rules import duration_rules
+from tailor.tools.main import main
 
 
 def tree() -> LinearTree:
@@ -136,7 +136,7 @@ def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, caps
 def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) -> None:
     """Both predict an amount, and both are loaded together."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("tools.evaluations.fresh.noise_floor", lambda *_: {"mae_s": 0.1})  # takes half a minute
+    monkeypatch.setattr("tailor.tools.evaluations.fresh.noise_floor", lambda *_: {"mae_s": 0.1})  # takes half a minute
     main(["evaluate", "table1", "--episodes", "12", "--jobs", "1", "--json"])
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert sorted(row["action"] for row in rows) == ["approachBall", "dribbleBall", "goToPose"]

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.library import Models
-from executive.refinement.arrivals import displacements
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sequence import ActionSequence
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
+from tailor.executive.library import Models
+from tailor.executive.refinement.arrivals import displacements
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
 from tests.synthetic_models import MODELS, NotANumber, PoseDuration, approach_dribble
 
 

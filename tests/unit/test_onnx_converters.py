@@ -7,11 +7,11 @@ from skl2onnx import to_onnx
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 
-from models import onnx_converters
-from models.failure_forest import FailureForest
-from models.failure_tree import FailureTree
-from models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from models.taught_forest import TaughtForest
+from tailor.models import onnx_converters
+from tailor.models.failure_forest import FailureForest
+from tailor.models.failure_tree import FailureTree
+from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.taught_forest import TaughtForest
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-1, 1, (800, 3)).astype(np.float32)

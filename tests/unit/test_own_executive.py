@@ -1,8 +1,8 @@
 """What a second executive on the bus says, or a replayed one, is not taken for the words of the one started here."""
 
-from schemas.messages import ExecStatus, Sample
-from schemas.own import example
-from tools.own_executive import OwnExecutive
+from tailor.schemas.messages import ExecStatus, Sample
+from tailor.schemas.own import example
+from tailor.tools.own_executive import OwnExecutive
 
 OURS, OTHER = "aa" * 16, "bb" * 16
 

@@ -1,8 +1,8 @@
 """The order in which achievers are tried: by it plans of equal rank fall, and with them every count."""
 
-from executive.planning.achievers import SIZES
-from executive.planning.ground_task import make_task
-from executive.planning.grounding import ground_actions, world_of
+from tailor.executive.planning.achievers import SIZES
+from tailor.executive.planning.ground_task import make_task
+from tailor.executive.planning.grounding import ground_actions, world_of
 from tests.planning_problems import read
 
 DOMAIN = """(define (domain d) (:requirements :typing) (:types lamp)

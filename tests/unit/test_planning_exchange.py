@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from executive import domains
-from executive.planning import (
+from tailor.executive import domains
+from tailor.executive.planning import (
     Link,
     Literal,
     completed,
@@ -19,7 +19,7 @@ from executive.planning import (
     parse_problem,
     validate,
 )
-from executive.planning.linking import links_of
+from tailor.executive.planning.linking import links_of
 from tests.planning_problems import DATA, OWN, own, printed, read, solve
 
 RICH_DOMAIN = """(define (domain rich) (:requirements :typing :fluents :timed-initial-literals :durative-actions)

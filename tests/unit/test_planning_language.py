@@ -2,7 +2,7 @@
 
 import pytest
 
-from executive.planning import GOAL, MATCHING, Literal, PddlError, Settings, Unsupported, parse_domain, validate
+from tailor.executive.planning import GOAL, MATCHING, Literal, PddlError, Settings, Unsupported, parse_domain, validate
 from tests.planning_problems import read, solve
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from executive.planning import Settings, format_links, parse_plan, validate
-from executive.planning.lifted.bindings import Bindings
+from tailor.executive.planning import Settings, format_links, parse_plan, validate
+from tailor.executive.planning.lifted.bindings import Bindings
 from tests.cpu_time import least_cpu_s
 from tests.planning_problems import own, read, solve
 

@@ -5,7 +5,7 @@ import dataclasses
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.planning import GOAL, Settings, parse_plan, relink, suffix, validate
+from tailor.executive.planning import GOAL, Settings, parse_plan, relink, suffix, validate
 from tests.planning_problems import read, solve
 from tests.property.test_planning_soundness import LITERALS, VARIABLE_LITERALS, conjunction, problems
 from tests.unit.test_planning_language import LAMPS, SWITCHES, TIMED, WORKSHOP

@@ -2,8 +2,17 @@
 
 import pytest
 
-from executive.planning import DEFAULT, MATCHING, FlawOrder, Settings, format_links, format_plan, parse_plan, validate
-from executive.planning.settings import DEFAULT_RANKINGS
+from tailor.executive.planning import (
+    DEFAULT,
+    MATCHING,
+    FlawOrder,
+    Settings,
+    format_links,
+    format_plan,
+    parse_plan,
+    validate,
+)
+from tailor.executive.planning.settings import DEFAULT_RANKINGS
 from tests.planning_problems import DATA, OWN, SHARED, load, own, printed, reference, solve
 
 # VHPOP 2.2.1 under `g-mwloc`

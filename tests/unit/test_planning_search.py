@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from executive.budget import CheckBudget
-from executive.planning import (
+from tailor.executive.budget import CheckBudget
+from tailor.executive.planning import (
     DEFAULT,
     MATCHING,
     FlawOrder,
@@ -16,9 +16,9 @@ from executive.planning import (
     parse_plan,
     validate,
 )
-from executive.planning.flaw_orders import NAMED, parse_flaw_order
-from executive.planning.ranking import NAMES
-from schemas.errors import UsageError
+from tailor.executive.planning.flaw_orders import NAMED, parse_flaw_order
+from tailor.executive.planning.ranking import NAMES
+from tailor.schemas.errors import UsageError
 from tests.planning_problems import own, read, solve
 
 DOOR = """(define (domain door) (:predicates (open) (shut) (in))

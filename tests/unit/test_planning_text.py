@@ -2,7 +2,16 @@
 
 import pytest
 
-from executive.planning import GOAL, Link, Literal, PlanTextError, Settings, format_links, format_plan, parse_plan
+from tailor.executive.planning import (
+    GOAL,
+    Link,
+    Literal,
+    PlanTextError,
+    Settings,
+    format_links,
+    format_plan,
+    parse_plan,
+)
 from tests.planning_problems import OWN, own, printed, solve
 
 FIGURE_10 = """Initial 0 : (robot pos1) (ball pos2) (final pos3)

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, suffix, validate
+from tailor.executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, suffix, validate
 from tests.planning_problems import OWN, own, read, solve
 
 

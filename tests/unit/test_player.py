@@ -2,19 +2,19 @@
 
 import pytest
 
-from runtime.copying import copy
-from runtime.pacing import Pace
-from runtime.player import Player
-from runtime.recording import open_recording
-from runtime.selection import selection
-from schemas.codec import decode, encode
-from schemas.errors import UsageError
-from schemas.messages import DriverState
-from schemas.own import example
+from tailor.runtime.copying import copy
+from tailor.runtime.pacing import Pace
+from tailor.runtime.player import Player
+from tailor.runtime.recording import open_recording
+from tailor.runtime.selection import selection
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState
+from tailor.schemas.own import example
+from tailor.tools.playback import Passage, remapping
+from tailor.tools.substitution import armed_for
 from tests.unit.test_loop import SteppedClock
 from tests.unit.test_tape import S, write_tape
-from tools.playback import Passage, remapping
-from tools.substitution import armed_for
 
 MS = 1_000_000
 
@@ -110,7 +110,7 @@ def test_remap_words_are_checked():
 def test_a_recorded_driver_seems_to_obey_the_live_executive(tmp_path):
     from dataclasses import replace
 
-    from runtime.recording import Recorded
+    from tailor.runtime.recording import Recorded
 
     state = replace(example(DriverState), mode="armed", armed_sender="a" * 32)
     recorded = Recorded("agilo/driver", "tailor_msgs/msg/DriverState", "", 1, 0, 0, encode(state))

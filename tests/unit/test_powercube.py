@@ -7,9 +7,9 @@ import sys
 import numpy as np
 import pytest
 
-from simnodes.powercube.body import PowerCubeBody
-from simnodes.powercube.motor import PERIOD_S, Motor
-from simnodes.powercube.physique import NAMES, Physique
+from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.simnodes.powercube.motor import PERIOD_S, Motor
+from tailor.simnodes.powercube.physique import NAMES, Physique
 from tests.cpu_time import least_cpu_s
 
 TICK_NS = 100_000_000

@@ -7,16 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.actions.cubic import best_duration_s, cubic
-from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.library import (
+from tailor.executive.actions.cubic import best_duration_s, cubic
+from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.library import (
     ACCELERATION_MAX_RADPS2,
     ACCELERATION_RADPS2,
     PASSING_RADPS,
     REACH,
     fastest_radps,
 )
-from executive.domains.arm.robot import V_MAX_RADPS
+from tailor.executive.domains.arm.robot import V_MAX_RADPS
 
 PERIOD_NS = 100_000_000
 angle = st.floats(-0.9, 0.9)

@@ -11,7 +11,7 @@ from tests.e2e.bus_system import free_endpoint
 
 REPORT = """
 import gc, json, os
-from runtime.realtime import prepare
+from tailor.runtime.realtime import prepare
 before = {"policy": os.sched_getscheduler(0)}
 told = prepare()
 after = {"policy": os.sched_getscheduler(0), "gc": gc.isenabled(), "frozen": gc.get_freeze_count()}
@@ -50,7 +50,7 @@ def test_without_privileges_the_refusals_are_reported():
 
 ELEVATED = """
 import json, os, sys
-from runtime.session import open_router
+from tailor.runtime.session import open_router
 with open_router(sys.argv[1]):
     threads = {t: open(f"/proc/self/task/{t}/comm").read().strip() for t in os.listdir("/proc/self/task")}
     print(json.dumps({name: os.sched_getscheduler(int(t)) for t, name in threads.items()}))

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.recording import open_recording
-from runtime.tape import ENCODING, Tape
-from schemas.codec import decode, encode
-from schemas.errors import UsageError
-from schemas.messages import EStop, TickReport
-from schemas.typesystem import ros_type
-from tools.main import main
-from tools.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.recording import open_recording
+from tailor.runtime.tape import ENCODING, Tape
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import EStop, TickReport
+from tailor.schemas.typesystem import ros_type
+from tailor.tools.main import main
+from tailor.tools.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
 
 GOLDEN = Path(__file__).parents[1] / "data" / "golden" / "soccer-approach.mcap"
 STRANGER = "ab" * 16

@@ -9,17 +9,28 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.library import Interval
-from schemas.errors import UsageError
-from tools import evaluate
-from tools.evaluations import benefit, figure1, figure11, figure15, figure16, live, oracle, replicas, table3, table4
-from tools.evaluations.baselines import against_oracle
-from tools.evaluations.comparison import compare, share_interval
-from tools.evaluations.journal import Journal
-from tools.evaluations.oracle import _judged, _values, subgoal_parameters
-from tools.evaluations.outcome import Outcome, Task, Variant
-from tools.evaluations.pinned import PinnedDomain
-from tools.evaluations.trials import paired
+from tailor.executive.library import Interval
+from tailor.schemas.errors import UsageError
+from tailor.tools import evaluate
+from tailor.tools.evaluations import (
+    benefit,
+    figure1,
+    figure11,
+    figure15,
+    figure16,
+    live,
+    oracle,
+    replicas,
+    table3,
+    table4,
+)
+from tailor.tools.evaluations.baselines import against_oracle
+from tailor.tools.evaluations.comparison import compare, share_interval
+from tailor.tools.evaluations.journal import Journal
+from tailor.tools.evaluations.oracle import _judged, _values, subgoal_parameters
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pinned import PinnedDomain
+from tailor.tools.evaluations.trials import paired
 
 DONE = Outcome(
     seed=1,

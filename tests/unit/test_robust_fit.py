@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models import learners
-from models.model_tree import BaggedModelTrees
-from models.robust_fit import refit
+from tailor.models import learners
+from tailor.models.model_tree import BaggedModelTrees
+from tailor.models.robust_fit import refit
 
 SLOPES = np.array([1.0, -0.5, 0.25])
 

@@ -6,10 +6,10 @@ import json
 
 import pytest
 
-from executive.composition import Order
-from schemas.errors import UsageError
-from schemas.settings import from_table
-from tools.deployment import Deployment
+from tailor.executive.composition import Order
+from tailor.schemas.errors import UsageError
+from tailor.schemas.settings import from_table
+from tailor.tools.deployment import Deployment
 
 
 def test_nested_tables_become_nested_settings():

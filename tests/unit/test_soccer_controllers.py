@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive import domains
-from executive.actions.dribble_ball import Fetching, Pushing
-from executive.actions.dubins import shortest
-from executive.actions.go_to_pose import ALIGN
-from executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
-from executive.domains.soccer.belief import unknown
-from executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
-from tools.lockstep import new_body, run_action, sample_arguments
+from tailor.executive import domains
+from tailor.executive.actions.dribble_ball import Fetching, Pushing
+from tailor.executive.actions.dubins import shortest
+from tailor.executive.actions.go_to_pose import ALIGN
+from tailor.executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.soccer.belief import unknown
+from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
+from tailor.tools.lockstep import new_body, run_action, sample_arguments
 
 SOCCER = domains.load("soccer")
 BODY = new_body(SOCCER)

@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 
-from executive import domains
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
-from executive.domains.soccer import belief as believing
-from executive.domains.soccer import robot
-from executive.library import Conflict, Interval, Scenario
-from schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
-from tools.lockstep import new_body, newest
+from tailor.executive import domains
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.soccer import belief as believing
+from tailor.executive.domains.soccer import robot
+from tailor.executive.library import Conflict, Interval, Scenario
+from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
+from tailor.tools.lockstep import new_body, newest
 
 SOCCER = domains.load("soccer")
 PLACES = {"pos3": {"x": 1.0, "y": 3.0, "phi": 2.6, "v": 0.0}}

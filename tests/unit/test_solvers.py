@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.refinement.chain import ChainSolver, blocks_of
-from executive.refinement.differential import DifferentialEvolution
-from executive.refinement.genetic import GeneticAlgorithm
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.ranges import Ranges
-from executive.refinement.selection import solver_for
-from executive.refinement.settings import RefinementSettings
-from executive.refinement.solver import Limits
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.chain import ChainSolver, blocks_of
+from tailor.executive.refinement.differential import DifferentialEvolution
+from tailor.executive.refinement.genetic import GeneticAlgorithm
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.ranges import Ranges
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.solver import Limits
 from tests.synthetic_models import APPROACH, GO, MODELS, approach_dribble, sequence
 
 

@@ -34,7 +34,7 @@ def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
 RUN = """
 import sys
 from pathlib import Path
-from executive.replay import replay
+from tailor.executive.replay import replay
 from tools import verify
 runs = verify.RecordedRuns(Path(sys.argv[1]))
 context = verify.recompose(runs.runs[0].provenance)

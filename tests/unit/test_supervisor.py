@@ -9,10 +9,10 @@ from contextlib import contextmanager
 
 import pytest
 
-from runtime.processes import Child, stopped_in_order
-from runtime.restart import Restart
-from runtime.stopping import SIGNALS, stop_on_signals
-from runtime.supervisor import STARTUP_NS, Charge, Supervisor
+from tailor.runtime.processes import Child, stopped_in_order
+from tailor.runtime.restart import Restart
+from tailor.runtime.stopping import SIGNALS, stop_on_signals
+from tailor.runtime.supervisor import STARTUP_NS, Charge, Supervisor
 from tests.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
 S = 1_000_000_000
@@ -136,9 +136,7 @@ def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor
 
 
 def test_a_child_ends_when_its_parent_is_killed():
-    parent = (
-        "import sys; from runtime.processes import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
-    )
+    parent = "from tailor.runtime.processes import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
     process = subprocess.Popen([sys.executable, "-c", parent], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     child = int(first_line(process.stdout))
     time.sleep(0.2)

@@ -8,23 +8,23 @@ from dataclasses import replace
 
 import pytest
 
-from runtime.attachment import Origin, pack
-from runtime.facts import Facts
-from runtime.inbox import Raw
-from runtime.intake import Intake
-from runtime.mcap_scan import MAGIC, Account, scan
-from runtime.recorder import Limits, Recorder
-from runtime.recording import open_recording
-from runtime.selection import Selection, selection
-from runtime.session import encoding_of
-from runtime.sink import Sink
-from runtime.snapshot import Alarm, Ring
-from runtime.snapshot_recorder import SnapshotRecorder
-from runtime.tape import Tape
-from schemas.codec import encode
-from schemas.errors import UsageError
-from schemas.messages import DriverState, EStop, ExecStatus, Odometry, Provenance
-from schemas.own import example
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.facts import Facts
+from tailor.runtime.inbox import Raw
+from tailor.runtime.intake import Intake
+from tailor.runtime.mcap_scan import MAGIC, Account, scan
+from tailor.runtime.recorder import Limits, Recorder
+from tailor.runtime.recording import open_recording
+from tailor.runtime.selection import Selection, selection
+from tailor.runtime.session import encoding_of
+from tailor.runtime.sink import Sink
+from tailor.runtime.snapshot import Alarm, Ring
+from tailor.runtime.snapshot_recorder import SnapshotRecorder
+from tailor.runtime.tape import Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState, EStop, ExecStatus, Odometry, Provenance
+from tailor.schemas.own import example
 
 SENDER = "ab" * 16
 EVERYTHING = Selection()
@@ -166,7 +166,7 @@ def test_what_is_no_recording_is_told_in_one_line(tmp_path):
 
 def test_a_changed_schema_is_refused_by_name(tmp_path, monkeypatch):
     write_tape(tmp_path / "a.mcap")
-    monkeypatch.setattr("runtime.recording.type_hash", lambda _: "RIHS01_other")
+    monkeypatch.setattr("tailor.runtime.recording.type_hash", lambda _: "RIHS01_other")
     with pytest.raises(UsageError, match=r"nav_msgs/msg/Odometry has changed since"):
         list(open_recording(tmp_path / "a.mcap").messages())
 
@@ -203,7 +203,7 @@ def make_recorder(tmp_path, intake, wanted=EVERYTHING, **limits):
 
 
 def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
-    monkeypatch.setattr("runtime.tape.STUCK_BYTES", 2000)
+    monkeypatch.setattr("tailor.runtime.tape.STUCK_BYTES", 2000)
     intake = Intake()
     recorder = make_recorder(tmp_path, intake)
     real = os.write
@@ -342,7 +342,7 @@ def test_a_snapshot_of_nothing_is_refused(tmp_path):
 @pytest.fixture
 def full_disk(monkeypatch):
     """Call with True and False: whether the disk is full."""
-    from runtime import sink
+    from tailor.runtime import sink
 
     def refuse(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -381,8 +381,8 @@ def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones
 
 
 def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_path, full_disk):
+    from tailor.tools.run_tape import RunTape
     from tests.toy_domain import line_context
-    from tools.run_tape import RunTape
 
     tape = RunTape(tmp_path / "run.mcap", line_context(), {})
     full_disk(True)

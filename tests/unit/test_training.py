@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models import features, runtime
-from models.amounts import ENERGY
-from models.episodes import DataSet, Episode
-from models.placing import place
-from models.publishing import Publication, publish
-from models.training import Trained, train_amount, train_duration, train_success
-from schemas.errors import UsageError
+from tailor.models import features, runtime
+from tailor.models.amounts import ENERGY
+from tailor.models.episodes import DataSet, Episode
+from tailor.models.placing import place
+from tailor.models.publishing import Publication, publish
+from tailor.models.training import Trained, train_amount, train_duration, train_success
+from tailor.schemas.errors import UsageError
 from tests import standin
 
 ARGUMENTS = [
@@ -32,7 +32,7 @@ def test_a_model_that_cannot_be_written_whole_leaves_the_one_that_was_there(tmp_
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("models.placing.write_card", full)
+    monkeypatch.setattr("tailor.models.placing.write_card", full)
     with pytest.raises(OSError, match="No space"):
         place(tmp_path, b"new", card)
     assert path.read_bytes() == b"old"

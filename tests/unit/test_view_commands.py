@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.tape import Tape
-from schemas.codec import encode
-from schemas.errors import UsageError
-from schemas.typesystem import ros_type
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.tape import Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.typesystem import ros_type
+from tailor.tools import view, why
 from tests import synthetic_run
-from tools import view, why
 
 SENDERS = {"exec/": "ab" * 16}
 BEGIN_NS = 1_700_000_000_000_000_000

@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 
-from schemas import messages as m
+from tailor.schemas import messages as m
+from tailor.tools.viewer.decisions import acted_on, decisions_of, in_force
+from tailor.tools.viewer.recorded import Timed
+from tailor.tools.viewer.wording import proven
 from tests import synthetic_run
-from tools.viewer.decisions import acted_on, decisions_of, in_force
-from tools.viewer.recorded import Timed
-from tools.viewer.wording import proven
 
 BEGIN = m.Subgoals(0, 5, 2, ())
 

@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from executive.budget import CheckBudget
-from executive.refinement.refinement import Refinement
-from schemas.errors import UsageError
-from schemas.messages import Subgoals
+from tailor.executive.budget import CheckBudget
+from tailor.executive.refinement.refinement import Refinement
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.explainer import Explainer, fields_of
+from tailor.tools.viewer.explanation import explain, sequence_of
+from tailor.tools.viewer.longer_search import best_cost
+from tailor.tools.viewer.wording import durations, nearness
 from tests import synthetic_run
 from tests.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribble
-from tools.viewer.explainer import Explainer, fields_of
-from tools.viewer.explanation import explain, sequence_of
-from tools.viewer.longer_search import best_cost
-from tools.viewer.wording import durations, nearness
 
 SETTINGS = synthetic_run.SETTINGS
 

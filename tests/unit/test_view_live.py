@@ -9,19 +9,19 @@ from contextlib import contextmanager
 
 import pytest
 
-from runtime.attachment import Origin, pack
-from runtime.inbox import Raw
-from runtime.intake import Intake
-from schemas import messages as m
-from schemas.codec import encode
-from schemas.errors import UsageError
-from schemas.typesystem import ros_type
+from tailor.runtime.attachment import Origin, pack
+from tailor.runtime.inbox import Raw
+from tailor.runtime.intake import Intake
+from tailor.schemas import messages as m
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.typesystem import ros_type
+from tailor.tools.viewer import server
+from tailor.tools.viewer.feed import WAITING, Feed
+from tailor.tools.viewer.listening import Listener
+from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.story import Row, Story
 from tests.patience import PATIENCE_S
-from tools.viewer import server
-from tools.viewer.feed import WAITING, Feed
-from tools.viewer.listening import Listener
-from tools.viewer.server import serving
-from tools.viewer.story import Row, Story
 
 
 def tick(at_s: float) -> Row:

@@ -6,8 +6,8 @@ import json
 import re
 from importlib import resources
 
-from tools.viewer.page import SCRIPTS, page
-from tools.viewer.story import Row
+from tailor.tools.viewer.page import SCRIPTS, page
+from tailor.tools.viewer.story import Row
 
 EVIL = "</script><script>alert(1)</script>"
 
@@ -21,7 +21,7 @@ def test_the_page_fetches_nothing() -> None:
 
 
 def test_every_script_is_in_the_page() -> None:
-    there = {f.name for f in (resources.files("tools.viewer") / "assets").iterdir() if f.name.endswith(".js")}
+    there = {f.name for f in (resources.files("tailor.tools.viewer") / "assets").iterdir() if f.name.endswith(".js")}
     assert there == set(SCRIPTS)
 
 

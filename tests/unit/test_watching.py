@@ -8,10 +8,10 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.library import Conflict, Interval
-from executive.refinement.instantiation import Failure, Pattern, instantiate
-from executive.refinement.sequence import InstantiatedAction
-from executive.refinement.watching import Watch
+from tailor.executive.library import Conflict, Interval
+from tailor.executive.refinement.instantiation import Failure, Pattern, instantiate
+from tailor.executive.refinement.sequence import InstantiatedAction
+from tailor.executive.refinement.watching import Watch
 from tests.synthetic_models import LIBRARY
 from tests.unit.test_instantiation import paper_plan
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from executive.domains.arm.robot import PEN_M
-from schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, JointState, Parameter, Subgoals
-from tools.figures.letters import draw_letters, draw_words
-from tools.writing.measures import pen_m, rms_jerk, roughness, waypoint_errors_rad
-from tools.writing.track import Written, written
+from tailor.executive.domains.arm.robot import PEN_M
+from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, JointState, Parameter, Subgoals
+from tailor.tools.figures.letters import draw_letters, draw_words
+from tailor.tools.writing.measures import pen_m, rms_jerk, roughness, waypoint_errors_rad
+from tailor.tools.writing.track import Written, written
 
 TIMES = np.arange(0.0, 4.0, 0.02)
 

@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from executive.budget import CheckBudget
-from executive.library import Array, Models
-from executive.refinement.certificate import Certificate, certificate
-from executive.refinement.selection import solver_for
-from executive.refinement.settings import RefinementSettings
-from models.features import SPACES
-from models.leaf_bounds import LeafBounds
-from models.model_bounds import ModelBounds
-from models.tree_boxes import TreeBoxes
-from tools.benchmarks.refine_cases import Case
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Array, Models
+from tailor.executive.refinement.certificate import Certificate, certificate
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.features import SPACES
+from tailor.models.leaf_bounds import LeafBounds
+from tailor.models.model_bounds import ModelBounds
+from tailor.models.tree_boxes import TreeBoxes
+from tailor.tools.benchmarks.refine_cases import Case
 
 GAPS_PCT = (5.0, 1.0)
 LIMIT_S = 2.0

@@ -8,9 +8,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from executive import domains
-from tools import gathering
-from tools.run_gathering import actions
+from tailor.executive import domains
+from tailor.tools import gathering
+from tailor.tools.run_gathering import actions
 
 
 def run(console: Console, quick: bool) -> None:

@@ -10,13 +10,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from models import learners
-from models.asking import random_arguments
-from models.card import Card
-from models.features import SPACES
-from models.model_tree import BaggedModelTrees
-from models.onnx_export import export_duration
-from models.runtime import OnnxDuration, load_robot, open_session
+from tailor.models import learners
+from tailor.models.asking import random_arguments
+from tailor.models.card import Card
+from tailor.models.features import SPACES
+from tailor.models.model_tree import BaggedModelTrees
+from tailor.models.onnx_export import export_duration
+from tailor.models.runtime import OnnxDuration, load_robot, open_session
 
 ROWS = (1, 50, 250, 1000)
 ALONE: Mapping[str, Callable[[], Any]] = {
@@ -66,7 +66,7 @@ def _examples(count: int) -> tuple[Any, Any, Any]:
 
 
 def _alone(make: Callable[[], Any]) -> tuple[Callable[[Any], Any], int]:
-    """A learner's graph without what `models.runtime` adds to a call, and how many leaves it has."""
+    """A learner's graph without what `tailor.models.runtime` adds to a call, and how many leaves it has."""
     features, seconds, groups = _examples(20_000)
     learner = make().fit(features, seconds, groups=groups)
     session = open_session(export_duration(learner, SPACES["projective"], {}).SerializeToString())

@@ -16,8 +16,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from executive.budget import CheckBudget
-from executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
+from tailor.executive.budget import CheckBudget
+from tailor.executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
 
 DATA = Path(__file__).parents[2] / "tests" / "data" / "pddl"
 UNLIMITED = 10**9  # checks

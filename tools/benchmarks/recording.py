@@ -13,12 +13,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from runtime.processes import Child, stopped_in_order, tailor
-from runtime.recording import open_recording
-from runtime.session import Session, open_router
-from schemas.errors import UsageError
-from tools.benchmarks.traffic import traffic
-from tools.system import free_endpoint
+from tailor.runtime.processes import Child, stopped_in_order, tailor
+from tailor.runtime.recording import open_recording
+from tailor.runtime.session import Session, open_router
+from tailor.schemas.errors import UsageError
+from tailor.tools.benchmarks.traffic import traffic
+from tailor.tools.system import free_endpoint
 
 RATE_HZ = 400.0
 START_S = 15.0

@@ -12,11 +12,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Column, Table
 
-from executive.library import Models
-from models.runtime import load_robot
-from tools.benchmarks import certificates
-from tools.benchmarks.refine_cases import Case, cases
-from tools.benchmarks.refine_runners import Found, ours, runners
+from tailor.executive.library import Models
+from tailor.models.runtime import load_robot
+from tailor.tools.benchmarks import certificates
+from tailor.tools.benchmarks.refine_cases import Case, cases
+from tailor.tools.benchmarks.refine_runners import Found, ours, runners
 
 MOMENTS_MS = (5, 20, 60, 80)
 LONG_MS = 1500  # the search for the best known value

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from executive.budget import CheckBudget
-from executive.library import Array
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.selection import solver_for
-from executive.refinement.settings import RefinementSettings
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Array
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.selection import solver_for
+from tailor.executive.refinement.settings import RefinementSettings
 
 OURS = ("chain", "genetic", "differential")
 

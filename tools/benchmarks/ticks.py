@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from runtime.processes import Child, stopped_in_order, tailor
-from runtime.recording import open_recording
-from runtime.session import Session, open_client
-from schemas.errors import Rejected
-from schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
-from tools.system import free_endpoint
+from tailor.runtime.processes import Child, stopped_in_order, tailor
+from tailor.runtime.recording import open_recording
+from tailor.runtime.session import Session, open_client
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
+from tailor.tools.system import free_endpoint
 
 BURNERS = 4
 BURN = "while True: pass"

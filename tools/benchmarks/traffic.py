@@ -7,10 +7,10 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from runtime.clock import MonotonicClock
-from runtime.loop import Loop
-from runtime.session import Session
-from schemas.messages import Odometry
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.loop import Loop
+from tailor.runtime.session import Session
+from tailor.schemas.messages import Odometry
 
 MIX = ("odom", "odom", "odom", "odom")  # of one robot each; odometry is the longest of the frequent messages
 

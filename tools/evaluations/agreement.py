@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from tools.evaluations.equivalence import equivalence
-from tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.equivalence import equivalence
+from tailor.tools.evaluations.outcome import Outcome
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tools.evaluations.oracle import Oracle
-from tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.oracle import Oracle
+from tailor.tools.evaluations.outcome import Outcome
 
 Outcomes = Mapping[int, Outcome]  # by seed
 

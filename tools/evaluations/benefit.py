@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.composition import load_models
-from executive.library import BenefitModel
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
-from tools import gathering
-from tools.asked import at_least
-from tools.evaluations.benefit_ceiling import foreknown
-from tools.evaluations.comparison import compare, share_interval
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import run_all
+from tailor.executive.composition import load_models
+from tailor.executive.library import BenefitModel
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools import gathering
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.benefit_ceiling import foreknown
+from tailor.tools.evaluations.comparison import compare, share_interval
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_all
 
 PAPER = "paper: 87 % right, improvement 6.6 % without and 8.6 % with the tree"
 ROBOT, SCENARIO = "agilo", "approach-dribble"

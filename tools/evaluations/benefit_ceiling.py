@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.refinement.settings import RefinementSettings
-from tools.evaluations.outcome import Task, Variant
-from tools.evaluations.trials import run_all
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.trials import run_all
 
 LUCK = 10_000_000  # between the noise of one run and the next; far from all other seeds
 RUNS = 5  # of every start, both ways

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from executive import domains
-from schemas.errors import UsageError
-from simnodes.agilo import profiles
-from simnodes.body import Body
-from tools.lockstep import new_body
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.agilo import profiles
+from tailor.simnodes.body import Body
+from tailor.tools.lockstep import new_body
 
 
 @lru_cache(maxsize=4)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from schemas.errors import UsageError
+from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 

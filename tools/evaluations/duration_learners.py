@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from models import learners, scores
-from models.examples import duration_examples
-from models.features import SPACES
-from models.publishing import leaves
-from models.training import fit
-from tools.asked import at_least
-from tools.evaluations import fresh, weka
-from tools.evaluations.learned import configure_learned, configure_train
-from tools.evaluations.report import Report, tell
+from tailor.models import learners, scores
+from tailor.models.examples import duration_examples
+from tailor.models.features import SPACES
+from tailor.models.publishing import leaves
+from tailor.models.training import fit
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations import fresh, weka
+from tailor.tools.evaluations.learned import configure_learned, configure_train
+from tailor.tools.evaluations.report import Report, tell
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

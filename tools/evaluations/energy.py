@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 from joblib import Parallel, delayed
 
-from executive import domains
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
-from tools.asked import at_least, finite
-from tools.episodes import Episode
-from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import FIRST_SEED, Task, Variant
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import run_episode_of
-from tools.lockstep import trials_of
+from tailor.executive import domains
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least, finite
+from tailor.tools.episodes import Episode
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.lockstep import trials_of
 
 WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with
 

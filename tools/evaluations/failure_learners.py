@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from models import learners, scores
-from models.examples import success_examples
-from models.features import SPACES
-from models.training import fit
-from schemas.errors import UsageError
-from tools.evaluations import fresh, weka
-from tools.evaluations.learned import configure_learned, configure_train
-from tools.evaluations.report import Report, tell
+from tailor.models import learners, scores
+from tailor.models.examples import success_examples
+from tailor.models.features import SPACES
+from tailor.models.training import fit
+from tailor.schemas.errors import UsageError
+from tailor.tools.evaluations import fresh, weka
+from tailor.tools.evaluations.learned import configure_learned, configure_train
+from tailor.tools.evaluations.report import Report, tell
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

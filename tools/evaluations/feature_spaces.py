@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from models import scores
-from models.examples import Examples, duration_examples
-from models.features import SPACES
-from models.training import fit
-from tools.evaluations import fresh
-from tools.evaluations.learned import PAPER_EPISODES, configure_learned
-from tools.evaluations.report import Report, tell
+from tailor.models import scores
+from tailor.models.examples import Examples, duration_examples
+from tailor.models.features import SPACES
+from tailor.models.training import fit
+from tailor.tools.evaluations import fresh
+from tailor.tools.evaluations.learned import PAPER_EPISODES, configure_learned
+from tailor.tools.evaluations.report import Report, tell
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
 N_I = 5
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str, Path]:
-    from tools.figures import learned_reports
+    from tailor.tools.figures import learned_reports
 
     columns = {
         "direct: x [m]": test.arguments[:, 0],

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from executive.refinement.settings import RefinementSettings
-from tools.asked import at_least
-from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import FIRST_SEED, Task, Variant
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.watched import Watched, watch_all
-from tools.figures.paths import draw_paths
-from tools.figures.track import Track
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.watched import Watched, watch_all
+from tailor.tools.figures.paths import draw_paths
+from tailor.tools.figures.track import Track
 
 MODES = (("greedy", 1), ("refined", 2))  # the paper's h
 SLOW_MPS = 0.1  # below it the robot stands, turns on the spot, or shuffles

@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from executive.refinement.settings import RefinementSettings
-from tools.asked import at_least
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.sweep import Sweep, sweep_of
-from tools.evaluations.trials import run_all
-from tools.evaluations.watched import watch
-from tools.figures.sweep import draw_sweep
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.sweep import Sweep, sweep_of
+from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.watched import watch
+from tailor.tools.figures.sweep import draw_sweep
 
 PLACE = "pos2"  # where the ball is
 OTHER_NOISE = 500_000  # from one repeat to the next

@@ -13,16 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from schemas.errors import UsageError
-from tools.asked import at_least
-from tools.evaluations.comparison import share_interval
-from tools.evaluations.figure16 import approached_s, assertion_task, succeeded, variants
-from tools.evaluations.ground import Ground, ground_of
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import run_all
-from tools.evaluations.watched import watch
-from tools.figures.ground import draw_ground
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.comparison import share_interval
+from tailor.tools.evaluations.figure16 import approached_s, assertion_task, succeeded, variants
+from tailor.tools.evaluations.ground import Ground, ground_of
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.watched import watch
+from tailor.tools.figures.ground import draw_ground
 
 REMARKS = (
     "Above: predicted seconds by the subgoal's place, heading and speed there being the best of all; blank places are "

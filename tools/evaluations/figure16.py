@@ -8,14 +8,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from executive.refinement.settings import RefinementSettings
-from tools.asked import at_least
-from tools.evaluations.comparison import compare, share_interval
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.plots import draw_shares
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import run_all
-from tools.trials.soccer import COLLIDED_M
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.comparison import compare, share_interval
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.plots import draw_shares
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_all
+from tailor.tools.trials.soccer import COLLIDED_M
 
 GOAL = "(atball pos2)"  # the approach alone
 DRAWN = (("pos2", "phi", -math.pi, math.pi), ("pos2", "v", 0.0, 0.3))  # the goal state is random, as in the paper

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from executive import domains
-from models.episodes import DataSet, read_data_set
-from tools import gathering, lockstep
-from tools.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, Work
+from tailor.executive import domains
+from tailor.models.episodes import DataSet, read_data_set
+from tailor.tools import gathering, lockstep
+from tailor.tools.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, Work
 
 REPEATS = 8  # runs of the same task with other noise
 REPEATED_TASKS = 60

@@ -11,11 +11,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.core.context import Context
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sequence import ActionSequence
-from schemas.messages import Subgoals
-from tools.viewer.explanation import chosen_values, sequence_of
+from tailor.executive.core.context import Context
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sequence import ActionSequence
+from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.explanation import chosen_values, sequence_of
 
 Array = NDArray[np.float64]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals
-from tools.episodes import Episode
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals
+from tailor.tools.episodes import Episode
 
 
 class Unseen:
-    """A screen that nobody looks at; see tools.live_status.Screen."""
+    """A screen that nobody looks at; see tailor.tools.live_status.Screen."""
 
     def tell(self, line: str) -> None:
         """Drop a line."""

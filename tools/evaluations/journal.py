@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 
 
 class Journal:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from tools.asked import at_least
-from tools.evaluations.report import configure_report
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.report import configure_report
 
 PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 

@@ -13,19 +13,19 @@ import numpy as np
 from joblib import Parallel, delayed
 from rich.progress import track
 
-from executive.domains.arm.letters import font
-from executive.library import Models
-from executive.refinement.settings import RefinementSettings
-from models.runtime import load_robot
-from tools.asked import at_least
-from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import FIRST_SEED
-from tools.evaluations.perfect_reach import PerfectReach
-from tools.evaluations.report import Report, configure_report, tell
-from tools.figures.letters import draw_letters
-from tools.writing.lockstep import Hand, ListenedBody, write
-from tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
-from tools.writing.track import Written
+from tailor.executive.domains.arm.letters import font
+from tailor.executive.library import Models
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.models.runtime import load_robot
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED
+from tailor.tools.evaluations.perfect_reach import PerfectReach
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.figures.letters import draw_letters
+from tailor.tools.writing.lockstep import Hand, ListenedBody, write
+from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
+from tailor.tools.writing.track import Written
 
 DOMAINS = ("arm",)
 ALL_AHEAD = 9  # more actions than a letter has

@@ -15,23 +15,23 @@ from typing import Any
 import numpy as np
 from rich.progress import track
 
-from executive import domains
-from executive.composition import Order
-from executive.core.context import Settings
-from executive.refinement.settings import RefinementSettings
-from runtime.recording import open_recording
-from runtime.stopping import Stop, stop_on_signals
-from schemas.errors import Rejected
-from schemas.messages import Message
-from tools.asked import at_least
-from tools.evaluations.agreement import agreement, starts_of
-from tools.evaluations.heard import Unseen, episode_of
-from tools.evaluations.journal import Journal
-from tools.evaluations.live_plot import draw_agreement
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import made_of, run_all
-from tools.system import Plan, free_endpoint, run_system
+from tailor.executive import domains
+from tailor.executive.composition import Order
+from tailor.executive.core.context import Settings
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.runtime.recording import open_recording
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.agreement import agreement, starts_of
+from tailor.tools.evaluations.heard import Unseen, episode_of
+from tailor.tools.evaluations.journal import Journal
+from tailor.tools.evaluations.live_plot import draw_agreement
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import made_of, run_all
+from tailor.tools.system import Plan, free_endpoint, run_system
 
 OTHER_NOISE = 500_000  # from one lock-step run of a start to the next
 MARGIN_PCT = 5.0  # fixed before the first run: half of what refinement gains

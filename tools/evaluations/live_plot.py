@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tools.evaluations.agreement import Starts, agreement
-from tools.evaluations.plots import ACCENT, INK, PALE
+from tailor.tools.evaluations.agreement import Starts, agreement
+from tailor.tools.evaluations.plots import ACCENT, INK, PALE
 
 COLOURS = (ACCENT, INK)
 

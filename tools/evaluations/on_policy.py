@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from models import scores
-from models.calibration import LEAST_POLICY
-from models.episodes import Episode, merge, read_data_set
-from models.examples import duration_examples, split
-from models.features import SPACES
-from models.training import fit
-from tools import gathering
-from tools.asked import at_least
-from tools.evaluations.learned import configure_learned
-from tools.evaluations.report import Report, tell
-from tools.run_gathering import Policy, actions, models_hash, run_policy
+from tailor.models import scores
+from tailor.models.calibration import LEAST_POLICY
+from tailor.models.episodes import Episode, merge, read_data_set
+from tailor.models.examples import duration_examples, split
+from tailor.models.features import SPACES
+from tailor.models.training import fit
+from tailor.tools import gathering
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.learned import configure_learned
+from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.run_gathering import Policy, actions, models_hash, run_policy
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]

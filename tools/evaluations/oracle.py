@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from executive.refinement.settings import RefinementSettings
-from tools.evaluations.outcome import Outcome, Task, Variant
-from tools.evaluations.trials import run_all
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.trials import run_all
 
 Free = tuple[str, str, float, float]  # label, quantity, lower, upper
 AGAIN = 3  # times that the oracle's choice is executed again

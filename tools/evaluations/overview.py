@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tools.evaluations.report import shown
-from tools.figures.page import page, table
+from tailor.tools.evaluations.report import shown
+from tailor.tools.figures.page import page, table
 
 ROWS_MAX = 6
 # What an evaluation is judged by, of all that its page tells.

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.actions.cubic import LONGEST_S, SHORTEST_S
-from executive.actions.reach import PERIOD_S
-from executive.domains.arm.library import ACCELERATION_RADPS2
+from tailor.executive.actions.cubic import LONGEST_S, SHORTEST_S
+from tailor.executive.actions.reach import PERIOD_S
+from tailor.executive.domains.arm.library import ACCELERATION_RADPS2
 
 Array = NDArray[np.float64]
 STEPS = 160  # of the search, evenly spaced in the logarithm of the duration
@@ -17,7 +17,7 @@ HALVINGS = 22
 
 
 class PerfectReach:
-    """See executive.library.DurationModel: exact but for the rounding to whole periods, and never unsure."""
+    """See tailor.executive.library.DurationModel: exact but for the rounding to whole periods, and never unsure."""
 
     card: ClassVar[dict[str, Any]] = {"sha256": "the controller itself"}
 

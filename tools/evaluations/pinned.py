@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from executive.library import Belief, Domain, Fact, Interval, Scenario
+from tailor.executive.library import Belief, Domain, Fact, Interval, Scenario
 
 Pins = Mapping[tuple[str, str], float]  # (label, quantity) -> value
 

@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.progress import Progress
 from scipy import stats
 
-from tools import gathering, run_gathering, train
-from tools.asked import at_least
+from tailor.tools import gathering, run_gathering, train
+from tailor.tools.asked import at_least
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 SCENARIOS = {"soccer": ("approach-dribble", "waypoints")}  # of the on-policy round, where it helps

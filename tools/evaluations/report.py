@@ -14,8 +14,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from tools.asked import processes
-from tools.figures.page import image, page, table
+from tailor.tools.asked import processes
+from tailor.tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]
 WIDE = 9  # columns that still fit a screen

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.outcome import Outcome
 
 Array = NDArray[np.float64]
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from models import scores
-from models.episodes import DataSet
-from models.examples import duration_examples
-from models.runtime import OnnxDuration, load_robot
-from tools.evaluations import fresh
-from tools.evaluations.learned import configure_learned
-from tools.evaluations.report import Report, tell
+from tailor.models import scores
+from tailor.models.episodes import DataSet
+from tailor.models.examples import duration_examples
+from tailor.models.runtime import OnnxDuration, load_robot
+from tailor.tools.evaluations import fresh
+from tailor.tools.evaluations.learned import configure_learned
+from tailor.tools.evaluations.report import Report, tell
 
 # robot, action -> training episodes, mean duration and MAE in seconds (paper Table 1, simulated where there are both)
 PAPER: dict[tuple[str, str], tuple[float, float, float]] = {  # episodes, mean duration, MAE
@@ -73,7 +73,7 @@ def _fresh(model: OnnxDuration, arguments: argparse.Namespace) -> DataSet:
 
 
 def _plots(models: list[OnnxDuration], arguments: argparse.Namespace) -> dict[str, Path]:
-    from tools.figures import learned_reports
+    from tailor.tools.figures import learned_reports
 
     predicted, observed = {}, {}
     for model in models:

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from models import scores
-from models.examples import success_examples
-from models.runtime import OnnxSuccess, load_robot
-from schemas.errors import UsageError
-from tools.evaluations import fresh
-from tools.evaluations.learned import configure_learned
-from tools.evaluations.report import Report, tell
+from tailor.models import scores
+from tailor.models.examples import success_examples
+from tailor.models.runtime import OnnxSuccess, load_robot
+from tailor.schemas.errors import UsageError
+from tailor.tools.evaluations import fresh
+from tailor.tools.evaluations.learned import configure_learned
+from tailor.tools.evaluations.report import Report, tell
 
 PAPER = {"fail_fail": 51.0, "fail_success": 10.0, "success_fail": 1.0, "success_success": 38.0, "accuracy_pct": 89.0}
 

@@ -7,19 +7,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from executive import domains
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
-from tools.asked import at_least
-from tools.evaluations import letters
-from tools.evaluations.baselines import against_oracle, bias_s
-from tools.evaluations.comparison import compare
-from tools.evaluations.oracle import consult, subgoal_parameters
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.plots import draw_pairs
-from tools.evaluations.replicas import Recipe, configure_replicas, over_models, replica
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import paired, run_all
+from tailor.executive import domains
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations import letters
+from tailor.tools.evaluations.baselines import against_oracle, bias_s
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.oracle import consult, subgoal_parameters
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.plots import draw_pairs
+from tailor.tools.evaluations.replicas import Recipe, configure_replicas, over_models, replica
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import paired, run_all
 
 # word on the command line -> domain, scenario, profile of the body, what the paper reports (means at h = 1 and 2, gain)
 SCENARIOS = {

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from executive.refinement.settings import RefinementSettings
-from schemas.errors import UsageError
-from tools.asked import at_least
-from tools.evaluations.baselines import bias_s
-from tools.evaluations.comparison import compare
-from tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tools.evaluations.plots import draw_horizons
-from tools.evaluations.report import Report, configure_report, tell
-from tools.evaluations.trials import paired, run_all
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.asked import at_least
+from tailor.tools.evaluations.baselines import bias_s
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.plots import draw_horizons
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import paired, run_all
 
 # word on the command line -> domain, scenario, horizons, the paper's improvements of each over the one before
 SCENARIOS = {"soccer": ("soccer", "waypoints", (1, 2, 3, 4), "10.6 %, 0.7 %, 0.2 %")}

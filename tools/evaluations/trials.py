@@ -17,15 +17,15 @@ from joblib import Parallel, delayed
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from executive import domains
-from executive.composition import load_models
-from executive.core.context import Context, Settings, make_context
-from executive.library import Models
-from tools.episodes import SENDER, Episode, run_episode
-from tools.evaluations.bodies import body_of
-from tools.evaluations.journal import Journal
-from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
-from tools.evaluations.pinned import PinnedDomain
+from tailor.executive import domains
+from tailor.executive.composition import load_models
+from tailor.executive.core.context import Context, Settings, make_context
+from tailor.executive.library import Models
+from tailor.tools.episodes import SENDER, Episode, run_episode
+from tailor.tools.evaluations.bodies import body_of
+from tailor.tools.evaluations.journal import Journal
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.pinned import PinnedDomain
 
 PIN_STREAM = 4
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from joblib import Parallel, delayed
 from rich.progress import track
 
-from executive.core.context import Context
-from schemas.messages import Message, Subgoals
-from tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
-from tools.evaluations.trials import run_episode_of
-from tools.figures.track import Track, track_of
+from tailor.executive.core.context import Context
+from tailor.schemas.messages import Message, Subgoals
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.figures.track import Track, track_of
 
 
 @dataclass(frozen=True, slots=True)

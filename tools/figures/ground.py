@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.evaluations.ground import Array, Ground
-from tools.figures.paths import BALL_RADIUS_M, draw_side_by_side
-from tools.figures.track import Track
+from tailor.tools.evaluations.ground import Array, Ground
+from tailor.tools.figures.paths import BALL_RADIUS_M, draw_side_by_side
+from tailor.tools.figures.track import Track
 
 ARROW_M = 0.3
 

@@ -9,13 +9,13 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 
-from models import scores
-from models.amounts import AMOUNTS
-from models.card import UNITS, Card
-from models.episodes import UNOBSERVED, Episode, read_data_set
-from models.examples import Examples, success_examples
-from models.runtime import OnnxDuration, OnnxSuccess
-from tools.figures import learned_regions, learned_shapes
+from tailor.models import scores
+from tailor.models.amounts import AMOUNTS
+from tailor.models.card import UNITS, Card
+from tailor.models.episodes import UNOBSERVED, Episode, read_data_set
+from tailor.models.examples import Examples, success_examples
+from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.tools.figures import learned_regions, learned_shapes
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.card import UNITS, Card
-from models.examples import Examples
-from models.features import SPACES, FeatureSpace
-from models.runtime import OnnxDuration
+from tailor.models.card import UNITS, Card
+from tailor.models.examples import Examples
+from tailor.models.features import SPACES, FeatureSpace
+from tailor.models.runtime import OnnxDuration
 
 Array = NDArray[np.float64]
 

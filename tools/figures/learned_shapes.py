@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from models.asking import distilled_duration, space_of
-from models.card import UNITS
-from models.rules import NAMES, bounds, conditions, formula
-from models.runtime import OnnxDuration, OnnxSuccess
-from tools.figures.learned_regions import Region, swept
+from tailor.models.asking import distilled_duration, space_of
+from tailor.models.card import UNITS
+from tailor.models.rules import NAMES, bounds, conditions, formula
+from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.tools.figures.learned_regions import Region, swept
 
 Array = NDArray[np.float64]
 

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from tools.writing.measures import pen_m
-from tools.writing.track import Written
+from tailor.tools.writing.measures import pen_m
+from tailor.tools.writing.track import Written
 
 Array = NDArray[np.float64]
 

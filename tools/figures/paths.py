@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib import collections as mc
 from matplotlib.figure import Figure
 
-from schemas.messages import InstantiatedAction
-from tools.figures.track import Point, Track
+from tailor.schemas.messages import InstantiatedAction
+from tailor.tools.figures.track import Point, Track
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide

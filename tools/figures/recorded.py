@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from runtime.recording import open_recording
-from schemas.errors import Rejected
-from tools.figures.track import Track, track_of
+from tailor.runtime.recording import open_recording
+from tailor.schemas.errors import Rejected
+from tailor.tools.figures.track import Track, track_of
 
 
 def recorded_track(title: str, path: Path) -> Track:

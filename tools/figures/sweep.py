@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.evaluations.sweep import Array, Sweep
-from tools.figures.paths import draw_side_by_side
-from tools.figures.track import Track
+from tailor.tools.evaluations.sweep import Array, Sweep
+from tailor.tools.figures.paths import draw_side_by_side
+from tailor.tools.figures.track import Track
 
 MODEL, SIMULATED, BAND = "#1f77b4", "#2c3e50", "#b8c4cc"
 TITLES = ("approachBall, with detours", "dribbleBall", "sum")

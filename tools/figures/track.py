@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals, TickReport
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals, TickReport
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.library import PASSING_RADPS, fastest_radps
-from executive.domains.arm.meaning import named
-from executive.library import Action, Array
-from schemas.messages import Message
-from tools.trials.drive_work import joint_work_j
+from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.library import PASSING_RADPS, fastest_radps
+from tailor.executive.domains.arm.meaning import named
+from tailor.executive.library import Action, Array
+from tailor.schemas.messages import Message
+from tailor.tools.trials.drive_work import joint_work_j
 
 STATE = ("a", "wa", "b", "wb")
 WA, WB, WAG, WBG = 1, 3, 5, 7
@@ -23,7 +23,7 @@ DISTANCE_RAD = (0.05, 2.2)  # evenly: drawn in a rectangle, short reaches would 
 
 @dataclass(frozen=True, slots=True)
 class ArmTrials:
-    """See tools.lockstep.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
+    """See tailor.tools.lockstep.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
         """Controller arguments, shape (8,): all uniform, distances too, as fast as they allow; some at rest."""

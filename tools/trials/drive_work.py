@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
-from schemas.messages import JointState, Message, Odometry, SimTruth
-from simnodes.agilo.physique import Physique
+from tailor.schemas.messages import JointState, Message, Odometry, SimTruth
+from tailor.simnodes.agilo.physique import Physique
 
 AGILO = Physique()
 WHEELS = 2

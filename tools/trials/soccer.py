@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.actions.planar import PHIG, VG, XG, YG, X, Y
-from executive.belief.angles import difference
-from executive.belief.ball_track import BallTrack
-from executive.belief.planar_ekf import Pose
-from executive.domains.soccer import robot
-from executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
-from executive.library import Action, Array
-from schemas.messages import Message, SimTruth
-from tools.trials.drive_work import wheel_work_j
+from tailor.executive.actions.planar import PHIG, VG, XG, YG, X, Y
+from tailor.executive.belief.angles import difference
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
+from tailor.executive.library import Action, Array
+from tailor.schemas.messages import Message, SimTruth
+from tailor.tools.trials.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more before the goal state has failed
 ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would be inside the robot
@@ -33,7 +33,7 @@ DRIBBLE_ASIDE_RAD = 1.5  # the target's heading off the line to it
 
 @dataclass(frozen=True, slots=True)
 class SoccerTrials:
-    """See tools.lockstep.Trials; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
+    """See tailor.tools.lockstep.Trials; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
         """Controller arguments, shape (8,), uniform over the action's ranges but for what cannot be."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from schemas.errors import Rejected, UsageError
-from schemas.json_text import table_of
-from tools.viewer.rows import Fields
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.json_text import table_of
+from tailor.tools.viewer.rows import Fields
 
 # What the page draws as lines; the executive's shell keeps to them (architecture.md, "One tick").
 TIMES_MS = {"period": 100, "budget": 60, "end": 80}
@@ -27,7 +27,7 @@ def about(provenance: str) -> Fields:
 
 def _domain(name: Any) -> Fields:
     """What only the domain's own folder knows; nothing of it when this installation has no such domain."""
-    from executive import domains
+    from tailor.executive import domains
 
     if not isinstance(name, str):
         return {}

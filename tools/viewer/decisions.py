@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from schemas.messages import ActionFinished, ExecStatus, Provenance, RefinementReport, Subgoals, TickReport
-from tools.viewer.recorded import Timed
+from tailor.schemas.messages import ActionFinished, ExecStatus, Provenance, RefinementReport, Subgoals, TickReport
+from tailor.tools.viewer.recorded import Timed
 
 
 @dataclass(frozen=True, slots=True)

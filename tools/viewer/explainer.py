@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from executive.composition import recompose
-from executive.core.context import Context
-from schemas.errors import Rejected, UsageError
-from schemas.json_text import table_of
-from schemas.messages import Subgoals
-from tools.viewer.explanation import Explanation, FreeParameter, explain
-from tools.viewer.longer_search import best_cost
-from tools.viewer.rows import Fields, number
+from tailor.executive.composition import recompose
+from tailor.executive.core.context import Context
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.json_text import table_of
+from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.explanation import Explanation, FreeParameter, explain
+from tailor.tools.viewer.longer_search import best_cost
+from tailor.tools.viewer.rows import Fields, number
 
 STREAM = 5  # of the seed, and the one after it; the executive's own draws come from others
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.library import Action, Array, Models
-from executive.refinement.alternatives import Alternatives, alternatives
-from executive.refinement.greedy import greedy
-from executive.refinement.objective import SequenceObjective
-from executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
-from executive.refinement.settings import RefinementSettings
-from schemas import messages as m
-from tools.viewer.situation import Situation, situations_of
+from tailor.executive.library import Action, Array, Models
+from tailor.executive.refinement.alternatives import Alternatives, alternatives
+from tailor.executive.refinement.greedy import greedy
+from tailor.executive.refinement.objective import SequenceObjective
+from tailor.executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas import messages as m
+from tailor.tools.viewer.situation import Situation, situations_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from runtime.attachment import unpack
-from runtime.clock import Clock, wall_ns
-from runtime.inbox import Raw
-from runtime.intake import Intake
-from runtime.loop import Loop
-from schemas.codec import decode
-from schemas.errors import Rejected
-from schemas.messages import Message
-from schemas.typesystem import type_of
-from tools.viewer.feed import Feed
-from tools.viewer.recorded import EXECUTIVE
-from tools.viewer.story import Row, Story
+from tailor.runtime.attachment import unpack
+from tailor.runtime.clock import Clock, wall_ns
+from tailor.runtime.inbox import Raw
+from tailor.runtime.intake import Intake
+from tailor.runtime.loop import Loop
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.schemas.typesystem import type_of
+from tailor.tools.viewer.feed import Feed
+from tailor.tools.viewer.recorded import EXECUTIVE
+from tailor.tools.viewer.story import Row, Story
 
 LOOK_NS = 50_000_000  # so often the page moves
 ENCODING = "application/cdr;"

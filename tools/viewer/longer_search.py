@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.budget import CheckBudget
-from executive.library import Action, Models
-from executive.refinement.refinement import Refinement
-from executive.refinement.settings import RefinementSettings
-from schemas.messages import Subgoals
-from tools.viewer.explanation import accepted, chosen_values, sequence_of
+from tailor.executive.budget import CheckBudget
+from tailor.executive.library import Action, Models
+from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.explanation import accepted, chosen_values, sequence_of
 
 CHECKS = 1500  # live, a decision has some 100 to 300
 

@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterable
 from importlib import resources
 
-from tools.viewer.story import Row
+from tailor.tools.viewer.story import Row
 
 STYLES = ("page.css", "controls.css", "drawing.css")
 # In the order in which they build on each other; together they are one module.
@@ -56,4 +56,4 @@ def page(title: str, rows: Iterable[Row], live: bool = False) -> str:
 
 
 def _asset(name: str) -> str:
-    return (resources.files("tools.viewer") / "assets" / name).read_text(encoding="utf-8")
+    return (resources.files("tailor.tools.viewer") / "assets" / name).read_text(encoding="utf-8")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from executive import planning
-from schemas.messages import PlanReport
-from tools.viewer.rows import Fields
+from tailor.executive import planning
+from tailor.schemas.messages import PlanReport
+from tailor.tools.viewer.rows import Fields
 
 
 def plan_graph(message: PlanReport) -> Fields:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from runtime.recording import open_recording
-from schemas.errors import Rejected, UsageError
-from schemas.messages import Message
-from tools.viewer.story import Row, Story
+from tailor.runtime.recording import open_recording
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import Message
+from tailor.tools.viewer.story import Row, Story
 
 EXECUTIVE = "exec/"
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import fields
 from typing import Any
 
-from schemas import messages as m
+from tailor.schemas import messages as m
 
 Fields = dict[str, Any]  # JSON values only
 

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
-from schemas.errors import UsageError
-from tools.viewer.feed import Feed
+from tailor.schemas.errors import UsageError
+from tailor.tools.viewer.feed import Feed
 
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here

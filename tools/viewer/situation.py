@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.library import Models
-from executive.refinement.sequence import ActionSequence, InstantiatedAction
-from models.card import UNITS
-from models.features import SPACES, Quantity
-from models.leaf_rules import applied
+from tailor.executive.library import Models
+from tailor.executive.refinement.sequence import ActionSequence, InstantiatedAction
+from tailor.models.card import UNITS
+from tailor.models.features import SPACES, Quantity
+from tailor.models.leaf_rules import applied
 
 
 @dataclass(frozen=True, slots=True)

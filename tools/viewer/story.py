@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from schemas import messages as m
-from tools.viewer import rows
-from tools.viewer.about import about
-from tools.viewer.explainer import Explainer
-from tools.viewer.plan_graph import plan_graph
-from tools.viewer.rows import Fields
+from tailor.schemas import messages as m
+from tailor.tools.viewer import rows
+from tailor.tools.viewer.about import about
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.plan_graph import plan_graph
+from tailor.tools.viewer.rows import Fields
 
 STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.

@@ -6,10 +6,10 @@ import math
 
 from rich.table import Table
 
-from schemas.messages import RefinementReport
-from tools.viewer.decisions import Decision
-from tools.viewer.explanation import Explanation, FreeParameter
-from tools.viewer.situation import Situation
+from tailor.schemas.messages import RefinementReport
+from tailor.tools.viewer.decisions import Decision
+from tailor.tools.viewer.explanation import Explanation, FreeParameter
+from tailor.tools.viewer.situation import Situation
 
 NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
 

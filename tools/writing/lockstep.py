@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive import domains
-from executive.core.context import Settings, make_context
-from executive.library import Models
-from executive.refinement.settings import RefinementSettings
-from schemas.messages import JointState, Message
-from simnodes.body import Reading
-from simnodes.powercube.body import PowerCubeBody
-from tools.episodes import SENDER, run_episode
-from tools.writing.track import Written, written
+from tailor.executive import domains
+from tailor.executive.core.context import Settings, make_context
+from tailor.executive.library import Models
+from tailor.executive.refinement.settings import RefinementSettings
+from tailor.schemas.messages import JointState, Message
+from tailor.simnodes.body import Reading
+from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.tools.episodes import SENDER, run_episode
+from tailor.tools.writing.track import Written, written
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.domains.arm.robot import PEN_M
-from tools.writing.track import Written
+from tailor.executive.domains.arm.robot import PEN_M
+from tailor.tools.writing.track import Written
 
 Array = NDArray[np.float64]
 GRID_S = 0.02  # of the joint states

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.domains.arm.letters import font
-from executive.domains.arm.robot import JOINTS
-from schemas.messages import ActionFinished, ExecStatus, JointState, Message, MotorCurrents, Subgoals
+from tailor.executive.domains.arm.letters import font
+from tailor.executive.domains.arm.robot import JOINTS
+from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, MotorCurrents, Subgoals
 
 Array = NDArray[np.float64]
 PERIOD_S = 0.1  # an action is done one period before its waypoint

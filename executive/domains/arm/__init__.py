@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from importlib import resources
 
-from executive.domains.arm.domain import ArmDomain
-from executive.domains.arm.letters import load_scenario, scenarios
+from tailor.executive.domains.arm.domain import ArmDomain
+from tailor.executive.domains.arm.letters import load_scenario, scenarios
 
 __all__ = ["load_scenario", "make", "scenarios"]
 

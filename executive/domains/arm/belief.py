@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from executive.domains.arm.robot import JOINTS
-from schemas.messages import JointState, Sample
+from tailor.executive.domains.arm.robot import JOINTS
+from tailor.schemas.messages import JointState, Sample
 
 MOTION_LIMIT_S = 0.5  # without encoders for longer, the last velocity says nothing
 PERIOD_S = 0.1  # of the executive

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from executive.domains.arm import belief as believing
-from executive.domains.arm import meaning
-from executive.domains.arm.belief import ArmBelief
-from executive.domains.arm.library import ACTIONS, EXECUTABLES
-from executive.domains.arm.robot import JOINTS, V_MAX_RADPS
-from executive.library import Action, Axis, Fact, Interval, Scenario
-from schemas.messages import JointCommand, Message, Sample
+from tailor.executive.domains.arm import belief as believing
+from tailor.executive.domains.arm import meaning
+from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.library import ACTIONS, EXECUTABLES
+from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
+from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
+from tailor.schemas.messages import JointCommand, Message, Sample
 
 
 @dataclass(frozen=True, slots=True)
 class ArmDomain:
-    """See executive.library.Domain."""
+    """See tailor.executive.library.Domain."""
 
     pddl: str
     name: str = "arm"

@@ -16,9 +16,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from executive.domains.arm.library import fastest_radps
-from executive.library import Scenario
-from schemas.errors import UsageError
+from tailor.executive.domains.arm.library import fastest_radps
+from tailor.executive.library import Scenario
+from tailor.schemas.errors import UsageError
 
 Point = tuple[float, float]  # rad: pan, lift
 

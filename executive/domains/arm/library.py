@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from executive.actions.reach import Reach
-from executive.library import Action, Parameter
+from tailor.executive.actions.reach import Reach
+from tailor.executive.library import Action, Parameter
 
 PAN_RAD = 1.3  # where waypoints may lie
 LIFT_RAD = 0.9

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from executive.domains.arm.belief import ArmBelief, Joints, ahead
-from executive.library import Fact, Interval, Scenario
+from tailor.executive.domains.arm.belief import ArmBelief, Joints, ahead
+from tailor.executive.library import Fact, Interval, Scenario
 
 
 def value(quantity: str, label: str, holds: tuple[Fact, ...], belief: ArmBelief, scenario: Scenario) -> Interval | None:
-    """See executive.library.Domain.value.
+    """See tailor.executive.library.Domain.value.
 
     `at` says where the arm will be when the next action begins, `next` where the scenario put the waypoint. The
     velocities at a waypoint are free up to the fastest that its neighbours allow, unless the scenario names them, which

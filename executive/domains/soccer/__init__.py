@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from importlib import resources
 
-from executive.domains.soccer.domain import SoccerDomain
-from executive.domains.soccer.drawing import draw
+from tailor.executive.domains.soccer.domain import SoccerDomain
+from tailor.executive.domains.soccer.drawing import draw
 
 __all__ = ["draw", "make"]
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from executive.domains.soccer import belief as believing
-from executive.domains.soccer import meaning
-from executive.domains.soccer.belief import SoccerBelief
-from executive.domains.soccer.library import ACTIONS, EXECUTABLES
-from executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
-from executive.library import Action, Axis, Fact, Interval, Scenario
-from schemas.messages import Message, Sample, VelocityCommand
+from tailor.executive.domains.soccer import belief as believing
+from tailor.executive.domains.soccer import meaning
+from tailor.executive.domains.soccer.belief import SoccerBelief
+from tailor.executive.domains.soccer.library import ACTIONS, EXECUTABLES
+from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
+from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
+from tailor.schemas.messages import Message, Sample, VelocityCommand
 
 
 @dataclass(frozen=True, slots=True)
 class SoccerDomain:
-    """See executive.library.Domain."""
+    """See tailor.executive.library.Domain."""
 
     pddl: str
     name: str = "soccer"

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from executive.belief.angles import wrap
+from tailor.executive.belief.angles import wrap
 
 Point = tuple[float, float]
 TRIES = 10_000  # a declaration that fails so often contradicts itself

@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from executive.actions.approach_ball import ApproachBall
-from executive.actions.arrival_path import ArrivalPath
-from executive.actions.dribble_ball import DribbleBall
-from executive.actions.fetch_ball import FetchBall
-from executive.actions.go_to_pose import GoToPose
-from executive.actions.rail_grip import RailGrip
-from executive.domains.soccer import robot
-from executive.domains.soccer.behind import Behind
-from executive.domains.soccer.bumping import BumpRisk
-from executive.library import Action, Parameter
+from tailor.executive.actions.approach_ball import ApproachBall
+from tailor.executive.actions.arrival_path import ArrivalPath
+from tailor.executive.actions.dribble_ball import DribbleBall
+from tailor.executive.actions.fetch_ball import FetchBall
+from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.behind import Behind
+from tailor.executive.domains.soccer.bumping import BumpRisk
+from tailor.executive.library import Action, Parameter
 
 FIELD_X_M = 3.5
 FIELD_Y_M = 2.25

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from executive.domains.soccer import robot
-from executive.domains.soccer.belief import SoccerBelief
-from executive.domains.soccer.library import AT_BALL_MPS
-from executive.library import Conflict, Fact, Interval, Scenario
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.belief import SoccerBelief
+from tailor.executive.domains.soccer.library import AT_BALL_MPS
+from tailor.executive.library import Conflict, Fact, Interval, Scenario
 
 BEFORE_AHEAD_M = (0.15, 0.70)  # a ball there, in the robot's frame, is `atball`: dribbling can begin
 BEFORE_LEFT_M = 0.25
@@ -23,7 +23,7 @@ def value(
     belief: SoccerBelief,
     scenario: Scenario,
 ) -> Interval | None:
-    """See executive.library.Domain.value."""
+    """See tailor.executive.library.Domain.value."""
     result: Interval | None = None
     for fact in (*holds, *achieved):
         said = _said(quantity, label, fact, fact in holds, belief, scenario.places)

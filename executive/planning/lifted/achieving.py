@@ -6,13 +6,13 @@ import itertools
 import math
 from collections.abc import Iterator
 
-from executive.planning.cells import without
-from executive.planning.connectives import Some
-from executive.planning.ground_formula import TooMuchToGround
-from executive.planning.lifted.bindings import Bindings, Term
-from executive.planning.lifted.effects import Guard, LiftedEffect
-from executive.planning.lifted.formula import LiftedLiteral, of_step, tagged
-from executive.planning.lifted.lifted_plan import (
+from tailor.executive.planning.cells import without
+from tailor.executive.planning.connectives import Some
+from tailor.executive.planning.ground_formula import TooMuchToGround
+from tailor.executive.planning.lifted.bindings import Bindings, Term
+from tailor.executive.planning.lifted.effects import Guard, LiftedEffect
+from tailor.executive.planning.lifted.formula import LiftedLiteral, of_step, tagged
+from tailor.executive.planning.lifted.lifted_plan import (
     LiftedCondition,
     LiftedLink,
     LiftedPlan,
@@ -20,10 +20,10 @@ from executive.planning.lifted.lifted_plan import (
     opened,
     unifying,
 )
-from executive.planning.lifted.schema import Schema
-from executive.planning.lifted.task import Achiever, LiftedTask, Placed
-from executive.planning.lifted.threatening import threatened, threatened_by_step
-from executive.planning.orderings import INITIAL, Orderings
+from tailor.executive.planning.lifted.schema import Schema
+from tailor.executive.planning.lifted.task import Achiever, LiftedTask, Placed
+from tailor.executive.planning.lifted.threatening import threatened, threatened_by_step
+from tailor.executive.planning.orderings import INITIAL, Orderings
 
 MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second
 

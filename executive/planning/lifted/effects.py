@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from executive.planning.connectives import FALSE, TRUE, conjunction, disjunction
-from executive.planning.ground_action import INSTANT, MOMENTS, Span
-from executive.planning.ground_formula import TooMuchToGround
-from executive.planning.grounding import MAX_WAYS
-from executive.planning.language import Action, When
-from executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
-from executive.planning.lifted.lowering import Lowering, Names
+from tailor.executive.planning.connectives import FALSE, TRUE, conjunction, disjunction
+from tailor.executive.planning.ground_action import INSTANT, MOMENTS, Span
+from tailor.executive.planning.ground_formula import TooMuchToGround
+from tailor.executive.planning.grounding import MAX_WAYS
+from tailor.executive.planning.language import Action, When
+from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
+from tailor.executive.planning.lifted.lowering import Lowering, Names
 
 Spanned = tuple[tuple[LiftedFormula, Span], ...]
 Pairs = tuple[tuple[str, str], ...]

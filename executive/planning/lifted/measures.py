@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
-from executive.planning.cells import cells_of
-from executive.planning.connectives import Every, Some
-from executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
-from executive.planning.lifted.bindings import Bindings
-from executive.planning.lifted.formula import Equality, LiftedFormula, LiftedLiteral
-from executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
-from executive.planning.lifted.resolving import choices, separations
-from executive.planning.lifted.task import LiftedTask
-from executive.planning.makespan import makespan_estimate
-from executive.planning.ranking import Estimate
+from tailor.executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
+from tailor.executive.planning.cells import cells_of
+from tailor.executive.planning.connectives import Every, Some
+from tailor.executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
+from tailor.executive.planning.lifted.bindings import Bindings
+from tailor.executive.planning.lifted.formula import Equality, LiftedFormula, LiftedLiteral
+from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
+from tailor.executive.planning.lifted.resolving import choices, separations
+from tailor.executive.planning.lifted.task import LiftedTask
+from tailor.executive.planning.makespan import makespan_estimate
+from tailor.executive.planning.ranking import Estimate
 
 
 class LiftedMeasures:

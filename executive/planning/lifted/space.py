@@ -6,20 +6,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from executive.planning.extraction import Frame
-from executive.planning.flaw_orders import parse_flaw_order
-from executive.planning.flaw_selection import FlawSelection
-from executive.planning.language import Literal
-from executive.planning.lifted.achieving import refine_condition
-from executive.planning.lifted.bindings import Bindings
-from executive.planning.lifted.formula import LiftedLiteral
-from executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
-from executive.planning.lifted.measures import LiftedMeasures
-from executive.planning.lifted.resolving import refine_threat
-from executive.planning.lifted.task import LiftedTask
-from executive.planning.plan import Link, Plan
-from executive.planning.ranking import Ranking
-from executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.extraction import Frame
+from tailor.executive.planning.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaw_selection import FlawSelection
+from tailor.executive.planning.language import Literal
+from tailor.executive.planning.lifted.achieving import refine_condition
+from tailor.executive.planning.lifted.bindings import Bindings
+from tailor.executive.planning.lifted.formula import LiftedLiteral
+from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
+from tailor.executive.planning.lifted.measures import LiftedMeasures
+from tailor.executive.planning.lifted.resolving import refine_threat
+from tailor.executive.planning.lifted.task import LiftedTask
+from tailor.executive.planning.plan import Link, Plan
+from tailor.executive.planning.ranking import Ranking
+from tailor.executive.planning.settings import Settings, rankings_for
 
 
 class LiftedSpace:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from executive.planning.lifted.lifted_plan import LiftedLink, LiftedPlan, LiftedThreat, opposing
-from executive.planning.lifted.task import LiftedTask, Placed
+from tailor.executive.planning.lifted.lifted_plan import LiftedLink, LiftedPlan, LiftedThreat, opposing
+from tailor.executive.planning.lifted.task import LiftedTask, Placed
 
 
 def threatened_by_step(
