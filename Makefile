@@ -26,7 +26,7 @@ test-all: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 goldens: setup  # tells what has changed in the golden recordings of tests/replay, and renews them
-	$(BIN)/python -m tailor.tools.goldens
+	$(BIN)/python -m tailor.tools.goldens.renew
 
 lint: setup
 	$(BIN)/ruff check .

@@ -11,7 +11,7 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.library import Models
-from tailor.executive.refinement.benefit import check_benefit
+from tailor.executive.refinement.gate import check_benefit
 from tailor.models.runtime import BENEFIT, load_benefit, load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table

@@ -12,10 +12,10 @@ from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import control, deliberate
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock
-from tailor.runtime.external_planner import ExternalPlanner
 from tailor.runtime.loop import Loop, Turn
-from tailor.runtime.session import Session
+from tailor.runtime.processes.external_planner import ExternalPlanner
 from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms

@@ -14,9 +14,9 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from tailor.models.card import KINDS, MAX_MODEL_BYTES, Card, card_path, read_bytes, read_card, sha256_of
-from tailor.models.card_checks import check_identity, check_made_with, check_place, check_ranges
-from tailor.models.model_bounds import ModelBounds, model_bounds
+from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
+from tailor.models.cards.card import KINDS, MAX_MODEL_BYTES, Card, card_path, read_bytes, read_card, sha256_of
+from tailor.models.cards.checks import check_identity, check_made_with, check_place, check_ranges
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 class ClockBudget:
-    """Grants work until `deadline_ns`; fits tailor.executive.budget.Budget without knowing it."""
+    """Grants work until `deadline_ns`; fits tailor.executive.interfaces.budget.Budget without knowing it."""
 
     def __init__(self, deadline_ns: int, now_ns: Callable[[], int]) -> None:
         self.granted = 0

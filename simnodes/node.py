@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tailor.runtime.bus.publisher import Publisher
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop, Turn
-from tailor.runtime.publisher import Publisher
-from tailor.runtime.session import Session
 from tailor.simnodes.body import Reading
 from tailor.simnodes.declaration import Declaration
 from tailor.simnodes.driver import TOPICS, Driver

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tailor.runtime.questions import Question, Questions
+from tailor.runtime.bus.service import Question, Questions
 from tailor.simnodes.world import World
 
 NAMES = ("reset", "place", "pause", "step")

@@ -10,36 +10,42 @@ from typing import NoReturn
 
 from tailor import __version__
 from tailor.schemas.errors import UsageError
-from tailor.tools.plain_text import plain
+from tailor.tools.cli.plain_text import plain
 
 # command -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
-    "up": ("tailor.tools.up", "start a whole system: bus, simulator, executive, recorder"),
-    "demo": ("tailor.tools.demo", "greedy against refined from the same seed, with a picture"),
-    "letters": ("tailor.tools.letters", "the arm writes capitals, with and without refined velocities"),
-    "bus": ("tailor.tools.bus", "run the bus router alone"),
-    "sim": ("tailor.tools.sim", "run a simulated robot on the bus"),
-    "executive": ("tailor.tools.executive", "run the executive on the bus"),
-    "goal": ("tailor.tools.goal", "send a PDDL goal to a running executive"),
-    "arm": ("tailor.tools.arm", "let a driver obey the running executive"),
-    "estop": ("tailor.tools.estop", "stop every driver until it is reset"),
-    "record": ("tailor.tools.record", "record the bus into an MCAP file"),
-    "replay": ("tailor.tools.replay", "play a recording on the bus"),
-    "info": ("tailor.tools.info", "what a recording holds"),
-    "recover": ("tailor.tools.recover", "make a whole recording of a damaged one"),
-    "cut": ("tailor.tools.cut", "cut a span of time or some topics out of a recording"),
-    "compare": ("tailor.tools.compare", "two recorded runs side by side"),
-    "verify": ("tailor.tools.verify", "feed a recording through today's core and compare bit for bit"),
-    "picture": ("tailor.tools.picture", "draw the paths of recordings in the manner of the paper's Figure 1"),
-    "view": ("tailor.tools.view", "show a run as a page, of a recording or live"),
-    "why": ("tailor.tools.why", "say why subgoals were chosen, and what greedy would have done"),
-    "plan": ("tailor.tools.plan", "plan with PDDL files, in VHPOP's manner"),
-    "gather": ("tailor.tools.gather", "run actions in simulation and keep the episodes"),
-    "train": ("tailor.tools.train", "make action models from episodes"),
-    "train-benefit": ("tailor.tools.train_benefit", "learn when not to refine, with the action models that there are"),
-    "models": ("tailor.tools.models", "list, show, plot and check action models"),
-    "evaluate": ("tailor.tools.evaluate", "reproduce the paper's tables and figures"),
-    "bench": ("tailor.tools.bench", "measure speed and memory"),
+    "up": ("tailor.tools.commands.run.up", "start a whole system: bus, simulator, executive, recorder"),
+    "demo": ("tailor.tools.commands.run.demo", "greedy against refined from the same seed, with a picture"),
+    "letters": ("tailor.tools.commands.run.letters", "the arm writes capitals, with and without refined velocities"),
+    "bus": ("tailor.tools.commands.run.bus", "run the bus router alone"),
+    "sim": ("tailor.tools.commands.run.sim", "run a simulated robot on the bus"),
+    "executive": ("tailor.tools.commands.run.executive", "run the executive on the bus"),
+    "goal": ("tailor.tools.commands.run.goal", "send a PDDL goal to a running executive"),
+    "arm": ("tailor.tools.commands.run.arm", "let a driver obey the running executive"),
+    "estop": ("tailor.tools.commands.run.estop", "stop every driver until it is reset"),
+    "record": ("tailor.tools.commands.run.record", "record the bus into an MCAP file"),
+    "replay": ("tailor.tools.commands.look.replay", "play a recording on the bus"),
+    "info": ("tailor.tools.commands.look.info", "what a recording holds"),
+    "recover": ("tailor.tools.commands.look.recover", "make a whole recording of a damaged one"),
+    "cut": ("tailor.tools.commands.look.cut", "cut a span of time or some topics out of a recording"),
+    "compare": ("tailor.tools.commands.look.compare", "two recorded runs side by side"),
+    "verify": ("tailor.tools.commands.look.verify", "feed a recording through today's core and compare bit for bit"),
+    "picture": (
+        "tailor.tools.commands.look.picture",
+        "draw the paths of recordings in the manner of the paper's Figure 1",
+    ),
+    "view": ("tailor.tools.commands.look.view", "show a run as a page, of a recording or live"),
+    "why": ("tailor.tools.commands.look.why", "say why subgoals were chosen, and what greedy would have done"),
+    "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, in VHPOP's manner"),
+    "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and keep the episodes"),
+    "train": ("tailor.tools.commands.learn.train", "make action models from episodes"),
+    "train-benefit": (
+        "tailor.tools.commands.learn.train_gate",
+        "learn when not to refine, with the action models that there are",
+    ),
+    "models": ("tailor.tools.commands.learn.models", "list, show, plot and check action models"),
+    "evaluate": ("tailor.tools.commands.measure.evaluate", "reproduce the paper's tables and figures"),
+    "bench": ("tailor.tools.commands.measure.bench", "measure speed and memory"),
 }
 
 

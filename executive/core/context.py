@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from tailor.executive import planning
 from tailor.executive.library import Domain, Models, Scenario
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 
 PERIOD_NS = 100_000_000  # 10 Hz

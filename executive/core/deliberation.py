@@ -8,14 +8,14 @@ from typing import Literal
 import numpy as np
 
 from tailor.executive import planning
-from tailor.executive.budget import Budget
 from tailor.executive.core.context import Context
 from tailor.executive.core.plan_finding import PlanFinding, PlanFound
+from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Belief
-from tailor.executive.refinement.assertion import Assertion
+from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.belief_monitor import Watch
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
 from tailor.executive.refinement.refinement import Choice, Refinement
-from tailor.executive.refinement.watching import Watch
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]

@@ -9,9 +9,9 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from tailor.executive import planning
-from tailor.executive.budget import Budget
 from tailor.executive.core.context import Context
 from tailor.executive.core.plan_finding import PlanFound, problem_of_now, validated
+from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Fact
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tailor.executive import planning
-from tailor.executive.budget import Budget
 from tailor.executive.core.context import Context
+from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 

@@ -12,7 +12,7 @@ from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.plan_finding import PlanFound
 from tailor.executive.core.state import Output, State
-from tailor.executive.refinement.sequence import InstantiatedAction, Variable
+from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive import planning
-from tailor.executive.budget import Budget
 from tailor.executive.core.context import Context
 from tailor.executive.core.improvement import Improvement, better
 from tailor.executive.core.plan_finding import PlanFound
 from tailor.executive.core.state import State, Task
+from tailor.executive.interfaces.budget import Budget
 
 
 def reusable(

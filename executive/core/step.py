@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tailor.executive.budget import Budget
 from tailor.executive.core import reporting
 from tailor.executive.core.action_cycle import act
 from tailor.executive.core.asking import hear_planner
@@ -15,6 +14,7 @@ from tailor.executive.core.context import Context
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
 from tailor.executive.core.thinking import think
+from tailor.executive.interfaces.budget import Budget
 from tailor.schemas.messages import ArmRequest
 
 ARM_AGAIN_NS = 500_000_000  # a request that got no answer is repeated

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tailor.executive.budget import Budget
 from tailor.executive.core.action_cycle import running_from
 from tailor.executive.core.asking import finding_for, noting_failure
 from tailor.executive.core.context import Context
@@ -14,6 +13,7 @@ from tailor.executive.core.modes import Mode
 from tailor.executive.core.plan_finding import problem_of_now
 from tailor.executive.core.reusing import look_further, reusable
 from tailor.executive.core.state import State, Task
+from tailor.executive.interfaces.budget import Budget
 
 
 def think(context: Context, state: State, budget: Budget) -> State:

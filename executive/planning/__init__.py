@@ -3,21 +3,21 @@
 Everything that other parts of the executive use is named here.
 """
 
-from tailor.executive.planning.completing import completed
-from tailor.executive.planning.domain_reader import parse_domain
-from tailor.executive.planning.errors import PddlError, Unsupported
-from tailor.executive.planning.language import Domain, Literal
-from tailor.executive.planning.plan import GOAL, Link, Plan, Result, Step
-from tailor.executive.planning.problem import Problem
-from tailor.executive.planning.problem_reader import parse_problem
-from tailor.executive.planning.problem_text import format_problem
-from tailor.executive.planning.progress import progress
+from tailor.executive.planning.pddl.domain_reader import parse_domain
+from tailor.executive.planning.pddl.errors import PddlError, Unsupported
+from tailor.executive.planning.pddl.language import Domain, Literal
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.pddl.problem_reader import parse_problem
+from tailor.executive.planning.pddl.problem_text import format_problem
+from tailor.executive.planning.plans.action_effects import progress
+from tailor.executive.planning.plans.completion import completed
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
+from tailor.executive.planning.plans.suffix import relink, suffix
+from tailor.executive.planning.plans.validator import validate
+from tailor.executive.planning.plans.vhpop_reader import PlanTextError, parse_plan
+from tailor.executive.planning.plans.vhpop_text import format_links, format_plan
 from tailor.executive.planning.search import GroundCache, Search
 from tailor.executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
-from tailor.executive.planning.suffix import relink, suffix
-from tailor.executive.planning.validator import validate
-from tailor.executive.planning.vhpop_reader import PlanTextError, parse_plan
-from tailor.executive.planning.vhpop_text import format_links, format_plan
 
 __all__ = [
     "DEFAULT",

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Generic
 
-from tailor.executive.planning.plan import Result, dead_end, unreachable
 from tailor.executive.planning.plan_space import P, PlanSpace
+from tailor.executive.planning.plans.plan import Result, dead_end, unreachable
 from tailor.executive.planning.settings import FlawOrder, Settings
 
 FIRST_TURN = 1000  # plans that a flaw order has generated when the next one's turn comes; doubles with every round

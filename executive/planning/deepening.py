@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Generic
 
-from tailor.executive.planning.plan import Result, dead_end, unreachable
+from tailor.executive.planning.flaws.ranking import Rank
 from tailor.executive.planning.plan_space import P, PlanSpace
-from tailor.executive.planning.ranking import Rank
+from tailor.executive.planning.plans.plan import Result, dead_end, unreachable
 from tailor.executive.planning.settings import Settings
 
 

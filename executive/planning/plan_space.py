@@ -6,20 +6,20 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from tailor.executive.planning.extraction import extract
-from tailor.executive.planning.flaw_orders import parse_flaw_order
-from tailor.executive.planning.flaw_selection import FlawSelection
-from tailor.executive.planning.ground_estimates import GroundEstimates
-from tailor.executive.planning.ground_flaws import GroundFlaws
-from tailor.executive.planning.ground_formula import World
-from tailor.executive.planning.ground_task import GroundTask
-from tailor.executive.planning.open_conditions import refine_open
-from tailor.executive.planning.partial_plan import OpenCondition, PartialPlan, initial_plan
-from tailor.executive.planning.plan import Plan
-from tailor.executive.planning.ranking import Rank, Ranking
-from tailor.executive.planning.refinable import Refinable
+from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaws.flaw_selection import FlawSelection
+from tailor.executive.planning.flaws.ranking import Rank, Ranking
+from tailor.executive.planning.ground.ground_formula import World
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.extraction import extract
+from tailor.executive.planning.ground_plans.ground_estimates import GroundEstimates
+from tailor.executive.planning.ground_plans.ground_flaws import GroundFlaws
+from tailor.executive.planning.ground_plans.open_conditions import refine_open
+from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, initial_plan
+from tailor.executive.planning.ground_plans.threats import refine_threat
+from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.settings import Settings, rankings_for
-from tailor.executive.planning.threats import refine_threat
+from tailor.executive.planning.structures.refinable import Refinable
 
 P = TypeVar("P", bound=Refinable)
 

@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.budget import Budget
+from tailor.executive.interfaces.budget import Budget
 from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.deepening import Deepening
-from tailor.executive.planning.ground_formula import TooMuchToGround
-from tailor.executive.planning.ground_task import make_task
-from tailor.executive.planning.grounding import GroundActions, ground_actions, shuffled, world_of
-from tailor.executive.planning.language import Domain
-from tailor.executive.planning.lifted.space import LiftedSpace
+from tailor.executive.planning.ground.ground_formula import TooMuchToGround
+from tailor.executive.planning.ground.ground_task import make_task
+from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, world_of
 from tailor.executive.planning.lifted.task import lifted_task
-from tailor.executive.planning.plan import Result
+from tailor.executive.planning.lifted_space import LiftedSpace
+from tailor.executive.planning.pddl.language import Domain
+from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plan_space import GroundSpace, P, PlanSpace
-from tailor.executive.planning.problem import Problem
+from tailor.executive.planning.plans.plan import Result
 from tailor.executive.planning.settings import DEFAULT, Settings
 
 

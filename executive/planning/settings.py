@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from tailor.executive.planning.flaw_orders import parse_flaw_order
-from tailor.executive.planning.ranking import check_rankings
+from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaws.ranking import check_rankings
 from tailor.schemas.errors import UsageError
 
 SHORTEST_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tailor.executive.library import Array, Models
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.sequence import ActionSequence
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.budget import Budget, CheckBudget
+from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.library import Models
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.selection import solver_for
-from tailor.executive.refinement.sequence import ActionSequence
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,12 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.library import Belief, Conflict, Domain, Fact, Interval, Parameter, Scenario
 from tailor.executive.planning import Plan
-from tailor.executive.refinement.sequence import ActionSequence, Failure, InstantiatedAction, Variable
+from tailor.executive.refinement.objective.sequence import (
+    ActionSequence,
+    Failure,
+    InstantiatedAction,
+    Variable,
+)
 
 __all__ = ["ActionSequence", "Failure", "InstantiatedAction", "Pattern", "Variable", "instantiate"]
 

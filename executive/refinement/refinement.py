@@ -10,18 +10,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tailor.executive.budget import Budget
+from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Array, Models
-from tailor.executive.refinement.benefit import Verdict, judge
-from tailor.executive.refinement.certificate import Certificate, certificate
-from tailor.executive.refinement.choice import Choice, choice_of
+from tailor.executive.refinement.certificates.certificate import Certificate, certificate
+from tailor.executive.refinement.certificates.stage_bounds import NoBound
+from tailor.executive.refinement.gate import Verdict, judge
 from tailor.executive.refinement.greedy import Greedy, Polish, greedy
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.selection import solver_for
-from tailor.executive.refinement.sequence import ActionSequence
-from tailor.executive.refinement.settings import RefinementSettings
-from tailor.executive.refinement.solver import Solver
-from tailor.executive.refinement.stage_bounds import NoBound
+from tailor.executive.refinement.objective.choice import Choice, choice_of
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
+from tailor.executive.refinement.solvers.solver import Solver
 
 __all__ = ["Choice", "Refinement", "Report"]
 

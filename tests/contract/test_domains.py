@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains, planning
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Scenario
 from tailor.executive.refinement.instantiation import ActionSequence, instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.declaration import declaration
-from tailor.tools.lockstep import new_body, newest, run_action, sample_arguments
+from tailor.tools.lockstep.action_run import new_body, newest, run_action, sample_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
 PERIOD_NS = 100_000_000

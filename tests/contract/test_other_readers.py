@@ -10,10 +10,10 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from tailor.runtime.attachment import Origin, pack
-from tailor.runtime.inbox import Raw
-from tailor.runtime.session import encoding_of
-from tailor.runtime.tape import Tape
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.session import encoding_of
+from tailor.runtime.recordings.mcap_writer import Tape
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example

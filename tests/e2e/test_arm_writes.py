@@ -3,10 +3,10 @@
 import pytest
 
 from tailor.runtime.stopping import Stop
-from tailor.tools.deployment import Deployment, order_of
-from tailor.tools.letters import recorded
-from tailor.tools.live_status import screen
-from tailor.tools.system import Plan, free_endpoint, run_system
+from tailor.tools.cli.deployment import Deployment, order_of
+from tailor.tools.cli.live_status import screen
+from tailor.tools.commands.run.letters import recorded
+from tailor.tools.launch.system import Plan, free_endpoint, run_system
 from tailor.tools.writing.measures import waypoint_errors_rad
 
 

@@ -9,9 +9,9 @@ import subprocess
 import pytest
 
 from tailor.models.runtime import ZOO
-from tailor.runtime.processes import tailor
-from tests.e2e.bus_system import ROOT, free_endpoint
-from tests.patience import PATIENCE_S
+from tailor.runtime.processes.child import tailor
+from tests.support.bus_system import ROOT, free_endpoint
+from tests.support.patience import PATIENCE_S
 
 
 def refused(*arguments):

@@ -6,13 +6,13 @@ from contextlib import ExitStack
 
 import pytest
 
-from tailor.runtime.session import open_client, open_router
+from tailor.runtime.bus.session import open_client, open_router
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
-from tests.e2e.bus_system import free_endpoint
-from tests.patience import in_one_try_of, wait_until
+from tests.support.bus_system import free_endpoint
+from tests.support.patience import in_one_try_of, wait_until
 
 ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
 

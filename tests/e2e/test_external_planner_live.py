@@ -7,11 +7,11 @@ import sys
 
 import pytest
 
-from tailor.runtime.processes import tailor
-from tailor.runtime.recording import open_recording
+from tailor.runtime.processes.child import tailor
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, TickReport, VelocityCommand
-from tests.e2e.bus_system import ROOT, bus_system, free_endpoint
-from tests.patience import PATIENCE_S, gone, in_one_try_of, wait_until
+from tests.support.bus_system import ROOT, bus_system, free_endpoint
+from tests.support.patience import PATIENCE_S, gone, in_one_try_of, wait_until
 
 OWN = shlex.join(tailor("plan", "--links"))  # our own command, as anybody's vhpop
 LIMIT_S = 1.5  # for a planner that hangs

@@ -8,8 +8,8 @@ import time
 import pytest
 
 from tailor.schemas.messages import DriverState
-from tests.e2e.bus_system import driving, guarded_robot, moving, outputs
-from tests.patience import in_one_try_of, wait_until
+from tests.support.bus_system import driving, guarded_robot, moving, outputs
+from tests.support.patience import in_one_try_of, wait_until
 
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period of the executive
 
@@ -100,7 +100,7 @@ def test_a_second_executive_cannot_move_the_robot(system):
     def refused():
         first = driving(start, endpoint, trace, 0.25)
         states = session.inbox(["driver"], "agilo")
-        second = start("tests.e2e.stand_in_executive", endpoint, 0.9)
+        second = start("tests.support.stand_in_executive", endpoint, 0.9)
 
         def told():
             found = [s.message for s in states.drain() if isinstance(s.message, DriverState)]

@@ -7,9 +7,9 @@ import subprocess
 
 import pytest
 
-from tailor.runtime.processes import tailor
-from tests.e2e.bus_system import ROOT
-from tests.patience import PATIENCE_S
+from tailor.runtime.processes.child import tailor
+from tests.support.bus_system import ROOT
+from tests.support.patience import PATIENCE_S
 
 STARTS = 2
 

@@ -3,11 +3,11 @@
 import signal
 import subprocess
 
-from tailor.runtime.processes import tailor
-from tailor.runtime.session import open_router
-from tailor.tools.record import BACK, GONE
-from tests.e2e.bus_system import ROOT, free_endpoint
-from tests.patience import PATIENCE_S, wait_until
+from tailor.runtime.bus.session import open_router
+from tailor.runtime.processes.child import tailor
+from tailor.tools.commands.run.record import BACK, GONE
+from tests.support.bus_system import ROOT, free_endpoint
+from tests.support.patience import PATIENCE_S, wait_until
 
 
 def test_a_recorder_tells_that_its_bus_is_gone_and_that_it_is_back(tmp_path):

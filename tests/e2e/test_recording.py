@@ -9,20 +9,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tailor.runtime.mcap_scan import Account
-from tailor.runtime.processes import Child
-from tailor.runtime.recording import open_recording
+from tailor.runtime.processes.child import Child
+from tailor.runtime.recordings.mcap_scan import Account
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Odometry, Provenance
-from tests.e2e.bus_system import bus_system
-from tests.patience import PATIENCE_S, in_one_try_of, wait_until
+from tests.support.bus_system import bus_system
+from tests.support.patience import PATIENCE_S, in_one_try_of, wait_until
 
 
 @pytest.fixture
 def robot(tmp_path):
     """A bus with a stand-in robot that publishes; yields (session, start_recorder)."""
     with bus_system() as (session, endpoint, start):
-        start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
+        start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
         states = session.inbox(["driver"], "agilo")
         wait_until(states.drain, "driver state")
 
@@ -132,7 +132,7 @@ def test_record_replay_record_is_byte_identical(tmp_path):
             wait_until(marker.matched, "recorder")
             return recorder
 
-        sim = start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
+        sim = start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
         recorder = record("a.mcap")
         wait_until(lambda: len(readable(tmp_path / "a.mcap")) > 150, "two seconds of messages")

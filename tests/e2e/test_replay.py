@@ -12,13 +12,13 @@ from dataclasses import replace
 
 import pytest
 
-from tailor.runtime.session import open_client, open_router
+from tailor.runtime.bus.session import open_client, open_router
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
-from tests.e2e.bus_system import ROOT, bus_system, free_endpoint
-from tests.patience import PATIENCE_S, in_one_try_of, wait_until
-from tests.unit.test_comparison import Script
+from tests.support.bus_system import ROOT, bus_system, free_endpoint
+from tests.support.patience import PATIENCE_S, in_one_try_of, wait_until
+from tests.unit.tools.test_comparison import Script
 
 DRIVER, EXECUTIVE = "cd" * 16, "ab" * 16
 
@@ -121,7 +121,7 @@ def test_keys_step_pause_and_end_a_replay(tmp_path):
 
 def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
     with bus_system() as (session, endpoint, start):
-        start("tests.e2e.stand_in_sim", endpoint, tmp_path / "trace")
+        start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
 
         def spared():

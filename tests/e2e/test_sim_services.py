@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from tests.e2e.bus_system import driving, guarded_robot, moving, outputs
-from tests.patience import in_one_try_of, wait_until
+from tests.support.bus_system import driving, guarded_robot, moving, outputs
+from tests.support.patience import in_one_try_of, wait_until
 
 
 @pytest.fixture

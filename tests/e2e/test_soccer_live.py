@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains
-from tailor.runtime.processes import Child, tailor
-from tailor.runtime.session import open_client
+from tailor.runtime.bus.session import open_client
+from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus, SimTruth, VelocityCommand
-from tests.e2e.bus_system import ROOT, answers, bus_system, free_endpoint
-from tests.patience import PATIENCE_S, in_one_try_of, wait_until
+from tests.support.bus_system import ROOT, answers, bus_system, free_endpoint
+from tests.support.patience import PATIENCE_S, in_one_try_of, wait_until
 
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period
 
@@ -59,7 +59,7 @@ def test_recorded_live_run_is_repeated_by_the_core_bit_for_bit(recording):
 @pytest.mark.xdist_group("live")
 def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte(recording, tmp_path):
     """Record A == record B == replay(A): the equation that defines determinism, in processes of their own."""
-    from tailor.tools.recorded_run import RecordedRuns
+    from tailor.tools.recordings.recorded_run import RecordedRuns
 
     runs = [tmp_path / "first.mcap", tmp_path / "second.mcap"]
     for seed, path in enumerate(runs, start=1):
@@ -77,8 +77,8 @@ def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte
 @pytest.mark.xdist_group("live")
 def test_verify_names_the_first_tick_that_differs(recording):
     from tailor.executive.composition import recompose
-    from tailor.tools.recorded_run import RecordedRuns
-    from tailor.tools.verify import verify
+    from tailor.tools.commands.look.verify import verify
+    from tailor.tools.recordings.recorded_run import RecordedRuns
 
     runs = RecordedRuns(recording)
     run = runs.runs[0]
@@ -92,7 +92,7 @@ def test_verify_names_the_first_tick_that_differs(recording):
 
 @pytest.mark.xdist_group("live")
 def test_no_tick_is_missed(recording, tmp_path):
-    from tailor.tools.recorded_run import RecordedRuns
+    from tailor.tools.recordings.recorded_run import RecordedRuns
 
     more = (live_run(tmp_path / f"{number}.mcap") for number in range(2))  # should the machine have stalled
     runs = chain([recording], more)
@@ -105,7 +105,7 @@ def test_no_tick_is_missed(recording, tmp_path):
 
 @pytest.mark.xdist_group("live")
 def test_ticks_are_counted_and_every_input_has_a_number(recording):
-    from tailor.tools.recorded_run import RecordedRuns
+    from tailor.tools.recordings.recorded_run import RecordedRuns
 
     run = RecordedRuns(recording).runs[0]
     assert [report.tick for report in run.ticks] == list(range(1, len(run.ticks) + 1))
@@ -126,7 +126,7 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
     up.send_signal(signal.SIGINT)
     assert up.wait(PATIENCE_S) == 0
     assert not [pid for pid in processes if os.path.exists(f"/proc/{pid}")]
-    from tailor.runtime.recording import open_recording
+    from tailor.runtime.recordings.recording import open_recording
 
     commands = [m for _, m in open_recording(path).decoded() if isinstance(m, VelocityCommand)]
     assert max(c.v for c in commands) > 0.2

@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from tailor.schemas import messages as m
-from tailor.tools.viewer import story as story_module
+from tailor.tools.viewer import timeline as story_module
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.feed import Feed
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.server import serving
-from tailor.tools.viewer.story import Row, Story
-from tests import synthetic_run
-from tests.browser import PROGRAM, Browser
-from tests.synthetic_models import LIBRARY, MODELS
+from tailor.tools.viewer.timeline import Row, Story
+from tests.support import synthetic_run
+from tests.support.browser import PROGRAM, Browser
+from tests.support.synthetic_models import LIBRARY, MODELS
 
 pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),

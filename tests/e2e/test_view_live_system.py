@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from tailor.runtime.processes import Child, tailor
+from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import TickReport
 from tailor.tools.viewer.recorded import timed
-from tests.browser import PROGRAM, Browser
-from tests.e2e.bus_system import ROOT, answers, free_endpoint
-from tests.patience import PATIENCE_S, wait_until
+from tests.support.browser import PROGRAM, Browser
+from tests.support.bus_system import ROOT, answers, free_endpoint
+from tests.support.patience import PATIENCE_S, wait_until
 
 pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),

@@ -5,11 +5,11 @@ import time
 
 import pytest
 
-from tailor.runtime.external_planner import MAX_ANSWER_BYTES, ExternalPlanner
+from tailor.runtime.processes.external_planner import MAX_ANSWER_BYTES, ExternalPlanner
 from tailor.schemas import codec
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 from tests.faults.test_planner_process import LIMIT_S, POLL_LIMIT_S, program
-from tests.patience import PATIENCE_S, gone, in_one_try_of
+from tests.support.patience import PATIENCE_S, gone, in_one_try_of
 
 
 def request(number=7):

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tailor.executive.planning import PlanTextError, parse_plan, validate
-from tailor.runtime.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
+from tailor.runtime.processes.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from tailor.schemas.errors import UsageError
-from tests.patience import PATIENCE_S, first_line, gone, in_one_try_of, is_alive
-from tests.planning_problems import DATA, own, printed
+from tests.support.patience import PATIENCE_S, first_line, gone, in_one_try_of, is_alive
+from tests.support.planning_problems import DATA, own, printed
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMIT_S = 30.0  # for those that end by themselves
@@ -127,7 +127,7 @@ def test_a_planner_that_eats_memory_runs_into_a_limit(tmp_path):
 def test_a_planner_dies_with_the_process_that_asked_it(tmp_path):
     body = f"""
 import sys
-from tailor.runtime.planner_process import PlannerProcess
+from tailor.runtime.processes.planner_process import PlannerProcess
 child = PlannerProcess({program(tmp_path, "time.sleep(60)")!r}, "", "", 60.0)
 print(child.pid, flush=True)
 time.sleep(60)"""

@@ -7,12 +7,12 @@ import time
 
 import pytest
 
-from tailor.runtime.processes import Child
-from tailor.runtime.recording import open_recording
+from tailor.runtime.processes.child import Child
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas import codec
 from tailor.schemas.messages import Odometry
-from tests.e2e.bus_system import bus_system
-from tests.patience import PATIENCE_S, wait_until
+from tests.support.bus_system import bus_system
+from tests.support.patience import PATIENCE_S, wait_until
 
 MOST_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
 LIMITED = f"""

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tailor.executive.domains.soccer.library import behind_both, behind_goal
+from tailor.executive.domains.soccer.action_library import behind_both, behind_goal
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([behind_goal, behind_both]), st.sampled_from([0.0, 0.01, 1.0, 9.0]))

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.models.cell_boxes import boxes_of_cells
-from tailor.models.cells import CELLS_MAX, cells_of
-from tailor.models.features import projective
-from tailor.models.model_tree import BaggedModelTrees
-from tailor.models.onnx_export import export_duration
-from tailor.models.onnx_wire import read_graph
-from tailor.models.split_tree import LEAF, SplitTree
-from tests import standin
+from tailor.models.bounds.cell_boxes import boxes_of_cells
+from tailor.models.bounds.onnx_wire import read_graph
+from tailor.models.export.onnx_export import export_duration
+from tailor.models.features.features import projective
+from tailor.models.trees.cells import CELLS_MAX, cells_of
+from tailor.models.trees.model_tree import BaggedModelTrees
+from tailor.models.trees.split_tree import LEAF, SplitTree
+from tests.support import standin
 
 FEATURES = 3
 

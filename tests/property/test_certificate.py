@@ -10,17 +10,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Models
-from tailor.executive.refinement.certificate import Certificate, certificate
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.selection import solver_for
-from tailor.executive.refinement.sequence import ActionSequence
-from tailor.executive.refinement.settings import RefinementSettings
-from tailor.executive.refinement.stage_bounds import NoBound
-from tailor.executive.refinement.stalling import PATIENCE, Stalling
-from tests.random_trees import Trees
-from tests.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
+from tailor.executive.refinement.certificates.bound_stagnation import PATIENCE, Stalling
+from tailor.executive.refinement.certificates.certificate import Certificate, certificate
+from tailor.executive.refinement.certificates.stage_bounds import NoBound
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
+from tests.support.random_trees import Trees
+from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
 
 seeds = st.integers(0, 2**32 - 1)
 kinds = st.sampled_from(["waypoints", "approach", "detour", "two places"])
@@ -147,7 +147,7 @@ def test_proof_stalls_only_where_its_bound_does_not_rise():
 
 
 def test_proof_that_would_spend_its_checks_on_its_first_boxes_is_not_begun(monkeypatch):
-    monkeypatch.setattr("tailor.executive.refinement.certificate.EFFORT", 1000)
+    monkeypatch.setattr("tailor.executive.refinement.certificates.certificate.EFFORT", 1000)
     cost, chosen = objective("detour", 0, 1.0, True)
     made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
     made.advance(CheckBudget(100))

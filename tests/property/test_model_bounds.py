@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.models.bag_bounds import least_of_bag
-from tailor.models.card import card_path
-from tailor.models.feature_spans import FEATURE_SPANS
-from tailor.models.features import SPACES
-from tailor.models.leaf_bounds import LeafBounds, Side
+from tailor.models.bounds.bag_bounds import least_of_bag
+from tailor.models.bounds.leaf_bounds import LeafBounds, Side
+from tailor.models.bounds.tree_boxes import tree_boxes
+from tailor.models.cards.card import card_path
+from tailor.models.features.feature_intervals import FEATURE_SPANS
+from tailor.models.features.features import SPACES
+from tailor.models.features.intervals import Span
 from tailor.models.runtime import ZOO
-from tailor.models.spans import Span
-from tailor.models.tree_boxes import tree_boxes
-from tests.random_trees import Trees
+from tests.support.random_trees import Trees
 
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
 SHAPE = (1, 1, 1)

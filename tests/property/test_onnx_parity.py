@@ -4,16 +4,16 @@ import numpy as np
 import onnxruntime
 import pytest
 
-from tailor.models import cells
-from tailor.models.failure_forest import FailureForest
-from tailor.models.failure_tree import FailureTree
-from tailor.models.features import SPACES, joints, projective
-from tailor.models.model_tree import BaggedModelTrees, ModelTreeRegressor
-from tailor.models.onnx_export import export_duration, export_success
-from tailor.models.split_tree import LEAF
-from tailor.models.taught_forest import TaughtForest
-from tailor.models.tree_boxes import tree_boxes
-from tests import standin
+from tailor.models.bounds.tree_boxes import tree_boxes
+from tailor.models.export.onnx_export import export_duration, export_success
+from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.failure_forest import FailureForest
+from tailor.models.failure.failure_tree import FailureTree
+from tailor.models.features.features import SPACES, joints, projective
+from tailor.models.trees import cells
+from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
+from tailor.models.trees.split_tree import LEAF
+from tests.support import standin
 
 PI = np.pi
 TOLERANCE = 1e-4

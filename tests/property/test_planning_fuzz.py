@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import (
     PddlError,
     PlanTextError,
@@ -18,10 +18,10 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
-from tests.cpu_time import least_cpu_s
-from tests.pddl_mutations import mutated, regrown
-from tests.planning_problems import DATA, OWN, read, solve
-from tests.unit.test_planning_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
+from tests.support.cpu_time import least_cpu_s
+from tests.support.pddl_mutations import mutated, regrown
+from tests.support.planning_problems import DATA, OWN, read, solve
+from tests.unit.planning.test_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
 
 RICH = SWITCHES.replace("{unlock}", "(or (on a) (not (on b)))").replace("{finish}", "(exists (?l - lamp) (on ?l))")
 PAIRS = [

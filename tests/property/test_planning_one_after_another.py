@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tailor.executive.planning import Settings, validate
-from tailor.executive.planning.state import Objects, fact_of, holds
-from tests.planning_problems import read, solve
+from tailor.executive.planning.plans.state import Objects, fact_of, holds
 from tests.property.test_planning_lifted import DURATIVE, tasks
+from tests.support.planning_problems import read, solve
 
 
 def met(conditions, when, binding, state, objects):

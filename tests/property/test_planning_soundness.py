@@ -7,9 +7,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.planning import FlawOrder, Settings, validate
-from tailor.executive.planning.progress import progress
-from tailor.executive.planning.state import Objects, holds
-from tests.planning_problems import read, solve
+from tailor.executive.planning.plans.action_effects import progress
+from tailor.executive.planning.plans.state import Objects, holds
+from tests.support.planning_problems import read, solve
 
 FACTS = ["(p a)", "(p b)", "(q a)", "(q b)", "(r)"]
 LITERALS = st.sampled_from(FACTS + [f"(not {fact})" for fact in FACTS])

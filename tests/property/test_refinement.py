@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.budget import CheckBudget
-from tailor.executive.refinement.assertion import Assertion
-from tailor.executive.refinement.ranges import Ranges
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.objective.ranges import Ranges
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
-from tailor.executive.refinement.sequence import ActionSequence
-from tailor.executive.refinement.settings import RefinementSettings
-from tests.synthetic_models import MODELS, approach_dribble, sequence, waypoints
+from tests.support.synthetic_models import MODELS, approach_dribble, sequence, waypoints
 
 SOLVERS = ("chain", "genetic", "differential")
 SPREAD = (("x", 0.03), ("y", 0.03), ("phi", 0.1))

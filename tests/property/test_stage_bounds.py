@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.library import Models
-from tailor.executive.refinement.boxes import NOWHERE, Boxes, box_of
-from tailor.executive.refinement.chain import blocks_of, links_of
-from tailor.executive.refinement.settings import RefinementSettings
-from tailor.executive.refinement.stage_bounds import StageBound, stage_bound
+from tailor.executive.refinement.certificates.boxes import NOWHERE, Boxes, box_of
+from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.chain import blocks_of, links_of
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.refine_cases import Case, cases
 

@@ -14,21 +14,21 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from tailor.executive.composition import recompose
-from tailor.runtime.attachment import Origin, pack
-from tailor.runtime.inbox import Raw
-from tailor.runtime.machine import machine
-from tailor.runtime.recording import open_recording
-from tailor.runtime.tape import ENCODING, Tape
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.platform_fingerprint import machine
+from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Provenance, RefinementReport, VelocityCommand
-from tailor.tools import goldens
+from tailor.tools.commands.look.verify import told, verify
+from tailor.tools.goldens import renew
 from tailor.tools.main import main
-from tailor.tools.recorded_run import RecordedRuns, decoded
-from tailor.tools.verify import told, verify
-from tests.e2e.bus_system import ROOT
+from tailor.tools.recordings.recorded_run import RecordedRuns, decoded
+from tests.support.bus_system import ROOT
 
-GOLDENS = {golden.name: goldens.FOLDER / f"{golden.name}.mcap" for golden in goldens.goldens()}
+GOLDENS = {golden.name: renew.FOLDER / f"{golden.name}.mcap" for golden in renew.goldens()}
 SOME = GOLDENS["soccer-waypoints"]
 RENEW = "`make goldens` tells what has changed and renews them"
 
@@ -92,7 +92,7 @@ def test_core_says_what_it_said_when_the_golden_was_recorded(name):
 
 
 def test_there_are_no_other_goldens_and_all_together_they_are_small():
-    files = set(goldens.FOLDER.iterdir())
+    files = set(renew.FOLDER.iterdir())
     assert files == set(GOLDENS.values())
     assert sum(path.stat().st_size for path in files) < 600_000
 
@@ -146,7 +146,7 @@ def test_without_proofs_all_else_is_compared(tmp_path, capsys):
 @pytest.mark.skipif(sys.platform != "linux", reason="needs glibc's switch for CPU features")
 def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
     switched = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-    asked = [sys.executable, "-c", "from tailor.runtime.machine import arithmetic; print(arithmetic())"]
+    asked = [sys.executable, "-c", "from tailor.runtime.platform_fingerprint import arithmetic; print(arithmetic())"]
     there = subprocess.run(asked, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
     if there == machine()["arithmetic"]:
         pytest.skip("this libm computes alike with and without")
@@ -159,14 +159,14 @@ def test_goldens_are_renewed_only_after_telling_what_has_changed(tmp_path, capsy
     kept = tmp_path / SOME.name
     rewritten(SOME, kept, nudged(lambda v: v + 0.5, other_horizon))
     before = kept.read_bytes()
-    monkeypatch.setattr(goldens, "FOLDER", tmp_path)
-    assert goldens.main([SOME.stem, "--check"]) == 1
+    monkeypatch.setattr(renew, "FOLDER", tmp_path)
+    assert renew.main([SOME.stem, "--check"]) == 1
     said = capsys.readouterr().out
     assert f"{SOME.stem}: changed\n" in said
     assert "settings.refinement.horizon was 1, now 2" in said
     assert re.search(r"first at  tick 102, agilo/cmd_vel, v: was [\d.]+, now [\d.]+", said)
     assert kept.read_bytes() == before
-    assert goldens.main([SOME.stem]) == 0
+    assert renew.main([SOME.stem]) == 0
     assert verdict_of(kept).difference is None
-    assert goldens.main([SOME.stem, "--check"]) == 0
+    assert renew.main([SOME.stem, "--check"]) == 0
     assert capsys.readouterr().out.endswith(f"{SOME.stem}: as before\n")

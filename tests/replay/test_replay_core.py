@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.replay import RecordedTick, replay
-from tests.toy_domain import inputs, line_context
+from tests.support.toy_domain import inputs, line_context
 
 TICK = 100_000_000
 GOAL = "(and (visited a) (visited b) (at b))"

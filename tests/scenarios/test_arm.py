@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tailor.executive.library import Models
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
 from tailor.tools.writing.lockstep import Hand, ListenedBody, write
 from tailor.tools.writing.measures import waypoint_errors_rad

@@ -9,11 +9,11 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.composition import Order, compose
 from tailor.executive.core.context import Settings
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import replay
 from tailor.schemas.messages import RefinementReport, Subgoals
-from tailor.tools.episodes import SENDER, run_episode
-from tailor.tools.sim import make_world
+from tailor.tools.commands.run.sim import make_world
+from tailor.tools.lockstep.run import SENDER, run_episode
 
 
 def told(outputs, kind):

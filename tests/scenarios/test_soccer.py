@@ -12,8 +12,8 @@ from tailor.executive.composition import Order, compose
 from tailor.executive.core.context import Settings
 from tailor.schemas.messages import PlanReport
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.tools.episodes import SENDER, run_episode
-from tailor.tools.sim import make_world
+from tailor.tools.commands.run.sim import make_world
+from tailor.tools.lockstep.run import SENDER, run_episode
 
 BODY = AgiloBody()
 

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Array, Models
-from tailor.executive.refinement.certificate import Certificate, certificate
-from tailor.executive.refinement.selection import solver_for
-from tailor.executive.refinement.settings import RefinementSettings
-from tailor.models.features import SPACES
-from tailor.models.leaf_bounds import LeafBounds
-from tailor.models.model_bounds import ModelBounds
-from tailor.models.tree_boxes import TreeBoxes
+from tailor.executive.refinement.certificates.certificate import Certificate, certificate
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
+from tailor.models.bounds.leaf_bounds import LeafBounds
+from tailor.models.bounds.model_bounds import ModelBounds
+from tailor.models.bounds.tree_boxes import TreeBoxes
+from tailor.models.features.features import SPACES
 from tailor.tools.benchmarks.refine_cases import Case
 
 GAPS_PCT = (5.0, 1.0)

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive import domains
-from tailor.tools import gathering
-from tailor.tools.run_gathering import actions
+from tailor.tools.learning import gathering
+from tailor.tools.learning.run_gathering import actions
 
 
 def run(console: Console, quick: bool) -> None:

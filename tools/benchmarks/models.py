@@ -10,13 +10,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tailor.models import learners
-from tailor.models.asking import random_arguments
-from tailor.models.card import Card
-from tailor.models.features import SPACES
-from tailor.models.model_tree import BaggedModelTrees
-from tailor.models.onnx_export import export_duration
+from tailor.models.cards.card import Card
+from tailor.models.export.onnx_export import export_duration
+from tailor.models.features.features import SPACES
+from tailor.models.rules.model_queries import random_arguments
 from tailor.models.runtime import OnnxDuration, load_robot, open_session
+from tailor.models.training import learners
+from tailor.models.trees.model_tree import BaggedModelTrees
 
 ROWS = (1, 50, 250, 1000)
 ALONE: Mapping[str, Callable[[], Any]] = {

@@ -16,10 +16,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
 
-DATA = Path(__file__).parents[2] / "tests" / "data" / "pddl"
+DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "pddl"
 UNLIMITED = 10**9  # checks
 RUNS = 15
 

@@ -13,12 +13,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tailor.runtime.processes import Child, stopped_in_order, tailor
-from tailor.runtime.recording import open_recording
-from tailor.runtime.session import Session, open_router
+from tailor.runtime.bus.session import Session, open_router
+from tailor.runtime.processes.child import Child, stopped_in_order, tailor
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.traffic import traffic
-from tailor.tools.system import free_endpoint
+from tailor.tools.launch.system import free_endpoint
 
 RATE_HZ = 400.0
 START_S = 15.0

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Action, Models
-from tailor.executive.refinement.assertion import Assertion
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.sequence import ActionSequence, InstantiatedAction, Variable
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.refinement.objective.settings import RefinementSettings
 
 LEGS = {"2 free": 2, "4 free": 3, "8 free": 5, "12 free": 7}  # case -> legs of goToPose, two free parameters between
 

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tailor.executive.budget import CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Array
-from tailor.executive.refinement.objective import SequenceObjective
-from tailor.executive.refinement.selection import solver_for
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
 
 OURS = ("chain", "genetic", "differential")
 

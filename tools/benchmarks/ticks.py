@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from tailor.runtime.processes import Child, stopped_in_order, tailor
-from tailor.runtime.recording import open_recording
-from tailor.runtime.session import Session, open_client
+from tailor.runtime.bus.session import Session, open_client
+from tailor.runtime.processes.child import Child, stopped_in_order, tailor
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
-from tailor.tools.system import free_endpoint
+from tailor.tools.launch.system import free_endpoint
 
 BURNERS = 4
 BURN = "while True: pass"

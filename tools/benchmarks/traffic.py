@@ -7,9 +7,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
-from tailor.runtime.session import Session
 from tailor.schemas.messages import Odometry
 
 MIX = ("odom", "odom", "odom", "odom")  # of one robot each; odometry is the longest of the frequent messages

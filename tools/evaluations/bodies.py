@@ -8,7 +8,7 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.agilo import profiles
 from tailor.simnodes.body import Body
-from tailor.tools.lockstep import new_body
+from tailor.tools.lockstep.action_run import new_body
 
 
 @lru_cache(maxsize=4)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from tailor.executive.library import Domain
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import RefinementReport, SimTruth, Subgoals
-from tailor.tools.episodes import Episode
+from tailor.tools.lockstep.run import Episode
 
 FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
 
@@ -58,9 +58,7 @@ class Outcome:
     greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
     refined_cost_s: float = float("nan")
     foreseen: tuple[tuple[str, bool, float], ...] = ()  # first choice: action, whether a detour, predicted seconds
-    situation: tuple[
-        float, ...
-    ] = ()  # what a benefit tree sees of the first choice (tailor.executive.refinement.benefit)
+    situation: tuple[float, ...] = ()  # what a benefit tree sees of the first choice (tailor.executive.refinement.gate)
 
 
 def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:

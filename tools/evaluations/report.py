@@ -14,7 +14,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from tailor.tools.asked import processes
+from tailor.tools.cli.number_checks import processes
 from tailor.tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]

@@ -21,11 +21,11 @@ from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.library import Models
-from tailor.tools.episodes import SENDER, Episode, run_episode
 from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
+from tailor.tools.lockstep.run import SENDER, Episode, run_episode
 
 PIN_STREAM = 4
 ROOT = Path(__file__).resolve().parents[2]

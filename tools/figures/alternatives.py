@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tailor.tools.figures.paths import COLOURS
-from tailor.tools.viewer.explanation import Explanation, FreeParameter
+from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 
 SIZE_IN = 2.9  # of one plot
 SUM = "#2f8f6b"

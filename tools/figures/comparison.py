@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tailor.tools.comparison import Run
+from tailor.tools.recordings.comparison import Run
 
 COLOURS = ("#1f77b4", "#d62728")
 

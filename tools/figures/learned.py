@@ -9,12 +9,12 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 
-from tailor.models import scores
-from tailor.models.amounts import AMOUNTS
-from tailor.models.card import UNITS, Card
-from tailor.models.episodes import UNOBSERVED, Episode, read_data_set
-from tailor.models.examples import Examples, success_examples
+from tailor.models.cards.card import UNITS, Card
+from tailor.models.episodes.episodes import UNOBSERVED, Episode, read_data_set
+from tailor.models.episodes.examples import Examples, success_examples
+from tailor.models.episodes.regression_targets import AMOUNTS
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.models.training import scores
 from tailor.tools.figures import learned_regions, learned_shapes
 
 mpl.use("Agg")

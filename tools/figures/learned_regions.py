@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.card import UNITS, Card
-from tailor.models.examples import Examples
-from tailor.models.features import SPACES, FeatureSpace
+from tailor.models.cards.card import UNITS, Card
+from tailor.models.episodes.examples import Examples
+from tailor.models.features.features import SPACES, FeatureSpace
 from tailor.models.runtime import OnnxDuration
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from tailor.models.asking import distilled_duration, space_of
-from tailor.models.card import UNITS
-from tailor.models.rules import NAMES, bounds, conditions, formula
+from tailor.models.cards.card import UNITS
+from tailor.models.rules.model_queries import distilled_duration, space_of
+from tailor.models.rules.rules import NAMES, bounds, conditions, formula
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.tools.figures.learned_regions import Region, swept
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tailor.runtime.recording import open_recording
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.tools.figures.track import Track, track_of
 

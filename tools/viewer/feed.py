@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from queue import Empty, Full, Queue
 from threading import Lock
 
-from tailor.tools.viewer.story import Row
+from tailor.tools.viewer.timeline import Row
 
 KEEP_S = 600.0  # of what comes at a rate; events are kept from the start
 WAITING = 64  # batches, six seconds, that a page may lag behind

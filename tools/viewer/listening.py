@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tailor.runtime.attachment import unpack
+from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import Intake
 from tailor.runtime.clock import Clock, wall_ns
-from tailor.runtime.inbox import Raw
-from tailor.runtime.intake import Intake
 from tailor.runtime.loop import Loop
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
@@ -15,7 +15,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import type_of
 from tailor.tools.viewer.feed import Feed
 from tailor.tools.viewer.recorded import EXECUTIVE
-from tailor.tools.viewer.story import Row, Story
+from tailor.tools.viewer.timeline import Row, Story
 
 LOOK_NS = 50_000_000  # so often the page moves
 ENCODING = "application/cdr;"

@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterable
 from importlib import resources
 
-from tailor.tools.viewer.story import Row
+from tailor.tools.viewer.timeline import Row
 
 STYLES = ("page.css", "controls.css", "drawing.css")
 # In the order in which they build on each other; together they are one module.

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tailor.runtime.recording import open_recording
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message
-from tailor.tools.viewer.story import Row, Story
+from tailor.tools.viewer.timeline import Row, Story
 
 EXECUTIVE = "exec/"
 

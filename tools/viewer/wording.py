@@ -8,8 +8,8 @@ from rich.table import Table
 
 from tailor.schemas.messages import RefinementReport
 from tailor.tools.viewer.decisions import Decision
-from tailor.tools.viewer.explanation import Explanation, FreeParameter
-from tailor.tools.viewer.situation import Situation
+from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
+from tailor.tools.viewer.explanations.situation import Situation
 
 NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
 

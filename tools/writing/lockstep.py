@@ -10,11 +10,11 @@ import numpy as np
 from tailor.executive import domains
 from tailor.executive.core.context import Settings, make_context
 from tailor.executive.library import Models
-from tailor.executive.refinement.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
-from tailor.tools.episodes import SENDER, run_episode
+from tailor.tools.lockstep.run import SENDER, run_episode
 from tailor.tools.writing.track import Written, written
 
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tailor.executive.domains.arm import belief as believing
-from tailor.executive.domains.arm import meaning
+from tailor.executive.domains.arm import predicates
+from tailor.executive.domains.arm.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.arm.belief import ArmBelief
-from tailor.executive.domains.arm.library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
 from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
 from tailor.schemas.messages import JointCommand, Message, Sample
@@ -45,7 +45,7 @@ class ArmDomain:
 
     def belief_values(self, belief: ArmBelief) -> tuple[float, ...]:
         """As named in `belief_names`."""
-        return tuple(meaning.named(belief.angles, belief.velocities).values())
+        return tuple(predicates.named(belief.angles, belief.velocities).values())
 
     def anchor(self, belief: ArmBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
         """What was drawn cannot be seen: the abstract state is what is remembered."""
@@ -61,7 +61,7 @@ class ArmDomain:
         scenario: Scenario,
     ) -> Interval | None:
         """See arm.meaning."""
-        return meaning.value(quantity, label, holds, belief, scenario)
+        return predicates.value(quantity, label, holds, belief, scenario)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
         """Joint velocities; the driver closes the current loop."""

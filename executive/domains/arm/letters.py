@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tailor.executive.domains.arm.library import fastest_radps
+from tailor.executive.domains.arm.action_library import fastest_radps
 from tailor.executive.library import Scenario
 from tailor.schemas.errors import UsageError
 

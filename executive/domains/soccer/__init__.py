@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 
 from tailor.executive.domains.soccer.domain import SoccerDomain
-from tailor.executive.domains.soccer.drawing import draw
+from tailor.executive.domains.soccer.scenario_sampling import draw
 
 __all__ = ["draw", "make"]
 

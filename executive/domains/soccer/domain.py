@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tailor.executive.domains.soccer import belief as believing
-from tailor.executive.domains.soccer import meaning
+from tailor.executive.domains.soccer import predicates
+from tailor.executive.domains.soccer.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.belief import SoccerBelief
-from tailor.executive.domains.soccer.library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
 from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
 from tailor.schemas.messages import Message, Sample, VelocityCommand
@@ -66,7 +66,7 @@ class SoccerDomain:
 
     def anchor(self, belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
         """See soccer.meaning."""
-        return meaning.anchor(belief, scenario, remembered)
+        return predicates.anchor(belief, scenario, remembered)
 
     def value(
         self,
@@ -78,7 +78,7 @@ class SoccerDomain:
         scenario: Scenario,
     ) -> Interval | None:
         """See soccer.meaning."""
-        return meaning.value(quantity, label, holds, achieved, belief, scenario)
+        return predicates.value(quantity, label, holds, achieved, belief, scenario)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
         """Translational and rotational velocity."""

@@ -6,9 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator
 
-from tailor.executive.planning.cells import without
-from tailor.executive.planning.connectives import Some
-from tailor.executive.planning.ground_formula import TooMuchToGround
+from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.lifted.bindings import Bindings, Term
 from tailor.executive.planning.lifted.effects import Guard, LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedLiteral, of_step, tagged
@@ -23,7 +21,9 @@ from tailor.executive.planning.lifted.lifted_plan import (
 from tailor.executive.planning.lifted.schema import Schema
 from tailor.executive.planning.lifted.task import Achiever, LiftedTask, Placed
 from tailor.executive.planning.lifted.threatening import threatened, threatened_by_step
-from tailor.executive.planning.orderings import INITIAL, Orderings
+from tailor.executive.planning.structures.cells import without
+from tailor.executive.planning.structures.connectives import Some
+from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
 MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from tailor.executive.planning.connectives import FALSE, TRUE, conjunction, disjunction
-from tailor.executive.planning.ground_action import INSTANT, MOMENTS, Span
-from tailor.executive.planning.ground_formula import TooMuchToGround
-from tailor.executive.planning.grounding import MAX_WAYS
-from tailor.executive.planning.language import Action, When
+from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
+from tailor.executive.planning.ground.ground_formula import TooMuchToGround
+from tailor.executive.planning.ground.grounding import MAX_WAYS
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.lifted.lowering import Lowering, Names
+from tailor.executive.planning.pddl.language import Action, When
+from tailor.executive.planning.structures.connectives import FALSE, TRUE, conjunction, disjunction
 
 Spanned = tuple[tuple[LiftedFormula, Span], ...]
 Pairs = tuple[tuple[str, str], ...]

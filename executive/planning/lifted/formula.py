@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tailor.executive.planning.connectives import FALSE, TRUE, Every, Some
 from tailor.executive.planning.lifted.bindings import Term
+from tailor.executive.planning.structures.connectives import FALSE, TRUE, Every, Some
 
 
 class LiftedLiteral(NamedTuple):

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tailor.executive.planning.connectives import FALSE, Some, conjuncts
+from tailor.executive.planning.ground_plans.partial_plan import GOAL_STEP
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.effects import Guard
 from tailor.executive.planning.lifted.formula import AnyOf, Equality, LiftedFormula, LiftedLiteral, of_step
 from tailor.executive.planning.lifted.schema import Schema
 from tailor.executive.planning.lifted.task import LiftedTask, Placed
-from tailor.executive.planning.orderings import GOAL, Closure, Orderings
-from tailor.executive.planning.partial_plan import GOAL_STEP
-from tailor.executive.planning.temporal_network import TemporalNetwork
+from tailor.executive.planning.structures.connectives import FALSE, Some, conjuncts
+from tailor.executive.planning.structures.orderings import GOAL, Closure, Orderings
+from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 
 class LiftedLink(NamedTuple):

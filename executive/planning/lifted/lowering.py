@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tailor.executive.planning.connectives import FALSE, conjunction, disjunction
-from tailor.executive.planning.ground_formula import Facts, World, bindings
-from tailor.executive.planning.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
+from tailor.executive.planning.ground.ground_formula import Facts, World, bindings
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
+from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
+from tailor.executive.planning.structures.connectives import FALSE, conjunction, disjunction
 
 Names = Mapping[str, str]  # a formula's variable -> the schema's variable, or an object
 

@@ -10,15 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tailor.executive.library import Fact
-from tailor.executive.planning.additive_heuristic import NOTHING, UNREACHABLE, Value
-from tailor.executive.planning.ground_formula import Facts, World
-from tailor.executive.planning.ground_task import CostOf, GroundTask
-from tailor.executive.planning.language import Typed
+from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
+from tailor.executive.planning.ground.ground_formula import Facts, World
+from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
 from tailor.executive.planning.lifted.lowering import Lowering
 from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
-from tailor.executive.planning.orderings import FIRST
+from tailor.executive.planning.pddl.language import Typed
+from tailor.executive.planning.structures.orderings import FIRST
 
 Pattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects where they are known
 Place = tuple[str, bool, int, str]  # predicate, positive, position (-1: any), object

@@ -1,0 +1,78 @@
+"""The soccer robot's executable actions: parameters, controllers, models (paper Table 6).
+
+A label of the plan denotes a place. For approachBall's goal and for dribbleBall the place's x, y is the ball's
+position and phi the robot's heading there; controllers and models take poses of the robot's axle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tailor.executive.actions.approach_ball import ApproachBall
+from tailor.executive.actions.arrival_path import ArrivalPath
+from tailor.executive.actions.dribble_ball import DribbleBall
+from tailor.executive.actions.fetch_ball import FetchBall
+from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.behind import Behind
+from tailor.executive.domains.soccer.subgoal_risk import BumpRisk
+from tailor.executive.library import Action, Parameter
+
+FIELD_X_M = 3.5
+FIELD_Y_M = 2.25
+PASSING_MPS = 0.6  # fastest arrival that is asked of goToPose
+AT_BALL_MPS = 0.3  # what `atball` allows (paper 6.1)
+# an approach is thought over when its goal has moved so far, two deviations of a ball seen from 3 m
+BALL_MOVED_M = 0.25
+
+
+def _places(start_mps: float, goal_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
+    """x, y, phi, v of the first label and of the second."""
+    made = []
+    for suffix, argument, speed_mps, tolerance in (("", 0, start_mps, None), ("g", 1, goal_mps, ball_tolerance)):
+        made += [
+            Parameter(f"x{suffix}", argument, "x", "m", -FIELD_X_M, FIELD_X_M, tolerance=tolerance),
+            Parameter(f"y{suffix}", argument, "y", "m", -FIELD_Y_M, FIELD_Y_M, tolerance=tolerance),
+            Parameter(f"phi{suffix}", argument, "phi", "rad", -math.pi, math.pi, periodic=True),
+            Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, speed_mps),
+        ]
+    return tuple(made)
+
+
+# Goal place -> pose of the axle behind the ball, with the clearance in which an approach ends
+behind_goal = Behind((4,), robot.BEHIND_BALL_M)
+# Both places -> poses of the axle with the ball in the rail
+behind_both = Behind((0, 4), robot.IN_RAIL_M)
+
+_ways = ArrivalPath(robot.V_MAX_MPS)
+_go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways)
+# From before the ball it is quicker to stop and turn behind it, which sweeps it away: half of random approaches do
+_approach = replace(_go, ways=replace(_ways, radius_m=0.33, stop_s=1.0))
+_grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
+_dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
+
+GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPose/duration")
+APPROACH_BALL = Action(
+    "approachBall",
+    _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
+    ApproachBall(_approach, robot.BEHIND_BALL_M, BALL_MOVED_M),
+    "approachBall/duration",
+    "approachBall/success",
+    detour="goToPose",
+    detour_risk=BumpRisk(_ways),
+    arguments=behind_goal,
+    spans=behind_goal.spans,
+)
+DRIBBLE_BALL = Action(
+    "dribbleBall",
+    _places(AT_BALL_MPS, AT_BALL_MPS),
+    _dribble,
+    "dribbleBall/duration",
+    arguments=behind_both,
+    spans=behind_both.spans,
+)
+
+ACTIONS = {action.name: action for action in (GO_TO_POSE, APPROACH_BALL, DRIBBLE_BALL)}
+EXECUTABLES = {"gotopose": "goToPose", "approachball": "approachBall", "dribbleball": "dribbleBall"}

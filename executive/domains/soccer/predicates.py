@@ -1,0 +1,120 @@
+"""What the soccer predicates mean: the values that they give a label, and which of them hold now (paper 6.1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.action_library import AT_BALL_MPS
+from tailor.executive.domains.soccer.belief import SoccerBelief
+from tailor.executive.library import Conflict, Fact, Interval, Scenario
+
+BEFORE_AHEAD_M = (0.15, 0.70)  # a ball there, in the robot's frame, is `atball`: dribbling can begin
+BEFORE_LEFT_M = 0.25
+ARRIVED_M = 0.35  # a ball within this of the target is there
+
+
+def value(
+    quantity: str,
+    label: str,
+    holds: tuple[Fact, ...],
+    achieved: tuple[Fact, ...],
+    belief: SoccerBelief,
+    scenario: Scenario,
+) -> Interval | None:
+    """See tailor.executive.library.Domain.value."""
+    result: Interval | None = None
+    for fact in (*holds, *achieved):
+        said = _said(quantity, label, fact, fact in holds, belief, scenario.places)
+        if said is not None:
+            result = said if result is None else _both(quantity, label, result, said)
+    return result
+
+
+def _said(
+    quantity: str,
+    label: str,
+    fact: Fact,
+    holding: bool,
+    belief: SoccerBelief,
+    places: Mapping[str, Mapping[str, float]],
+) -> Interval | None:
+    """What one predicate says about one quantity of one of its labels."""
+    name = fact[0]
+    if name == "atball" and not holding:
+        return Interval(0.0, AT_BALL_MPS) if quantity == "v" else None
+    known: Mapping[str, float] = {}
+    if name == "robot" and holding:
+        known = _robot(belief)
+    elif name == "ball" and holding:
+        known = _ball(belief)
+    elif name == "atball":
+        known = {**_robot(belief), **_ball(belief)}
+    elif name == "final":
+        known = {"v": 0.0, **places[label]}
+    elif name == "route" and fact[2] == label:
+        known = places[label]
+    return Interval(known[quantity], known[quantity]) if quantity in known else None
+
+
+def _robot(belief: SoccerBelief) -> dict[str, float]:
+    pose = belief.pose
+    return {"x": pose.x, "y": pose.y, "phi": pose.phi, "v": max(0.0, min(robot.V_MAX_MPS, belief.v))}
+
+
+def _ball(belief: SoccerBelief) -> dict[str, float]:
+    seen = belief.ball_xy
+    if seen is None:
+        raise Conflict("the ball has not been seen")
+    return {"x": seen[0], "y": seen[1]}
+
+
+def _both(quantity: str, label: str, a: Interval, b: Interval) -> Interval:
+    lower, upper = max(a.lower, b.lower), min(a.upper, b.upper)
+    if lower > upper:
+        raise Conflict(
+            f"{quantity} of {label} cannot be in [{a.lower:g}, {a.upper:g}] and in [{b.lower:g}, {b.upper:g}]"
+        )
+    return Interval(lower, upper)
+
+
+def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
+    """The abstract state of now (see Domain.anchor).
+
+    Where a ball is in play, where it and the robot are is read off the belief; all else is remembered.
+    Settings of the scenario: `robot_label` and `ball_label` name the places where they are unless they are together,
+    or at the target.
+    """
+    if "ball_label" not in scenario.settings or belief.ball is None:
+        return remembered
+    observed = set(_observed(belief, scenario))
+    return frozenset(f for f in remembered if f[0] not in ("robot", "ball", "atball")) | observed
+
+
+def _observed(belief: SoccerBelief, scenario: Scenario) -> Iterator[Fact]:
+    """A ball at the target counts only when the robot has it: else it is to be approached where it really lies."""
+    ball_label = str(scenario.settings["ball_label"])
+    if not before_ball(belief):
+        yield ("ball", ball_label)
+        yield ("robot", str(scenario.settings["robot_label"]))
+        return
+    together = _at_target(belief, scenario) or ball_label
+    yield from (("ball", together), ("robot", together), ("atball", together))
+
+
+def before_ball(belief: SoccerBelief) -> bool:
+    """Whether the ball lies right before the robot, in the rail or about to be."""
+    ball = belief.ball
+    near, far = BEFORE_AHEAD_M
+    return ball is not None and near < ball.ahead < far and abs(ball.left) < BEFORE_LEFT_M
+
+
+def _at_target(belief: SoccerBelief, scenario: Scenario) -> str | None:
+    """The label of the target at which the ball lies."""
+    seen = belief.ball_xy
+    label = scenario.settings.get("target_label")
+    if seen is None or label is None:
+        return None
+    place = scenario.places[label]
+    return str(label) if math.dist(seen, (place["x"], place["y"])) < ARRIVED_M else None

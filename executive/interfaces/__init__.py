@@ -1,0 +1,1 @@
+"""Interfaces that domains, models and the executive share: actions, domains, models, budgets."""

@@ -1,0 +1,1 @@
+"""Which flaw to resolve next, and how partial plans are ranked."""

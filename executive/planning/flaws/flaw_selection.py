@@ -1,0 +1,198 @@
+"""Chooses the flaw to work on: the earliest criterion that applies to any; by it the best, of equals the newest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+from tailor.executive.planning.flaws.flaw_orders import Criterion
+from tailor.executive.planning.ground.additive_heuristic import Value
+from tailor.executive.planning.structures.cells import cells_of
+from tailor.executive.planning.structures.refinable import Refinable
+
+P = TypeVar("P", bound=Refinable)
+P_contra = TypeVar("P_contra", bound=Refinable, contravariant=True)
+C = TypeVar("C")  # open conditions
+T = TypeVar("T")  # threats
+C_contra = TypeVar("C_contra", contravariant=True)
+T_contra = TypeVar("T_contra", contravariant=True)
+
+
+class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
+    """What flaw orders ask about the flaws of a plan."""
+
+    def separable(self, plan: P_contra, threat: T_contra) -> bool:
+        """Whether separation may mend a threat."""
+        ...
+
+    def step(self, condition: C_contra) -> int:
+        """A number that tells the step that a condition belongs to from all others."""
+        ...
+
+    def static(self, condition: C_contra) -> bool:
+        """Whether no action touches the condition's predicate."""
+        ...
+
+    def unsafe(self, plan: P_contra, condition: C_contra) -> bool:
+        """Whether some step may come before the consumer and undo the condition."""
+        ...
+
+    def condition_choices(self, plan: P_contra, condition: C_contra) -> int:
+        """The number of ways to achieve a condition."""
+        ...
+
+    def threat_choices(self, plan: P_contra, threat: T_contra) -> int:
+        """The number of ways to mend a threat."""
+        ...
+
+    def by_new_step(self, plan: P_contra, condition: C_contra) -> bool:
+        """Whether a new step can achieve the condition."""
+        ...
+
+    def value(self, plan: P_contra, condition: C_contra) -> Value:
+        """The heuristic's estimate without reuse of steps."""
+        ...
+
+    def provided(self, plan: P_contra, condition: C_contra) -> bool:
+        """Whether a step of the plan may already achieve the condition."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice(Generic[P, C, T]):
+    """A criterion with what it asks at every plan worked out once."""
+
+    criterion: Criterion
+    threat_key: Callable[[P, T], float]
+    condition_key: Callable[[P, C], float]
+    least: float  # no key is smaller
+    any_threat: bool  # takes threats of both kinds, whatever their number of refinements
+    no_threat: bool
+    no_condition: bool
+
+
+class FlawSelection(Generic[P, C, T]):
+    """One flaw order, ready to choose in the plans of one search."""
+
+    def __init__(
+        self, criteria: tuple[Criterion, ...], measures: FlawMeasures[P, C, T], rng: np.random.Generator
+    ) -> None:
+        self._measures = measures
+        self._rng = rng
+        self._choices = tuple(self._prepared(criterion) for criterion in criteria)
+
+    def _prepared(self, criterion: Criterion) -> _Choice[P, C, T]:
+        types = criterion.types
+        return _Choice(
+            criterion,
+            self._threat_key(criterion),
+            self._condition_key(criterion),
+            0 if criterion.order in ("LIFO", "LR") else -math.inf,
+            {"n", "s"} <= types and criterion.limit is None,
+            not types & {"n", "s"},
+            types <= {"n", "s"},
+        )
+
+    def choose(self, plan: P) -> C | T:
+        """The flaw of a plan that has one."""
+        for choice in self._choices:
+            threats = [] if choice.no_threat else self._threats(plan, choice)
+            conditions = [] if choice.no_condition else self._conditions(plan, choice.criterion)
+            if threats or conditions:
+                return self._best(plan, choice, threats, conditions)
+        raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
+
+    def _best(self, plan: P, choice: _Choice[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
+        """The flaw with the smallest key, of equals the newest."""
+        best: C | T = threats[0] if threats else conditions[0]
+        if len(threats) + len(conditions) == 1:
+            return best
+        if choice.criterion.order == "FIFO":
+            return conditions[-1] if conditions else threats[-1]
+        smallest = math.inf
+        for threat in threats:
+            key = choice.threat_key(plan, threat)
+            if key < smallest:
+                best, smallest = threat, key
+                if key <= choice.least:
+                    return best
+        for condition in conditions:
+            key = choice.condition_key(plan, condition)
+            if key < smallest:
+                best, smallest = condition, key
+        return best
+
+    def _threats(self, plan: P, choice: _Choice[P, C, T]) -> list[T]:
+        """The threats that a criterion applies to."""
+        threats: list[T] = cells_of(plan.threats)
+        if choice.any_threat or not threats:
+            return threats
+        measures, types, limit = self._measures, choice.criterion.types, choice.criterion.limit
+        if not {"n", "s"} <= types:
+            threats = [threat for threat in threats if measures.separable(plan, threat) == ("s" in types)]
+        if limit is not None:
+            threats = [threat for threat in threats if measures.threat_choices(plan, threat) <= limit]
+        return threats
+
+    def _conditions(self, plan: P, criterion: Criterion) -> list[C]:
+        """The open conditions that a criterion applies to."""
+        measures, types, limit = self._measures, criterion.types, criterion.limit
+        conditions: list[C] = cells_of(plan.open)
+        if "o" not in types and conditions:
+            local = measures.step(conditions[0]) if "l" in types else None
+            if types & {"u", "t"}:
+                conditions = [condition for condition in conditions if self._is(plan, condition, types, local)]
+            else:
+                conditions = [condition for condition in conditions if measures.step(condition) == local]
+        if limit is not None:
+            conditions = [c for c in conditions if measures.condition_choices(plan, c) <= limit]
+        return conditions
+
+    def _is(self, plan: P, condition: C, types: frozenset[str], local: int | None) -> bool:
+        """Whether a condition is of one of the types; `local` is the step of the newest one."""
+        measures = self._measures
+        return (
+            (local is not None and measures.step(condition) == local)
+            or ("u" in types and measures.unsafe(plan, condition))
+            or ("t" in types and measures.static(condition))
+        )
+
+    # --- which comes first: the smallest key -----------------------------------------------------
+    def _threat_key(self, criterion: Criterion) -> Callable[[P, T], float]:
+        choices = self._measures.threat_choices
+        keys: dict[str, Callable[[P, T], float]] = {
+            "LR": choices,
+            "MR": lambda plan, threat: -choices(plan, threat),
+            "R": lambda plan, threat: float(self._rng.random()),
+        }
+        return keys.get(criterion.order, lambda plan, threat: 0)
+
+    def _condition_key(self, criterion: Criterion) -> Callable[[P, C], float]:
+        measures = self._measures
+        keys: dict[str, Callable[[P, C], float]] = {
+            "LIFO": lambda plan, condition: 0,
+            "FIFO": lambda plan, condition: 0,
+            "R": lambda plan, condition: float(self._rng.random()),
+            "LR": measures.condition_choices,
+            "MR": lambda plan, condition: -measures.condition_choices(plan, condition),
+            "NEW": lambda plan, condition: not measures.by_new_step(plan, condition),
+            "REUSE": measures.by_new_step,
+        }
+        return keys.get(criterion.order) or self._estimated(criterion)
+
+    def _estimated(self, criterion: Criterion) -> Callable[[P, C], float]:
+        """Least or most cost or work; with makespan, the time at which the condition can hold."""
+        measures, sign = self._measures, -1 if criterion.order[0] == "M" else 1
+        field = {"C": 0, "W": 1}[criterion.order[1]] if criterion.heuristic != "makespan" else 2
+        reuse = criterion.heuristic == "addr"
+
+        def key(plan: P, condition: C) -> float:
+            if reuse and measures.provided(plan, condition):
+                return sign * field  # no cost, one unit of work
+            return sign * measures.value(plan, condition)[field]
+
+        return key

@@ -1,0 +1,136 @@
+"""The additive heuristic on the relaxed planning graph: cost, work and makespan of reaching every literal.
+
+Source: Bonet & Geffner 2001; in plan space Younes & Simmons, JAIR 20 (2003), section 4.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from tailor.executive.planning.ground.ground_action import GroundAction, Span
+from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.structures.connectives import Every
+
+Spanned = Iterable[tuple[GroundCondition, Span]]
+
+
+class Value(NamedTuple):
+    """An estimate: the actions' cost, the planning work (flaws to mend), the time in ticks or unit steps."""
+
+    cost: float
+    work: float
+    makespan: float
+
+
+UNREACHABLE = Value(math.inf, math.inf, math.inf)
+INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action but some work
+NOTHING = Value(0, 0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimates:
+    """The values of all literals, by number; and the numbers of the reachable actions, level by level of the graph."""
+
+    values: tuple[Value, ...]
+    cost: tuple[float, ...]
+    work: tuple[float, ...]
+    reached: tuple[int, ...]
+
+    def of(self, condition: GroundCondition) -> Value:
+        """The value of a condition: sums over conjunctions, the cheapest part of a disjunction."""
+        return _value(condition, self.values)
+
+    def reaches(self, conditions: Spanned) -> bool:
+        """Whether all conditions are reachable in the relaxed graph."""
+        return all(self.of(condition).cost < math.inf for condition, _ in conditions)
+
+
+def _value(condition: GroundCondition, values: Sequence[Value]) -> Value:
+    if isinstance(condition, int):
+        return values[condition]
+    parts = [_value(part, values) for part in condition.parts]
+    return sum_of(parts) if isinstance(condition, Every) else min(parts, default=UNREACHABLE)
+
+
+def sum_of(parts: Iterable[Value]) -> Value:
+    """Costs and work add up; for the makespan the parts run side by side."""
+    cost, work, makespan = NOTHING
+    for part in parts:
+        cost += part.cost
+        work += part.work
+        makespan = max(makespan, part.makespan)
+    return Value(cost, work, makespan)
+
+
+def action_costs(actions: Sequence[GroundAction], kind: str) -> tuple[float, ...]:
+    """The cost of each action: 1, its duration in seconds, or its duration relative to the shortest one."""
+    durations = [action.duration_s or 1.0 for action in actions]
+    if kind == "unit" or not durations:
+        return (1,) * len(durations)
+    unit = min(durations) if kind == "relative" else 1.0
+    return tuple(duration / unit for duration in durations)
+
+
+def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: Iterable[int], count: int) -> Estimates:
+    """The relaxed fixpoint, level by level, each level from the values of the one before.
+
+    Args:
+      actions: All ground actions.
+      costs: By the action's number.
+      initial: Literals that hold at first (or by themselves later).
+      count: Number of literals.
+    """
+    values = [UNREACHABLE] * count
+    for literal in initial:
+        values[literal] = INITIAL
+    users = _users(actions, count)
+    pending: Iterable[GroundAction] = actions
+    reached: dict[int, None] = {}
+    while pending:
+        changed: dict[int, Value] = {}
+        for action in pending:
+            if _relax(action, costs[action.number], values, changed):
+                reached.setdefault(action.number)
+        for literal, value in changed.items():
+            values[literal] = value
+        numbers = sorted({number for literal in changed for number in users[literal]})
+        pending = [actions[number] for number in numbers]
+    return Estimates(tuple(values), tuple(v.cost for v in values), tuple(v.work for v in values), tuple(reached))
+
+
+def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> bool:
+    """Improves what the action makes true, minimum by (cost, work); False when the action is not reached yet."""
+    before = sum_of(_value(condition, values) for condition, _ in action.needs)
+    if before.cost == math.inf:
+        return False
+    for effect in action.effects:
+        start = before
+        if effect.conditions:
+            start = sum_of([before, *(_value(condition, values) for condition, _ in effect.conditions)])
+        lasts = (action.shortest if effect.moment else 0) if action.duration_s else 1
+        value = (start.cost + cost, start.work + 1, start.makespan + lasts)
+        old = changed.get(effect.literal) or values[effect.literal]
+        if value < old and value[0] < math.inf:
+            # each quantity is minimal for itself where that matters: makespan never rises
+            changed[effect.literal] = Value(value[0], value[1], min(value[2], old.makespan))
+    return True
+
+
+def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:
+    """By literal, the numbers of the actions whose conditions speak of it."""
+    users: list[list[int]] = [[] for _ in range(count)]
+    for action in actions:
+        spanned = [*action.conditions, *(c for effect in action.effects for c in effect.conditions)]
+        for literal in {literal for condition, _ in spanned for literal in literals_of(condition)}:
+            users[literal].append(action.number)
+    return users
+
+
+def literals_of(condition: GroundCondition) -> Iterable[int]:
+    """Every literal that stands in a condition."""
+    if isinstance(condition, int):
+        return (condition,)
+    return (literal for part in condition.parts for literal in literals_of(part))

@@ -1,0 +1,63 @@
+"""Evaluates the durations of ground actions."""
+
+from __future__ import annotations
+
+import math
+from functools import partial, reduce
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground.ground_formula import Binding, World
+from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
+
+
+def evaluate(number: Numeric, binding: Binding, world: World) -> float | None:
+    """The value in seconds; None where a static function has no value or a division is by zero."""
+    match number:
+        case Number(value):
+            return value
+        case Function(name, terms):
+            fact: Fact = (name, *(binding.get(term, term) for term in terms))
+            return world.values.get(fact)
+        case Operation(operator, operands):
+            values = (evaluate(operand, binding, world) for operand in operands)
+            return reduce(partial(_operate, operator), values)
+
+
+def _operate(operator: str, a: float | None, b: float | None) -> float | None:
+    if a is None or b is None:
+        return None
+    match operator:
+        case "+":
+            return a + b
+        case "-":
+            return a - b
+        case "*":
+            return a * b
+        case _:
+            return a / b if b else None
+
+
+def duration_range(bounds: tuple[DurationBound, ...], binding: Binding, world: World) -> tuple[float, float] | None:
+    """Shortest and longest duration in seconds (infinite without an upper limit); None when there is none."""
+    shortest, longest = 0.0, math.inf
+    for bound in bounds:
+        value = evaluate(bound.value, binding, world)
+        if value is None:
+            return None
+        if bound.operator != "<=":
+            shortest = max(shortest, value)
+        if bound.operator != ">=":
+            longest = min(longest, value)
+    return (shortest, longest) if shortest <= longest else None
+
+
+def ticks_of(bounds: tuple[float, float], tick_s: float) -> tuple[int, int | None]:
+    """Shortest and longest duration in ticks, None without an upper limit.
+
+    What may take time takes a tick at least, lest its end meets its start.
+    """
+    shortest = round(bounds[0] / tick_s)
+    if math.isinf(bounds[1]):
+        return max(shortest, 1), None
+    longest = round(bounds[1] / tick_s)
+    return min(max(shortest, 1), longest), longest

@@ -1,0 +1,54 @@
+"""Ground actions: what a step of a ground plan is an instance of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground.ground_formula import GroundCondition
+
+Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end
+MOMENTS: dict[str, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}
+INSTANT: Span = (0, 0)  # of every condition and effect when actions take no time
+
+
+class GroundEffect(NamedTuple):  # a tuple: grounding makes and compares thousands
+    """A literal that becomes true at a moment, if `conditions` (each with its span) hold."""
+
+    literal: int
+    moment: int
+    conditions: tuple[tuple[GroundCondition, Span], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundAction:
+    """An action with objects for parameters; without effects that achieve nothing (the no-op rule).
+
+    Durations are in ticks of the settings' tolerance, `longest` is None without an upper limit; both are 0 when the
+    domain has no durative actions. `bits` has, by literal that the action may make true, the moments as a bit mask.
+    `needs` are the conditions that others must achieve: see `needed`.
+    """
+
+    number: int  # grounding order
+    name: Fact
+    conditions: tuple[tuple[GroundCondition, Span], ...]
+    needs: tuple[tuple[GroundCondition, Span], ...]
+    effects: tuple[GroundEffect, ...]
+    bits: dict[int, int]
+    shortest: int = 0
+    longest: int | None = 0
+    duration_s: float = 0.0  # of the shortest
+    simple: bool = True  # no conditional effects
+
+    def __str__(self) -> str:
+        return f"({' '.join(self.name)})"
+
+
+def needed(
+    conditions: tuple[tuple[GroundCondition, Span], ...], effects: Iterable[GroundEffect]
+) -> tuple[tuple[GroundCondition, Span], ...]:
+    """The conditions of an action but those after its start that its start itself makes true."""
+    own = {effect.literal for effect in effects if effect.moment == 0 and not effect.conditions}
+    return tuple([(part, span) for part, span in conditions if span[1] == 0 or part not in own])

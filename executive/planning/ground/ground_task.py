@@ -1,0 +1,70 @@
+"""The ground task that one search plans with: reachable ground actions, initial literals, goal, estimates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from tailor.executive.planning.ground.achievers import Achiever, achievers_of
+from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
+from tailor.executive.planning.ground.ground_formula import Facts, GroundCondition, contradictory, ground
+from tailor.executive.planning.ground.grounding import GroundActions
+from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.structures.connectives import FALSE, conjuncts
+from tailor.executive.planning.structures.orderings import FIRST
+
+CostOf = OneOf["unit", "duration", "relative"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundTask:
+    """A ground planning problem; literals as in `ground_formula`.
+
+    `achievers` has, by literal, the reachable ground actions with the effect that makes it true: see `achievers_of`.
+    """
+
+    problem: Problem
+    temporal: bool
+    tick_s: float
+    names: tuple[Literal, ...]
+    initial: frozenset[int]
+    timed: tuple[tuple[int, int], ...]  # literal, tick
+    goal: tuple[GroundCondition, ...]
+    achievers: tuple[tuple[Achiever, ...], ...]
+    costs: tuple[float, ...]  # by the action's number
+    estimates: Estimates
+    simple: bool  # no action has conditional effects
+    first_node: int  # of the first step: behind the initial state, the goal and the timed literals
+    moments: int  # of a step: start and end, or only one when actions take no time
+
+
+def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
+    """The task of a problem whose world has been grounded."""
+    facts = Facts(grounded.facts)
+    goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
+    if contradictory(goal):
+        goal = (FALSE,)
+    holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
+    timed = tuple(
+        (facts.literal(t.literal.fact, t.literal.positive), round(t.time_s / grounded.tick_s)) for t in problem.timed
+    )
+    initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
+    temporal = problem.domain.durative or bool(timed)
+    costs = action_costs(grounded.actions, cost)
+    estimates = estimate(grounded.actions, costs, initial | {literal for literal, _ in timed}, 2 * len(facts))
+    return GroundTask(
+        problem,
+        temporal,
+        grounded.tick_s,
+        facts.names(),
+        initial,
+        timed,
+        goal,
+        achievers_of(grounded.actions, estimates, 2 * len(facts)),
+        costs,
+        estimates,
+        all(action.simple for action in grounded.actions),
+        FIRST + len(timed),
+        2 if temporal else 1,
+    )

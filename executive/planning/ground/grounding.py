@@ -1,0 +1,252 @@
+"""Grounding: action schemas x objects -> ground actions, cut early on static facts and inequalities.
+
+Owns the order that every count depends on: actions by name, objects by name (constants first), parameters left
+to right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tailor.executive.planning.ground.durations import duration_range, ticks_of
+from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
+from tailor.executive.planning.ground.ground_formula import (
+    Binding,
+    Facts,
+    GroundCondition,
+    TooMuchToGround,
+    World,
+    bindings,
+    contradictory,
+    ground,
+    negation,
+)
+from tailor.executive.planning.pddl.language import Action, And, Atom, Condition, Equal, Formula, Not, When
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
+
+MAX_ACTIONS = 10_000  # of a ground task; the competition problems at hand have 756 at most
+MAX_WAYS = 64  # to escape the additions of the same action: they double with each that looks at two moments
+CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
+
+
+@dataclass(frozen=True, slots=True)
+class GroundActions:
+    """The ground actions of a world, with the numbers of the facts they speak of; reusable while the world stands."""
+
+    world: World
+    tick_s: float
+    facts: tuple[tuple[str, ...], ...]
+    actions: tuple[GroundAction, ...]
+
+
+def world_of(problem: Problem) -> World:
+    """The still part of a problem."""
+    domain = problem.domain
+    touched = {effect.atom.predicate for action in domain.actions for effect in action.effects}
+    touched |= {timed.literal.fact[0] for timed in problem.timed}
+    static = frozenset(set(domain.predicates) - touched)
+    ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
+    objects: dict[str, list[str]] = {kind: [] for kind in domain.types}
+    for item in ordered:
+        for kind in frozenset[str]().union(*(domain.ancestors[own] for own in item.types)):
+            objects[kind].append(item.name)
+    facts = frozenset(fact for fact in problem.initial if fact[0] in static)
+    by_type = {kind: tuple(names) for kind, names in objects.items()}
+    return World(domain, by_type, static, facts, dict(problem.values), domain.durative)
+
+
+def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
+    """Grounds step by step: yields None every few bindings, and the ground actions at last.
+
+    Raises:
+      TooMuchToGround: More than `limit` bindings of parameters were tried.
+    """
+    facts = Facts()
+    actions: list[GroundAction] = []
+    tried = 0
+    for schema in sorted(world.domain.actions, key=lambda action: action.name):
+        for binding in _schema_bindings(schema, world):
+            tried += 1
+            if tried > limit:
+                raise TooMuchToGround(f"grounding tried more than {limit} bindings, the last of '{schema.name}'")
+            if tried % CHECK_EVERY == 0:
+                yield None
+            if binding is not None:
+                action = _instance(len(actions), schema, binding, world, facts, tick_s)
+                actions += [action] if action else []
+                if len(actions) > MAX_ACTIONS:
+                    raise TooMuchToGround(f"more than {MAX_ACTIONS} ground actions")
+    yield GroundActions(world, tick_s, tuple(facts), tuple(actions))
+
+
+def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions:
+    """The same ground actions with their conditions in random order: so open conditions come in another order."""
+    mixed = (
+        tuple(action.conditions[n] for n in rng.permutation(len(action.conditions))) for action in grounded.actions
+    )
+    actions = (replace(action, conditions=own) for action, own in zip(grounded.actions, mixed, strict=True))
+    return replace(grounded, actions=tuple(actions))
+
+
+# --- bindings ------------------------------------------------------------------------------------
+def _schema_bindings(schema: Action, world: World) -> Iterator[Binding | None]:
+    """Complete bindings that pass the static conditions; None for each partial one that was cut or extended."""
+    names = [parameter.name for parameter in schema.parameters]
+    tests: list[list[Formula]] = [[] for _ in range(len(names) + 1)]
+    for part in _static_parts(schema, world):
+        level = max((names.index(term) + 1 for term in _terms(part) if term in names), default=0)
+        tests[level].append(part)
+    choices = [world.choices(parameter) for parameter in schema.parameters]
+    yield from _extend({}, 0, names, choices, tests, world)
+
+
+def _extend(
+    binding: Binding,
+    level: int,
+    names: list[str],
+    choices: list[tuple[str, ...]],
+    tests: list[list[Formula]],
+    world: World,
+) -> Iterator[Binding | None]:
+    nothing = Facts()
+    if any(ground(test, binding, world, nothing) == FALSE for test in tests[level]):
+        yield None
+    elif level == len(names):
+        yield binding
+    else:
+        yield None
+        for name in choices[level]:
+            yield from _extend({**binding, names[level]: name}, level + 1, names, choices, tests, world)
+
+
+def _static_parts(schema: Action, world: World) -> Iterator[Formula]:
+    """The conjuncts of the conditions that static facts and equality decide alone."""
+    pending = [condition.formula for condition in schema.conditions]
+    while pending:
+        formula = pending.pop()
+        inner = formula.part if isinstance(formula, Not) else formula
+        if isinstance(formula, And):
+            pending += formula.parts
+        elif isinstance(inner, Equal) or (isinstance(inner, Atom) and inner.predicate in world.static):
+            yield formula
+
+
+def _terms(formula: Formula) -> tuple[str, ...]:
+    match formula:
+        case Not(part):
+            return _terms(part)
+        case Equal(left, right):
+            return (left, right)
+        case Atom(_, terms):
+            return terms
+        case _:
+            return ()
+
+
+# --- one ground action ---------------------------------------------------------------------------
+def _instance(
+    number: int, schema: Action, binding: Binding, world: World, facts: Facts, tick_s: float
+) -> GroundAction | None:
+    """The ground action, or None when it can never run or achieves nothing."""
+    bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
+    conditions = _conditions(schema.conditions, binding, world, facts)
+    if bounds is None or conditions is None:
+        return None
+    effects = _useful(conditions, _effects(schema, binding, world, facts))
+    if not effects:
+        return None
+    bits: dict[int, int] = {}
+    for effect in effects:
+        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
+    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
+    return GroundAction(
+        number,
+        name,
+        conditions,
+        needed(conditions, effects),
+        effects,
+        bits,
+        *ticks_of(bounds, tick_s),
+        bounds[0],
+        not any(effect.conditions for effect in effects),
+    )
+
+
+def _span(when: When, temporal: bool) -> Span:
+    return MOMENTS[when] if temporal else INSTANT
+
+
+def _conditions(
+    conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts
+) -> tuple[tuple[GroundCondition, Span], ...] | None:
+    """The ground conditions by span, in order; None when one is false, or two of one span contradict each other."""
+    grounded: list[tuple[GroundCondition, Span]] = []
+    for condition in conditions:
+        result = ground(condition.formula, binding, world, facts)
+        if result == FALSE:
+            return None
+        for part in conjuncts(result):
+            grounded.append((part, _span(condition.when, world.temporal)))
+    spans = {span for _, span in grounded}
+    if any(contradictory(part for part, own in grounded if own == span) for span in spans):
+        return None
+    return tuple(grounded)
+
+
+def _effects(schema: Action, binding: Binding, world: World, facts: Facts) -> list[GroundEffect]:
+    effects: dict[GroundEffect, None] = {}
+    for effect in schema.effects:
+        moment = _span(effect.when, world.temporal)[0]
+        for inner in bindings(effect.variables, binding, world):
+            conditions = _conditions(effect.condition, inner, world, facts)
+            if conditions is not None:
+                literal = ground(effect.atom, inner, world, facts, effect.positive)
+                assert isinstance(literal, int)  # an atom that an action touches is no static one
+                effects.setdefault(GroundEffect(literal, moment, conditions))
+    return list(effects)
+
+
+def _useful(
+    conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
+) -> tuple[GroundEffect, ...]:
+    """The no-op rule: without effects that the action itself demands already, or undoes at the same moment.
+
+    A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
+    action's own condition promises to hold up to that very moment changes nothing.
+    """
+    demanded = {(part, span[1]) for part, span in conditions}
+    at: dict[tuple[int, int], list[GroundEffect]] = {}
+    for effect in effects:
+        at.setdefault((effect.literal, effect.moment), []).append(effect)
+    kept: list[GroundEffect] = []
+    for effect in effects:
+        if (effect.literal, effect.moment) not in demanded:
+            additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+            kept += _unless_added(effect, additions)
+    return tuple(kept)
+
+
+def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
+    """An effect under the conditions that no add effect of the same moment wins; none when one always does.
+
+    Where an add effect looks at several moments, it is enough that it fails at one: each is an effect of its own.
+    """
+    ways = [effect.conditions]
+    for other in additions:
+        spans: dict[Span, list[GroundCondition]] = {}
+        for condition, span in other.conditions:
+            spans.setdefault(span, []).append(condition)
+        lost = [(negation(conjunction(own)), span) for span, own in spans.items()]
+        ways = [
+            (*way, *((part, span) for part in conjuncts(fails)))
+            for way in ways
+            for fails, span in lost
+            if fails != FALSE
+        ]
+        if len(ways) > MAX_WAYS:
+            raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
+    return [effect._replace(conditions=way) for way in ways] if additions else [effect]

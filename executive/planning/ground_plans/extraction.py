@@ -1,0 +1,129 @@
+"""Turns a partial plan without flaws into the plan that is handed over: schedule, links in words, static links."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground.ground_formula import Binding, World, bindings
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
+from tailor.executive.planning.pddl.language import Action, And, Atom, Formula, Literal, Not
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.structures.orderings import Orderings
+from tailor.executive.planning.structures.temporal_network import TemporalNetwork
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The steps of a finished plan by name, and where their nodes stand in its orderings."""
+
+    names: tuple[Fact, ...]
+    orderings: Orderings
+    first_node: int
+    moments: int  # nodes of a step
+    tick_s: float
+
+    def steps(self) -> tuple[Step, ...]:
+        """The steps by start time; of those that start together the newest first, as VHPOP prints them."""
+        times, temporal = self.orderings.earliest(), self.moments == 2
+        tick = self.tick_s if temporal else 1.0
+        steps = []
+        for number, name in enumerate(self.names, 1):
+            node = self.first_node + (number - 1) * self.moments
+            duration = round((times[node + 1] - times[node]) * tick, 9) if temporal else 1.0
+            steps.append(Step(number, name, round(times[node] * tick, 9), duration))
+        return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
+
+    def pairs(self) -> Iterator[tuple[int, int]]:
+        """The steps (i, j) of which i must end before j starts."""
+        late, count = self.orderings.late, len(self.names)
+        for i in range(count):
+            after = late[self.first_node + i * self.moments + self.moments - 1]
+            for j in range(count):
+                if i != j and after >> (self.first_node + j * self.moments) & 1:
+                    yield i + 1, j + 1
+
+    def bounds(self) -> tuple[tuple[int | None, ...], ...]:
+        """The temporal network's bounds without the nodes of the goal and of timed literals; () without durations."""
+        if not isinstance(self.orderings, TemporalNetwork):
+            return ()
+        bounds = self.orderings.bounds()  # the goal's row and column are left out already
+        kept = [0, *range(self.first_node - 1, len(bounds))]
+        return tuple(tuple(bounds[i][j] for j in kept) for i in kept)
+
+    def plan(self, problem: Problem, links: Iterable[Link], bindings: tuple[str, ...] = ()) -> Plan:
+        """The plan, each step as early as the orderings allow."""
+        durative = isinstance(self.orderings, TemporalNetwork)
+        return Plan(
+            problem.name,
+            problem.initial,
+            self.steps(),
+            tuple(links),
+            tuple(self.pairs()),
+            durative,
+            self.bounds(),
+            self.tick_s,
+            bindings,
+        )
+
+
+def extract(plan: PartialPlan, task: GroundTask, world: World) -> Plan:
+    """The plan of a ground search in words."""
+    names = tuple(action.name for action in plan.steps)
+    frame = Frame(names, plan.orderings, task.first_node, task.moments, task.tick_s)
+    return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
+
+
+def _links(plan: PartialPlan, task: GroundTask, world: World, steps: tuple[Step, ...]) -> Iterator[Link]:
+    """Links by consumer; those from static facts, which the search never saw, count as the newest."""
+    found: dict[int, list[Link]] = {}
+    cell = plan.links
+    while cell is not None:
+        link = Link(step_of(task, cell.producer), task.names[cell.literal], step_of(task, cell.first))
+        if link not in found.setdefault(link.consumer, []):
+            found[link.consumer].append(link)
+        cell = cell.rest
+    schemata = {action.name: action for action in world.domain.actions}
+    for step in steps:
+        schema = schemata[step.action[0]]
+        binding = {p.name: name for p, name in zip(schema.parameters, step.action[1:], strict=True)}
+        formulas = [condition.formula for condition in schema.conditions]
+        made = (link.literal for links in found.values() for link in links if link.producer == step.id)
+        static = dict.fromkeys(static_literals(And(tuple(formulas)), binding, world))
+        static.update(dict.fromkeys(x for literal in made for x in _static_guard(schema, binding, literal, world)))
+        yield from (Link(0, literal, step.id) for literal in static)
+        yield from found.get(step.id, ())
+    yield from (Link(0, literal, GOAL) for literal in static_literals(task.problem.goal, {}, world))
+    yield from found.get(GOAL, ())
+
+
+def _static_guard(schema: Action, binding: Binding, made: Literal, world: World) -> tuple[Literal, ...]:
+    """The static literals under which a conditional effect of the action makes a literal true."""
+    for effect in schema.effects:
+        if (effect.atom.predicate, effect.positive) == (made.fact[0], made.positive):
+            formula = And(tuple(condition.formula for condition in effect.condition))
+            for inner in bindings(effect.variables, binding, world):
+                fact: Fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
+                static = static_literals(formula, inner, world)
+                if fact == made.fact and all((x.fact in world.facts) == x.positive for x in static):
+                    return static
+    return ()
+
+
+def static_literals(formula: Formula, binding: Binding, world: World) -> tuple[Literal, ...]:
+    """The static literals that a formula demands outright, without disjunctions; the last one first."""
+    found: list[Literal] = []
+    pending = [formula]
+    while pending:
+        part = pending.pop()
+        inner, positive = (part.part, False) if isinstance(part, Not) else (part, True)
+        if isinstance(part, And):
+            pending += part.parts
+        elif isinstance(inner, Atom) and inner.predicate in world.static:
+            fact: Fact = (inner.predicate, *(binding.get(term, term) for term in inner.terms))
+            if Literal(fact, positive) not in found:
+                found.append(Literal(fact, positive))
+    return tuple(found)

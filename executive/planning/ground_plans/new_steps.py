@@ -1,0 +1,85 @@
+"""Refining an open condition by a new step: one plan for each action that achieves it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tailor.executive.planning.ground.ground_action import GroundAction, GroundEffect
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, Threat, new
+from tailor.executive.planning.ground_plans.step_effects import StepEffects
+from tailor.executive.planning.ground_plans.threat_detection import Spanned, guarded_links, threats_by, threats_to
+from tailor.executive.planning.structures.orderings import Orderings
+
+
+class _Place(NamedTuple):
+    """What follows from the new step's place alone: actions that take as long share it."""
+
+    orderings: Orderings
+    link: Link
+    threats: Threat | None  # those to the new link put in front
+    threat_count: int
+
+
+def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int) -> list[PartialPlan]:
+    """The plans in which a new step mends a flaw that `plan` no longer has, in the order of the achievers."""
+    achievers = task.achievers[literal]
+    if not achievers:
+        return []
+    steps, _, effects, links, opened, _, open_count, _, cost = plan
+    node = len(plan.orderings.late)
+    masks, guarded = effects.masks(), guarded_links(links)
+    places: dict[tuple[int, int, int | None, int], _Place | None] = {}
+    children = []
+    for action, effect in achievers:
+        undoes_it = literal ^ 1 in action.bits  # then no other action has the same threats to the new link
+        kind = (effect.moment, action.shortest, action.longest, action.number if undoes_it else -1)
+        if kind not in places:
+            places[kind] = _place(task, plan, flaw, action, effect)
+        place = places[kind]
+        if place is None:
+            continue
+        orderings, link, threats, count = place
+        threats, count = threats_by(action, node, orderings.late, guarded, threats, count)
+        conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
+        children.append(
+            new(
+                PartialPlan,
+                (
+                    (*steps, action),
+                    orderings,
+                    StepEffects(masks, action.bits, node),
+                    link,
+                    opened_by(conditions, node, opened),
+                    threats,
+                    open_count + len(conditions),
+                    count,
+                    cost + task.costs[action.number],
+                ),
+            )
+        )
+    return children
+
+
+def _place(
+    task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
+) -> _Place | None:
+    """The place of one action and those like it; None when the orderings have none."""
+    _, first, last, _ = flaw
+    literal = effect.literal
+    orderings = plan.orderings.with_step(action, effect.moment, first)
+    if orderings is None:
+        return None
+    node = len(plan.orderings.late)
+    link = new(Link, (node + effect.moment, literal, first, last, plan.links))
+    undoing = plan.effects.masks()[literal ^ 1] | action.bits.get(literal ^ 1, 0) << node
+    steps = (*plan.steps, action)
+    threats, count = threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
+    return _Place(orderings, link, threats, count)
+
+
+def opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:
+    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
+    for condition, (first, last) in reversed(conditions):
+        cell = new(OpenCondition, (condition, node + first, node + last, cell))
+    return cell

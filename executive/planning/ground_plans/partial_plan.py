@@ -1,0 +1,88 @@
+"""The partial plan: steps, orderings, causal links, and its flaws. Immutable; lists are shared with the parent plan.
+
+Terms as in Younes & Simmons, JAIR 20 (2003), section 2. Flaws stand in singly linked lists, the newest at the head.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tailor.executive.planning.ground.ground_action import GroundAction, Span
+from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.step_effects import StepEffects
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, Closure, Orderings
+from tailor.executive.planning.structures.temporal_network import TemporalNetwork
+
+GOAL_STEP = -1  # what links and orderings call the goal; the initial state is step 0
+new = tuple.__new__  # makes a named tuple of a plain one in half the time of its constructor, a Python function
+
+
+class Link(NamedTuple):
+    """A causal link: `producer` makes `literal` true, and nothing may undo it until `last`.
+
+    The condition belongs to the node `first`; `last` is another one only for a condition over all of an action.
+    """
+
+    producer: int
+    literal: int
+    first: int
+    last: int
+    rest: Link | None
+
+
+class OpenCondition(NamedTuple):
+    """A condition of node `first`, to hold until `last`, that no causal link supports yet."""
+
+    condition: GroundCondition
+    first: int
+    last: int
+    rest: OpenCondition | None
+
+
+class Threat(NamedTuple):
+    """Node `node` may undo `link` between its producer and its consumer, if `conditions` of that effect hold."""
+
+    link: Link
+    node: int
+    conditions: tuple[tuple[GroundCondition, Span], ...]
+    rest: Threat | None
+
+
+Flaw = OpenCondition | Threat
+
+
+class PartialPlan(NamedTuple):
+    """A set of plans: all that keep to these steps, orderings and links. Step i is `steps[i - 1]`."""
+
+    steps: tuple[GroundAction, ...]
+    orderings: Orderings
+    effects: StepEffects
+    links: Link | None
+    open: OpenCondition | None
+    threats: Threat | None
+    open_count: int
+    threat_count: int
+    cost: float
+
+
+def step_of(task: GroundTask, node: int) -> int:
+    """The step that a node belongs to: 0 is the initial state with its timed literals."""
+    if node == GOAL:
+        return GOAL_STEP
+    beyond = node - task.first_node
+    return 1 + beyond // task.moments if beyond >= 0 else 0
+
+
+def initial_plan(task: GroundTask) -> PartialPlan:
+    """The plan without steps whose open conditions are the goal, the first at the head."""
+    masks = [0] * len(task.names)
+    orderings: Orderings = Closure()
+    if task.temporal:
+        orderings = TemporalNetwork.start(tuple(tick for _, tick in task.timed))
+        for number, (literal, _) in enumerate(task.timed):
+            masks[literal] |= 1 << FIRST + number
+    cell: OpenCondition | None = None
+    for condition in reversed(task.goal):
+        cell = OpenCondition(condition, GOAL, GOAL, cell)
+    return PartialPlan((), orderings, StepEffects(masks), None, cell, None, len(task.goal), 0, 0)

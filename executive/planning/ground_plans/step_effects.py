@@ -1,0 +1,35 @@
+"""Which nodes of a plan make which literal true: one bit mask of nodes per literal, built when first asked for."""
+
+from __future__ import annotations
+
+from tailor.executive.planning.ground.ground_action import GroundAction
+
+
+class StepEffects:
+    """The effects of a plan's steps; plans with the same steps share one.
+
+    A plan is often thrown away before anyone asks, so a new step is first only noted: `masks()` copies the table.
+    """
+
+    __slots__ = ("_masks", "bits", "known", "node")
+
+    def __init__(self, known: list[int], bits: dict[int, int] | None = None, node: int = 0) -> None:
+        """A table and, on top of it, the bits of one more step whose first node is `node`."""
+        self.known = known
+        self.bits = bits
+        self.node = node
+        self._masks = known if bits is None else None
+
+    def with_step(self, action: GroundAction, node: int) -> StepEffects:
+        """The table with one more step."""
+        return StepEffects(self.masks(), action.bits, node)
+
+    def masks(self) -> list[int]:
+        """By literal, the mask of the nodes that make it true; not to be changed."""
+        if self._masks is None:
+            assert self.bits is not None
+            masks = self.known.copy()
+            for literal, bits in self.bits.items():
+                masks[literal] |= bits << self.node
+            self.known, self.bits, self._masks = masks, None, masks
+        return self._masks

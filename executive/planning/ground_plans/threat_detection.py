@@ -1,0 +1,84 @@
+"""Finding threats: what may undo a new link, and which links a new step may undo.
+
+Owns the order in which they are noted, which every count depends on.
+"""
+
+from __future__ import annotations
+
+from tailor.executive.planning.ground.ground_action import GroundAction, Span
+from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.partial_plan import Link, Threat, new, step_of
+from tailor.executive.planning.structures.orderings import Orderings
+
+Spanned = tuple[tuple[GroundCondition, Span], ...]
+Threats = tuple[Threat | None, int]  # the list and its length
+Guarded = list[tuple[int, Link]]
+_ALWAYS: tuple[Spanned, ...] = ((),)  # one effect without conditions
+
+
+def guarded_links(link: Link | None) -> Guarded:
+    """Links, newest first, each behind the literal that would undo it."""
+    guarded = []
+    while link is not None:
+        guarded.append((link.literal ^ 1, link))
+        link = link.rest
+    return guarded
+
+
+def threats_to(
+    task: GroundTask,
+    steps: tuple[GroundAction, ...],
+    orderings: Orderings,
+    undoing: int,
+    link: Link,
+    threats: Threat | None,
+    count: int,
+) -> Threats:
+    """Adds the threats to a new link by the nodes that undo it: newest first, so that the oldest ends at the head."""
+    if not undoing:
+        return threats, count
+    producer, literal, first, last, _ = link
+    late = orderings.late
+    mask = undoing & ~late[last] & ~(1 << producer)
+    if first == last:
+        mask &= ~(1 << first)  # the consumer may undo its condition; not at its start what it needs over all
+    while mask:
+        node = mask.bit_length() - 1
+        mask ^= 1 << node
+        if not late[node] >> producer & 1:
+            for conditions in _ALWAYS if task.simple else _deletions_at(task, steps, node, literal ^ 1):
+                threats = new(Threat, (link, node, conditions, threats))
+                count += 1
+    return threats, count
+
+
+def _deletions_at(task: GroundTask, steps: tuple[GroundAction, ...], node: int, literal: int) -> tuple[Spanned, ...]:
+    """The conditions under which a node, of a step or of a timed literal, makes a literal true."""
+    step = step_of(task, node)
+    return _deletions(steps[step - 1], literal, (node - task.first_node) % task.moments) if step else _ALWAYS
+
+
+def threats_by(
+    action: GroundAction, node: int, late: tuple[int, ...], guarded: Guarded, threats: Threat | None, count: int
+) -> Threats:
+    """Adds the threats by a new step to older links, newest link first."""
+    bits = action.bits
+    for undoing, link in [pair for pair in guarded if pair[0] in bits]:
+        mask = bits[undoing] << node & ~late[link.last]
+        while mask:
+            at = mask.bit_length() - 1
+            mask ^= 1 << at
+            if not late[at] >> link.producer & 1:
+                for conditions in _deletions(action, undoing, at - node):
+                    threats = new(Threat, (link, at, conditions, threats))
+                    count += 1
+    return threats, count
+
+
+def _deletions(action: GroundAction, literal: int, moment: int) -> tuple[Spanned, ...]:
+    """The conditions under which an action makes a literal true at a moment: one empty set when it always does."""
+    if action.simple:
+        return _ALWAYS
+    found = tuple(e.conditions for e in action.effects if e.literal == literal and e.moment == moment)
+    return _ALWAYS if () in found else found

@@ -1,0 +1,61 @@
+"""Refining a threat: separation, promotion, demotion; and how many of these there are."""
+
+from __future__ import annotations
+
+from tailor.executive.planning.ground.ground_action import Span
+from tailor.executive.planning.ground.ground_formula import GroundCondition, negation
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat, new
+from tailor.executive.planning.structures.cells import without
+from tailor.executive.planning.structures.connectives import conjunction
+
+
+def is_threat(plan: PartialPlan, threat: Threat) -> bool:
+    """Whether the node may still come between the link's producer and its consumer."""
+    late, link, node = plan.orderings.late, threat.link, threat.node
+    return not (late[link.last] >> node & 1 or late[node] >> link.producer & 1)
+
+
+def choices(plan: PartialPlan, threat: Threat) -> int:
+    """The number of refinements of a threat; 0 when it is none any more, so that it is forgotten first."""
+    late, (link, node, conditions, _) = plan.orderings.late, threat
+    if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
+        return 0
+    promotion = not late[node] >> link.last & 1
+    demotion = not late[link.producer] >> node & 1
+    return promotion + demotion + (len(_by_span(threat)) if conditions else 0)
+
+
+def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
+    """All plans that mend the threat; only one, that forgets it, when it is none any more."""
+    steps, orderings, effects, links, opened, threats, open_count, threat_count, cost = plan
+    threats, threat_count = without(threats, threat), threat_count - 1
+    forgotten = new(PartialPlan, (steps, orderings, effects, links, opened, threats, open_count, threat_count, cost))
+    if not is_threat(plan, threat):
+        return [forgotten]
+    children = separations(task, forgotten, threat) if threat.conditions else []
+    link, node = threat.link, threat.node
+    for before, after in ((link.last, node), (node, link.producer)):  # promotion, then demotion
+        ordered = orderings.ordered(before, after)
+        if ordered is not None:
+            mended = (steps, ordered, effects, links, opened, threats, open_count, threat_count, cost)
+            children.append(new(PartialPlan, mended))
+    return children
+
+
+def separations(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
+    """Plans in which the condition of the threatening (conditional) effect is made false."""
+    first = task.first_node
+    start = first + (threat.node - first) // task.moments * task.moments
+    children = []
+    for (begin, end), condition in _by_span(threat).items():
+        cell = OpenCondition(negation(condition), start + begin, start + end, plan.open)
+        children.append(plan._replace(open=cell, open_count=plan.open_count + 1))
+    return children
+
+
+def _by_span(threat: Threat) -> dict[Span, GroundCondition]:
+    spans: dict[Span, list[GroundCondition]] = {}
+    for condition, span in threat.conditions:
+        spans.setdefault(span, []).append(condition)
+    return {span: conjunction(conditions) for span, conditions in spans.items()}

@@ -1,0 +1,80 @@
+"""The plans of a lifted search as a plan space, and their words when they are done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaws.flaw_selection import FlawSelection
+from tailor.executive.planning.flaws.ranking import Ranking
+from tailor.executive.planning.ground_plans.extraction import Frame
+from tailor.executive.planning.lifted.achieving import refine_condition
+from tailor.executive.planning.lifted.bindings import Bindings
+from tailor.executive.planning.lifted.formula import LiftedLiteral
+from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
+from tailor.executive.planning.lifted.measures import LiftedMeasures
+from tailor.executive.planning.lifted.resolving import refine_threat
+from tailor.executive.planning.lifted.task import LiftedTask
+from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.plans.plan import Link, Plan
+from tailor.executive.planning.settings import Settings, rankings_for
+
+
+class LiftedSpace:
+    """See `PlanSpace`."""
+
+    def __init__(self, task: LiftedTask, settings: Settings, rng: np.random.Generator) -> None:
+        measures = LiftedMeasures(task)
+        self._task = task
+        self._ranking = Ranking(rankings_for(settings, task.ground.problem.metric), measures, settings.weight)
+        self._orders = [FlawSelection(parse_flaw_order(order.text), measures, rng) for order in settings.flaw_orders]
+        self.rank = self._ranking.rank
+
+    def initial(self) -> LiftedPlan:
+        """The goal as open conditions."""
+        return initial_plan(self._task)
+
+    def complete(self, plan: LiftedPlan) -> bool:
+        """Whether there is an object for every variable."""
+        return plan.bindings.completed() is not None
+
+    def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
+        """Chooses a flaw and mends it in every way; nothing is left to do for bindings that cannot be completed."""
+        if plan.open is None and plan.threats is None:
+            return []
+        flaw = self._orders[order].choose(plan)
+        if isinstance(flaw, LiftedCondition):
+            return refine_condition(self._task, plan, flaw)
+        return refine_threat(self._task, plan, flaw)
+
+    def extract(self, plan: LiftedPlan) -> Plan:
+        """The plan in words, with the lines that VHPOP prints about its bindings."""
+        task, bindings = self._task, plan.bindings.completed()
+        assert bindings is not None
+        names = tuple(
+            (schema.name, *(_value(bindings, (parameter.name, step)) for parameter in schema.parameters))
+            for step, schema in enumerate(plan.steps, 1)
+        )
+        frame = Frame(names, plan.orderings, task.first_node, task.moments, task.ground.tick_s)
+        order = {step.id: n for n, step in enumerate(frame.steps())}
+        links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
+        return frame.plan(task.ground.problem, links, plan.bindings.lines())
+
+    def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
+        cell = plan.links
+        while cell is not None:
+            producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
+            yield Link(producer, _ground(cell.literal, bindings), consumer)
+            cell = cell.rest
+
+
+def _value(bindings: Bindings, term: str | tuple[str, int]) -> str:
+    value = bindings.value(term)
+    assert value is not None
+    return value
+
+
+def _ground(literal: LiftedLiteral, bindings: Bindings) -> Literal:
+    return Literal((literal.predicate, *(_value(bindings, term) for term in literal.terms)), literal.positive)

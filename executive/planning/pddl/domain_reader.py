@@ -1,0 +1,154 @@
+"""Reads a PDDL domain: requirements, types, constants, predicates, functions, actions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from tailor.executive.planning.pddl.action_reader import read_action
+from tailor.executive.planning.pddl.language import Domain, Typed
+from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
+from tailor.executive.planning.pddl.typed_lists import read_typed, variables_of
+
+MAX_TYPES = 500  # the largest competition domain has 30
+SUPPORTED = frozenset(
+    {
+        ":strips", ":typing", ":equality", ":negative-preconditions", ":disjunctive-preconditions",
+        ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
+        ":conditional-effects", ":adl", ":durative-actions", ":duration-inequalities", ":time",
+        ":timed-initial-literals", ":fluents", ":numeric-fluents",
+    }
+)  # fmt: skip
+_FIRST = (":types", ":constants", ":predicates", ":functions")
+_ACTIONS = frozenset({":action", ":durative-action"})
+_OTHER_PARTS = {
+    ":derived": "a derived predicate",
+    ":axiom": "a derived predicate (axiom)",
+    ":constraints": "a trajectory constraint",
+    ":process": "a process",
+    ":event": "an event",
+    ":safety": "a safety constraint",
+}
+_REPEATED = _ACTIONS | {":requirements", *_OTHER_PARTS}  # the last are refused by name
+
+
+def parse_domain(text: str, source: str = "domain") -> Domain:
+    """Reads a domain.
+
+    Args:
+      text: PDDL.
+      source: What errors call the text, e.g. its file's name.
+
+    Raises:
+      PddlError: "source:line:column: what"; `Unsupported` when it is PDDL outside this planner's language.
+    """
+    form = read_form(text, source)
+    name = define_name(form, "domain")
+    domain = Domain(name, {"object": ()}, {"object": frozenset({"object"})}, (), {}, {}, ())
+    parts = parts_in_order(form, "a part such as (:action ...)", _FIRST, _REPEATED)
+    for part in parts:
+        domain = _declare(part, domain)
+    actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
+    _refuse_twins(form, [action.name for action in actions])
+    return replace(domain, actions=actions)
+
+
+def define_name(form: Form, kind: str) -> str:
+    """The name in (define (kind name) ...)."""
+    if form.head != "define" or len(form.items) < 2:
+        raise form.place.error(f"expected (define ({kind} ...) ...)")
+    title = form_of(form.items[1], f"({kind} name)")
+    if title.head != kind or len(title.items) != 2:
+        raise title.place.error(f"expected ({kind} name)")
+    return word_of(title.items[1], f"the {kind}'s name")
+
+
+def _declare(form: Form, domain: Domain) -> Domain:
+    """The domain with one more declaration; actions are read when all declarations are known."""
+    rest = form.items[1:]
+    match form.head:
+        case ":requirements":
+            check_requirements(rest)
+            return domain
+        case ":types":
+            types = _types(form)
+            return replace(domain, types=types, ancestors=_ancestors(types))
+        case ":constants":
+            return replace(domain, constants=read_typed(rest, domain.types))
+        case ":predicates":
+            return replace(domain, predicates=_signatures(rest, domain))
+        case ":functions":
+            return replace(domain, functions=_signatures(_without_types(rest), domain))
+        case head if head in _ACTIONS:
+            return domain
+        case head if head in _OTHER_PARTS:
+            raise form.place.unsupported(_OTHER_PARTS[head])
+        case head:
+            raise form.place.error(f"unknown part '{head or '('}' of a domain")
+
+
+def check_requirements(nodes: list[Node]) -> None:
+    """Refuses, by name, what this planner does not speak."""
+    for node in nodes:
+        word = word_of(node, "a requirement")
+        if word not in SUPPORTED:
+            raise node.place.unsupported(f"the requirement {word}")
+
+
+def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
+    types: dict[str, tuple[str, ...]] = {"object": ()}
+    for typed in read_typed(form.items[1:], None):
+        if typed.name != "object":
+            types[typed.name] = typed.types
+    for parents in list(types.values()):
+        for parent in parents:  # a parent that is only ever named behind a dash is a type as well
+            types.setdefault(parent, ("object",))
+    if len(types) > MAX_TYPES:
+        raise form.place.error(f"more than {MAX_TYPES} types")
+    return types
+
+
+def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[str]]:
+    """By type, itself and all types above it; types may go round in a circle and are then the same."""
+    ancestors = {}
+    for kind in types:
+        found, pending = {kind, "object"}, [kind]
+        while pending:
+            more = [parent for parent in types[pending.pop()] if parent not in found]
+            found.update(more)
+            pending += more
+        ancestors[kind] = frozenset(found)
+    return ancestors
+
+
+def _signatures(nodes: list[Node], domain: Domain) -> Mapping[str, tuple[Typed, ...]]:
+    signatures: dict[str, tuple[Typed, ...]] = {}
+    for node in nodes:
+        form = form_of(node, "(name ?parameter ...)")
+        name = word_of(form.items[0], "a name") if form.items else ""
+        if name in signatures or not name:
+            raise form.place.error(f"'{name}' is declared twice" if name else "expected a name")
+        signatures[name] = variables_of(Form(form.place, form.items[1:]), domain.types)
+    return signatures
+
+
+def _without_types(nodes: list[Node]) -> list[Node]:
+    """Function declarations without their result type `- number`."""
+    kept: list[Node] = []
+    words = iter(nodes)
+    for node in words:
+        if isinstance(node, Word) and node.text == "-":
+            kind = next(words, node)
+            if not isinstance(kind, Word) or kind.text != "number":
+                raise node.place.unsupported("a function that is not '- number'")
+        else:
+            kept.append(node)
+    return kept
+
+
+def _refuse_twins(form: Form, names: list[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise form.place.error(f"the action '{name}' is declared twice")
+        seen.add(name)

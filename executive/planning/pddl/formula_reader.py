@@ -1,0 +1,158 @@
+"""Reads conditions and goals; every predicate, term and type is checked where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from tailor.executive.planning.pddl.language import (
+    And,
+    Atom,
+    Condition,
+    Domain,
+    Equal,
+    Formula,
+    Not,
+    Or,
+    Quantified,
+    Typed,
+    When,
+)
+from tailor.executive.planning.pddl.s_expressions import Form, Node, Place, form_of, word_of
+from tailor.executive.planning.pddl.typed_lists import variables_of
+
+COMPARISONS = frozenset({"<", ">", "<=", ">="})
+MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end"): "end", ("over", "all"): "over"}
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The words that a formula may use: the domain's, and the terms in sight with their types."""
+
+    domain: Domain
+    terms: Mapping[str, tuple[str, ...]]
+
+    @classmethod
+    def of(cls, domain: Domain, objects: Iterable[Typed]) -> Scope:
+        """The scope of a problem's formulas: constants and objects."""
+        return cls(domain, {}).extended((*domain.constants, *objects))
+
+    def extended(self, names: Iterable[Typed]) -> Scope:
+        """This scope with more terms, which hide those of the same name."""
+        return replace(self, terms={**self.terms, **{t.name: t.types for t in names}})
+
+    def fits(self, term: str, wanted: tuple[str, ...]) -> bool:
+        """Whether the term can be of one of the wanted types."""
+        is_a = self.domain.is_a
+        return any(is_a(a, b) or is_a(b, a) for a in self.terms[term] for b in wanted)
+
+
+def read_formula(node: Node, scope: Scope) -> Formula:
+    """The formula of a condition or goal; () is true.
+
+    Raises:
+      PddlError: Not a formula of this scope; `Unsupported` for numeric conditions and preferences.
+    """
+    form = form_of(node, "a condition")
+    if not form.items:
+        return And(())
+    head, parts = word_of(form.items[0], "a predicate or connective"), form.items[1:]
+    match head:
+        case "and":
+            return And(tuple(read_formula(part, scope) for part in parts))
+        case "or":
+            return Or(tuple(read_formula(part, scope) for part in parts))
+        case "not":
+            expect(form, 1)
+            return Not(read_formula(parts[0], scope))
+        case "imply":
+            expect(form, 2)
+            return Or((Not(read_formula(parts[0], scope)), read_formula(parts[1], scope)))
+        case "forall" | "exists":
+            return _quantified(form, scope)
+        case "=":
+            return _equal(form, scope)
+        case "preference":
+            raise form.place.unsupported("a preference")
+        case _ if head in COMPARISONS:
+            raise form.place.unsupported(f"a numeric condition ({head} ...)")
+        case _:
+            return read_atom(form, scope)
+
+
+def _quantified(form: Form, scope: Scope) -> Formula:
+    expect(form, 2)
+    variables = variables_of(form_of(form.items[1], "a list of variables"), scope.domain.types)
+    part = read_formula(form.items[2], scope.extended(variables))
+    return Quantified(form.head == "forall", variables, part)
+
+
+def _equal(form: Form, scope: Scope) -> Formula:
+    expect(form, 2)
+    if any(isinstance(item, Form) for item in form.items[1:]):
+        raise form.place.unsupported("a numeric condition (= ...)")
+    left, right = (_term(item, scope) for item in form.items[1:])
+    return Equal(left, right)
+
+
+def _term(node: Node, scope: Scope) -> str:
+    term = word_of(node, "a variable or an object")
+    if term not in scope.terms:
+        kind = "variable" if term.startswith("?") else "object"
+        raise node.place.error(f"unknown {kind} '{term}'")
+    return term
+
+
+def read_atom(form: Form, scope: Scope) -> Atom:
+    """An atom over declared predicates and terms of fitting types."""
+    name = word_of(form.items[0], "a predicate") if form.items else ""
+    parameters = scope.domain.predicates.get(name)
+    if parameters is None:
+        raise form.place.error(f"unknown predicate '{name}'")
+    return Atom(name, read_terms(form, parameters, scope))
+
+
+def read_terms(form: Form, parameters: tuple[Typed, ...], scope: Scope) -> tuple[str, ...]:
+    """The terms after the head, as many as there are parameters and of their types."""
+    expect(form, len(parameters))
+    terms = tuple(_term(item, scope) for item in form.items[1:])
+    for item, term, parameter in zip(form.items[1:], terms, parameters, strict=True):
+        if not scope.fits(term, parameter.types):
+            have, want = " or ".join(scope.terms[term]), " or ".join(parameter.types)
+            raise item.place.error(f"'{term}' is of type {have}; '{form.head}' expects {want}")
+    return terms
+
+
+def expect(form: Form, count: int) -> None:
+    """Checks the number of items after the head."""
+    if len(form.items) != count + 1:
+        plural = "" if count == 1 else "s"
+        raise form.place.error(f"'{form.head}' expects {count} argument{plural}, found {len(form.items) - 1}")
+
+
+def read_timed(node: Node, scope: Scope) -> tuple[Condition, ...]:
+    """The conditions of a durative action: conjunctions of (at start ..), (over all ..), (at end ..)."""
+    form = form_of(node, "a timed condition")
+    if not form.items:
+        return ()
+    if form.head == "and":
+        return tuple(condition for part in form.items[1:] for condition in read_timed(part, scope))
+    if form.head == "forall":
+        expect(form, 2)
+        variables = variables_of(form_of(form.items[1], "a list of variables"), scope.domain.types)
+        inner = read_timed(form.items[2], scope.extended(variables))
+        return tuple(Condition(Quantified(True, variables, c.formula), c.when) for c in inner)
+    if form.head == "preference":
+        raise form.place.unsupported("a preference")
+    moment = moment_of(form)
+    return (Condition(read_formula(form.items[2], scope), moment),)
+
+
+def moment_of(form: Form) -> When:
+    """The moment that (at start ..), (at end ..) or (over all ..) names."""
+    place: Place = form.place
+    if len(form.items) == 3 and not isinstance(form.items[1], Form):
+        moment = MOMENTS.get((form.head, form.items[1].text))
+        if moment is not None:
+            return moment
+    raise place.error("expected (at start ...), (over all ...) or (at end ...)")

@@ -1,0 +1,55 @@
+"""A planning problem: objects, initial state, goal; and the same problem from another state or with another goal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal as OneOf
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
+from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
+from tailor.executive.planning.pddl.s_expressions import read_form
+
+
+@dataclass(frozen=True, slots=True)
+class TimedLiteral:
+    """A fact that becomes true or false at a known time, in seconds after the start."""
+
+    time_s: float
+    literal: Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A planning problem of one domain.
+
+    `objects` are the problem's own, without the domain's constants; `initial` keeps the order of the text.
+    """
+
+    name: str
+    domain: Domain
+    objects: tuple[Typed, ...]
+    initial: tuple[Fact, ...]
+    goal: Formula
+    goal_text: str
+    values: Mapping[Fact, float] = field(default_factory=dict)  # of static functions
+    timed: tuple[TimedLiteral, ...] = ()
+    metric: OneOf["", "makespan"] = ""
+
+    def with_initial(self, facts: Iterable[Fact]) -> Problem:
+        """The same problem from another initial state; timed literals stay as they are."""
+        return replace(self, initial=tuple(dict.fromkeys(facts)))
+
+    def with_goal(self, goal: str) -> Problem:
+        """The same problem with another goal.
+
+        Args:
+          goal: PDDL text, e.g. "(and (final pos3) (atball pos3))".
+
+        Raises:
+          PddlError: The text is no goal over this domain and these objects.
+        """
+        scope = Scope.of(self.domain, self.objects)
+        formula = read_formula(read_form(goal, "goal"), scope)
+        return replace(self, goal=formula, goal_text=" ".join(goal.lower().split()))

@@ -1,0 +1,155 @@
+"""Reads a PDDL problem: objects, initial state, goal, metric."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.pddl.action_reader import number_of
+from tailor.executive.planning.pddl.domain_reader import check_requirements, define_name
+from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_atom, read_formula, read_terms
+from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
+from tailor.executive.planning.pddl.problem import Problem, TimedLiteral
+from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
+from tailor.executive.planning.pddl.typed_lists import read_typed
+
+MAX_OBJECTS = 10_000
+MAX_TIMED = 200  # each is a node of every temporal network
+_METRICS = {"total-time", "makespan"}
+
+
+@dataclass(slots=True)
+class _Draft:
+    """What has been read of the problem so far."""
+
+    objects: tuple[Typed, ...] = ()
+    initial: dict[Fact, None] = field(default_factory=dict)
+    values: dict[Fact, float] = field(default_factory=dict)
+    timed: list[TimedLiteral] = field(default_factory=list)
+    goal: Formula | None = None
+    goal_text: str = ""
+    makespan: bool = False
+
+
+def parse_problem(text: str, domain: Domain, source: str = "problem") -> Problem:
+    """Reads a problem of `domain`.
+
+    Raises:
+      PddlError: "source:line:column: what"; `Unsupported` when it is PDDL outside this planner's language.
+    """
+    form = read_form(text, source)
+    name = define_name(form, "problem")
+    draft = _Draft()
+    for part in parts_in_order(form, "a part such as (:goal ...)", (":objects",), frozenset({":requirements"})):
+        _read_part(part, draft, domain)
+    if draft.goal is None:
+        raise form.place.error("the problem has no (:goal ...)")
+    return Problem(
+        name, domain, draft.objects, tuple(draft.initial), draft.goal, draft.goal_text, draft.values,
+        tuple(draft.timed), "makespan" if draft.makespan else "",
+    )  # fmt: skip
+
+
+def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
+    rest = form.items[1:]
+    match form.head:
+        case ":domain":
+            _check_domain(form, domain)
+        case ":requirements":
+            check_requirements(rest)
+        case ":objects":
+            draft.objects = read_typed(rest, domain.types)
+            if len(draft.objects) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} objects")
+            _refuse_constants(form, draft.objects, domain)
+        case ":init":
+            scope = Scope.of(domain, draft.objects)
+            for item in rest:
+                _read_initial(form_of(item, "a fact"), draft, scope)
+        case ":goal":
+            expect(form, 1)
+            draft.goal = read_formula(rest[0], Scope.of(domain, draft.objects))
+            draft.goal_text = _text_of(rest[0])
+        case ":metric":
+            _read_metric(form, draft)
+        case ":length":
+            pass  # a hint of the first competition; planners ignore it
+        case ":constraints":
+            raise form.place.unsupported("a trajectory constraint")
+        case head:
+            raise form.place.error(f"unknown part '{head or '('}' of a problem")
+
+
+def _check_domain(form: Form, domain: Domain) -> None:
+    expect(form, 1)
+    name = word_of(form.items[1], "the domain's name")
+    if name != domain.name:
+        raise form.items[1].place.error(f"the problem is of domain '{name}', not '{domain.name}'")
+
+
+def _refuse_constants(form: Form, objects: tuple[Typed, ...], domain: Domain) -> None:
+    constants = {constant.name for constant in domain.constants}
+    for item in objects:
+        if item.name in constants:
+            raise form.place.error(f"'{item.name}' is already a constant of the domain")
+
+
+# --- initial state -------------------------------------------------------------------------------
+def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
+    if form.head == "=":
+        _read_value(form, draft, scope)
+    elif _is_timed(form):
+        time_s = number_of(form.items[1])
+        if time_s < 0:
+            raise form.items[1].place.error("expected a time of at least 0")
+        if len(draft.timed) == MAX_TIMED:
+            raise form.place.error(f"more than {MAX_TIMED} timed literals")
+        literal = _literal(form_of(form.items[2], "a literal"), scope)
+        if TimedLiteral(time_s, replace(literal, positive=not literal.positive)) in draft.timed:
+            raise form.place.error(f"{literal} and its opposite at the same time")
+        draft.timed.append(TimedLiteral(time_s, literal))
+    else:
+        literal = _literal(form, scope)
+        if literal.positive:
+            draft.initial.setdefault(literal.fact)
+
+
+def _is_timed(form: Form) -> bool:
+    """Whether this is (at 5 (door-open)) and not an atom of a predicate called `at`."""
+    return form.head == "at" and len(form.items) == 3 and isinstance(form.items[2], Form)
+
+
+def _literal(form: Form, scope: Scope) -> Literal:
+    positive = form.head != "not"
+    if not positive:
+        expect(form, 1)
+        form = form_of(form.items[1], "an atom")
+    atom = read_atom(form, scope)
+    return Literal((atom.predicate, *atom.terms), positive)
+
+
+def _read_value(form: Form, draft: _Draft, scope: Scope) -> None:
+    expect(form, 2)
+    function = form_of(form.items[1], "a function such as (distance a b)")
+    parameters = scope.domain.functions.get(function.head)
+    if parameters is None:
+        raise function.place.error(f"unknown function '{function.head}'")
+    terms = read_terms(function, parameters, scope)
+    draft.values[(function.head, *terms)] = number_of(form.items[2])
+
+
+# --- metric --------------------------------------------------------------------------------------
+def _read_metric(form: Form, draft: _Draft) -> None:
+    expect(form, 2)
+    direction = word_of(form.items[1], "minimize")
+    quantity = form.items[2]
+    name = quantity.text if isinstance(quantity, Word) else quantity.head
+    if direction != "minimize" or name not in _METRICS:
+        raise form.place.unsupported(f"the metric {direction} {_text_of(quantity)}")
+    draft.makespan = True
+
+
+def _text_of(node: Node) -> str:
+    if isinstance(node, Word):
+        return node.text
+    return f"({' '.join(_text_of(item) for item in node.items)})"

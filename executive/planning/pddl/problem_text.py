@@ -1,0 +1,41 @@
+"""Writes a problem as PDDL 2.1, for a planner that is a program of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tailor.executive.planning.pddl.language import Typed
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.vhpop_text import atom, number
+
+
+def format_problem(problem: Problem) -> str:
+    """PDDL that reads back as the same problem; one object, fact or value a line."""
+    typed = any(item.types != ("object",) for item in problem.objects)
+    lines = [
+        f"(define (problem {problem.name}) (:domain {problem.domain.name})",
+        "  (:objects",
+        *(f"    {_object(item, typed)}" for item in problem.objects),
+        "  )",
+        "  (:init",
+        *(f"    {line}" for line in _initial(problem)),
+        "  )",
+        f"  (:goal {problem.goal_text})",
+    ]
+    if problem.metric == "makespan":
+        lines.append("  (:metric minimize (total-time))")
+    return "\n".join(lines) + "\n)\n"
+
+
+def _object(item: Typed, typed: bool) -> str:
+    """An object with its type; where nothing is typed, `object` stays unsaid for a reader that knows no types."""
+    if not typed:
+        return item.name
+    types = item.types[0] if len(item.types) == 1 else f"(either {' '.join(item.types)})"
+    return f"{item.name} - {types}"
+
+
+def _initial(problem: Problem) -> Iterator[str]:
+    yield from map(atom, problem.initial)
+    yield from (f"(= {atom(function)} {number(value)})" for function, value in problem.values.items())
+    yield from (f"(at {number(timed.time_s)} {timed.literal})" for timed in problem.timed)

@@ -1,0 +1,151 @@
+"""Reads Lisp text into a tree of words and lists, each with its line and column.
+
+Owns the limits on size and nesting. Knows nothing of PDDL beyond its comments and its blindness to case.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from tailor.executive.planning.pddl.errors import PddlError, Unsupported, error_at
+
+MAX_CHARACTERS = 250_000  # read in a quarter of a second; the problems at hand have 10 000 at most
+MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20
+
+_new = tuple.__new__  # makes a named tuple in half the time of its constructor
+_TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
+
+
+class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of a text
+    """Where something stands in a text; line and column count from 1."""
+
+    source: str
+    line: int
+    column: int
+
+    def error(self, what: str) -> PddlError:
+        """An error that points here."""
+        return error_at(self.source, self.line, self.column, what)
+
+    def unsupported(self, feature: str) -> Unsupported:
+        """An error that names a feature of PDDL which this planner does not speak."""
+        return Unsupported(f"{self.source}:{self.line}:{self.column}: {feature} is not supported")
+
+
+class Word(NamedTuple):
+    """One token, in lower case."""
+
+    text: str
+    place: Place
+
+
+@dataclass(slots=True)
+class Form:
+    """A parenthesised list of words and forms."""
+
+    place: Place
+    items: list[Word | Form] = field(default_factory=list)
+
+    @property
+    def head(self) -> str:
+        """The first item's text, or "" when it is not a word."""
+        first = self.items[0] if self.items else None
+        return first.text if isinstance(first, Word) else ""
+
+
+Node = Word | Form
+
+
+def read_form(text: str, source: str) -> Form:
+    """The one form that `text` holds.
+
+    Raises:
+      PddlError: Unbalanced parentheses, words outside the form, or a text beyond the limits.
+    """
+    if len(text) > MAX_CHARACTERS:
+        raise error_at(source, 1, 1, f"the text has {len(text)} characters, more than {MAX_CHARACTERS}")
+    top = Form(Place(source, 1, 1))
+    stack = [top]
+    for word in _words(text, source):
+        if word.text == "(":
+            _open(stack, word.place)
+        elif word.text == ")":
+            _close(stack, word.place)
+        else:
+            stack[-1].items.append(word)
+    if len(stack) > 1:
+        raise stack[-1].place.error("this parenthesis is never closed")
+    return _only(top)
+
+
+def _words(text: str, source: str) -> Iterator[Word]:
+    for row, line in enumerate(text.split("\n"), 1):
+        for match in _TOKEN.finditer(line):
+            token = match.group()
+            if token[0] != ";":
+                yield _new(Word, (token.lower(), _new(Place, (source, row, match.start() + 1))))
+
+
+def _open(stack: list[Form], place: Place) -> None:
+    if len(stack) > MAX_DEPTH:
+        raise place.error(f"parentheses nest deeper than {MAX_DEPTH}")
+    form = Form(place)
+    stack[-1].items.append(form)
+    stack.append(form)
+
+
+def _close(stack: list[Form], place: Place) -> None:
+    if len(stack) == 1:
+        raise place.error("this parenthesis was never opened")
+    stack.pop()
+
+
+def _only(top: Form) -> Form:
+    for item in top.items:
+        if isinstance(item, Word):
+            raise item.place.error(f"expected '(', found '{item.text}'")
+    if not top.items:
+        raise top.place.error("the text is empty; expected (define ...)")
+    if len(top.items) > 1:
+        raise top.items[1].place.error("expected the end of the text after (define ...)")
+    form = top.items[0]
+    assert isinstance(form, Form)
+    return form
+
+
+def word_of(node: Node, what: str) -> str:
+    """The node's text, or an error that says which word was expected."""
+    if isinstance(node, Word):
+        return node.text
+    raise node.place.error(f"expected {what}, found a list")
+
+
+def form_of(node: Node, what: str) -> Form:
+    """The node as a list, or an error that says which list was expected."""
+    if isinstance(node, Form):
+        return node
+    raise node.place.error(f"expected {what}, found '{node.text}'")
+
+
+def parts_in_order(form: Form, what: str, order: tuple[str, ...], repeated: frozenset[str]) -> list[Form]:
+    """The parts behind a definition's name: first those whose words are read by the others, wherever they stand.
+
+    Args:
+      form: (define (kind name) part ...).
+      what: Such a part, for whoever wrote something else.
+      order: Heads of the parts that come first.
+      repeated: Heads of the parts that may stand there more than once.
+
+    Raises:
+      PddlError: Another part stands there twice.
+    """
+    parts = [form_of(part, what) for part in form.items[2:]]
+    seen: set[str] = set()
+    for part in parts:
+        if part.head in seen - repeated:
+            raise part.place.error(f"'{part.head}' is given twice")
+        seen.add(part.head)
+    return sorted(parts, key=lambda part: order.index(part.head) if part.head in order else len(order))

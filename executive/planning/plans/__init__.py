@@ -1,0 +1,1 @@
+"""Finished plans: text formats, validation, completion, suffixes. Shares nothing with the search."""

@@ -1,0 +1,38 @@
+"""Makes a plan from elsewhere fit for execution: the facts of now, and the causal links that its text leaves out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tailor.executive.planning.pddl.language import Domain
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.links import links_of
+from tailor.executive.planning.plans.plan import Link, Plan
+from tailor.executive.planning.plans.suffix import relink
+from tailor.executive.planning.plans.validator import validate
+
+
+def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
+    """The plan with a causal link for every condition, or why it is unsound.
+
+    The plan's own links stand. VHPOP leaves out those from static facts when it plans with ground actions: they are
+    added, each step's newest. A plan that lacks others, such as the plain form, is linked anew in the order of its
+    steps.
+    """
+    known = replace(plan, problem=problem.name, initial=problem.initial)
+    fault = validate(known, domain, problem)
+    if fault:
+        return fault
+    supported = {(link.literal, link.consumer) for link in plan.links}
+    absent = [link for link in links_of(known, domain, problem) if (link.literal, link.consumer) not in supported]
+    changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
+    changing |= {timed.literal.fact[0] for timed in problem.timed}
+    if any(link.literal.fact[0] in changing for link in absent):
+        return relink(known, domain, problem) or "its steps cannot be linked"
+    return replace(known, links=_by_consumer(known, (*absent, *plan.links)))
+
+
+def _by_consumer(plan: Plan, links: tuple[Link, ...]) -> tuple[Link, ...]:
+    """Links in the order of their consumers, the goal's last."""
+    position = {step.id: n for n, step in enumerate(plan.steps)}
+    return tuple(sorted(links, key=lambda link: position.get(link.consumer, len(position))))

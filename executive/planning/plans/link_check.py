@@ -1,0 +1,45 @@
+"""Checks a plan's causal links: each producer makes its literal true, and comes before its consumer."""
+
+from __future__ import annotations
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.pddl.language import Action, Effect
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan
+from tailor.executive.planning.plans.state import Binding, Objects, fact_of
+
+Bound = dict[int, tuple[Action, Binding]]  # by step
+
+
+def faulty_link(plan: Plan, problem: Problem, bound: Bound) -> str:
+    """The first causal link that supports nothing, and why; "" when all are sound."""
+    starts = {0: -1.0, **{step.id: step.start for step in plan.steps}}
+    needed = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
+    for link in plan.links:
+        fault = _fault(link, starts, needed, problem, bound)
+        if fault:
+            return f"the causal link {link.producer} -> {link.literal} {fault}"
+    return ""
+
+
+def _fault(link: Link, starts: dict[int, float], needed: dict[int, float], problem: Problem, bound: Bound) -> str:
+    """What is wrong with a link; `needed` is the last moment at which each step may need a condition."""
+    if link.producer not in starts or (link.consumer != GOAL and link.consumer not in starts):
+        return "names a step that is not in the plan"
+    if link.consumer != GOAL and starts[link.producer] >= needed[link.consumer]:
+        return "runs backward in time"
+    if link.producer == 0:
+        timed = any(t.literal == link.literal for t in problem.timed)
+        holds = (link.literal.fact in problem.initial) == link.literal.positive
+        return "" if timed or holds else "supports nothing: the literal does not hold at first"
+    action, binding = bound[link.producer]
+    effects = [effect for effect in action.effects if effect.positive == link.literal.positive]
+    if any(_touches(effect, binding, link.literal.fact, Objects(problem)) for effect in effects):
+        return ""
+    return f"supports nothing: step {link.producer} does not achieve it"
+
+
+def _touches(effect: Effect, binding: Binding, fact: Fact, objects: Objects) -> bool:
+    if effect.atom.predicate != fact[0]:
+        return False
+    return any(fact_of(effect.atom, inner) == fact for inner in objects.bindings(effect.variables, binding))

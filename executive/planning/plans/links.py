@@ -1,0 +1,70 @@
+"""Builds causal links, and the orderings that they need, for a plan whose steps stand in a sound order."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+from tailor.executive.planning.pddl.language import Domain, Literal
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.plans.simulation import Need, rehearse
+from tailor.executive.planning.plans.state import Objects, fact_of
+
+
+def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:
+    """Each condition's literals linked to whoever made them true last; of a consumer the last condition first.
+
+    Behind these, what conditional effects need: the conditions of those that a link comes from, and the opposite of
+    the conditions of those that would break a link.
+    """
+    events = rehearse(plan, domain, problem)
+    pending: deque[tuple[Need, int]] = deque()
+    for position, event in enumerate(events):
+        pending.extend((need, position) for need in reversed(event.needs))
+    seen: set[tuple[Link, int]] = set()
+    made: set[Link] = set()
+    while pending:
+        need, position = pending.popleft()
+        source, consumer = need.source, events[position].step
+        link = Link(source.step, need.literal, consumer)
+        if (link, position) in seen:
+            continue
+        seen.add((link, position))
+        if link not in made and source.step != consumer:
+            made.add(link)
+            yield link
+        pending.extend((condition, source.position) for condition in source.why)
+        opposite = Literal(need.literal.fact, not need.literal.positive)
+        for between in range(source.position + 1, position):
+            pending.extend((kept, between) for kept in events[between].spared.get(opposite, ()))
+
+
+# --- orderings -----------------------------------------------------------------------------------
+def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, problem: Problem) -> Iterator[tuple[int, int]]:
+    """Pairs that the links need: producer before consumer, and who undoes a link on its side of it."""
+    if plan.durative:  # the schedule as it stands
+        yield from ((a.id, b.id) for a in plan.steps for b in plan.steps if a.start + a.duration <= b.start)
+        return
+    order = {0: -1, GOAL: len(plan.steps), **{step.id: n for n, step in enumerate(plan.steps)}}
+    undone = {step.id: _undone(step, domain, problem) for step in plan.steps}
+    for link in links:
+        if link.producer != 0 and link.consumer != GOAL:
+            yield link.producer, link.consumer
+        for step in plan.steps:
+            if link.literal in undone[step.id] and step.id not in (link.producer, link.consumer):
+                if order[step.id] < order[link.producer]:
+                    yield step.id, link.producer
+                elif order[step.id] > order[link.consumer]:
+                    yield link.consumer, step.id
+
+
+def _undone(step: Step, domain: Domain, problem: Problem) -> frozenset[Literal]:
+    """The literals that a step may make false."""
+    action = next(action for action in domain.actions if action.name == step.action[0])
+    binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
+    return frozenset(
+        Literal(fact_of(effect.atom, inner), not effect.positive)
+        for effect in action.effects
+        for inner in Objects(problem).bindings(effect.variables, binding)
+    )

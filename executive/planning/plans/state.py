@@ -1,0 +1,112 @@
+"""States as sets of facts: whether a formula holds, what an action's effects change. Shares nothing with the search."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.pddl.language import (
+    And,
+    Atom,
+    Condition,
+    Equal,
+    Formula,
+    Literal,
+    Not,
+    Or,
+    Quantified,
+    Typed,
+    When,
+)
+from tailor.executive.planning.pddl.problem import Problem
+
+Binding = Mapping[str, str]
+State = frozenset[Fact]
+
+
+@dataclass(frozen=True, slots=True)
+class Objects:
+    """The objects of a problem, by type."""
+
+    problem: Problem
+
+    def of(self, variable: Typed) -> list[str]:
+        """All objects that a variable may stand for."""
+        domain = self.problem.domain
+        return [
+            item.name
+            for item in (*domain.constants, *self.problem.objects)
+            if any(domain.is_a(own, wanted) for own in item.types for wanted in variable.types)
+        ]
+
+    def bindings(self, variables: tuple[Typed, ...], binding: Binding) -> Iterator[Binding]:
+        """All ways to extend a binding by the variables."""
+        names = [variable.name for variable in variables]
+        for objects in itertools.product(*(self.of(variable) for variable in variables)):
+            yield {**binding, **dict(zip(names, objects, strict=True))}
+
+
+def fact_of(atom: Atom, binding: Binding) -> Fact:
+    """The atom's ground fact."""
+    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
+
+
+def holds(formula: Formula, binding: Binding, state: State, objects: Objects) -> bool:
+    """Whether a formula holds in a state."""
+    match formula:
+        case Atom():
+            return fact_of(formula, binding) in state
+        case Equal(left, right):
+            return binding.get(left, left) == binding.get(right, right)
+        case Not(part):
+            return not holds(part, binding, state, objects)
+        case And(parts):
+            return all(holds(part, binding, state, objects) for part in parts)
+        case Or(parts):
+            return any(holds(part, binding, state, objects) for part in parts)
+        case Quantified(every, variables, part):
+            results = (holds(part, inner, state, objects) for inner in objects.bindings(variables, binding))
+            return all(results) if every else any(results)
+
+
+def support(formula: Formula, binding: Binding, state: State, objects: Objects) -> list[Literal]:
+    """Literals of the state that make the (true) formula hold; of a disjunction those of its first true part."""
+    match formula:
+        case Atom():
+            return [Literal(fact_of(formula, binding))]
+        case Equal():
+            return []
+        case Not(Atom() as atom):
+            return [Literal(fact_of(atom, binding), positive=False)]
+        case Not(part):
+            return support(_pushed(part), binding, state, objects)
+        case And(parts):
+            return [literal for part in parts for literal in support(part, binding, state, objects)]
+        case Or(parts):
+            return support(next(p for p in parts if holds(p, binding, state, objects)), binding, state, objects)
+        case Quantified(every, variables, part):
+            inner = [b for b in objects.bindings(variables, binding) if every or holds(part, b, state, objects)]
+            chosen = inner if every else inner[:1]
+            return [literal for b in chosen for literal in support(part, b, state, objects)]
+
+
+def _pushed(formula: Formula) -> Formula:
+    """The negation of a compound formula with the "not" moved inwards."""
+    match formula:
+        case And(parts):
+            return Or(tuple(Not(part) for part in parts))
+        case Or(parts):
+            return And(tuple(Not(part) for part in parts))
+        case Not(part):
+            return part
+        case Quantified(every, variables, part):
+            return Quantified(not every, variables, Not(part))
+        case _:
+            return And(())  # an (in)equality: needs no support
+
+
+def conditions_at(conditions: tuple[Condition, ...], when: When) -> And:
+    """The conjunction of an action's conditions at one moment."""
+    return And(tuple(condition.formula for condition in conditions if condition.when == when))

@@ -1,0 +1,209 @@
+"""Simulates a plan event by event: is it sound from a problem's initial state? Shares nothing with the search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.ground.durations import duration_range
+from tailor.executive.planning.ground.grounding import world_of
+from tailor.executive.planning.pddl.language import Action, Domain, Effect
+from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.link_check import Bound, faulty_link
+from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.plans.state import Binding, Objects, State, conditions_at, fact_of, holds
+from tailor.executive.planning.plans.vhpop_text import atom
+
+SAME_TIME_S = 1e-6  # events closer than this happen together
+DURATION_SLACK_S = 0.0051  # half a tick of 0.01 s: durations are printed in whole ticks
+
+
+class _Unsound(Exception):
+    """Why a plan fails."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Event:
+    """The start (or whole) or end of a step, or a timed literal; what it needs, changes, and looks at."""
+
+    time: float
+    rank: int  # of simultaneous starts and ends of one plan: ends first
+    label: str
+    step: Step | None
+    ends: bool
+    added: frozenset[Fact] = frozenset()
+    removed: frozenset[Fact] = frozenset()
+
+
+def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
+    """Simulates the plan from the problem's initial state.
+
+    Returns:
+      "" when it is sound, else why not: an unknown action, a condition that does not hold, two events that disturb
+      each other, a wrong duration, a goal that is missed, a causal link that supports nothing.
+    """
+    try:
+        bound = {step.id: _bind(step, domain, problem) for step in plan.steps}
+        state = _simulate(plan, problem, bound)
+        if not holds(problem.goal, {}, state, Objects(problem)):
+            return f"the goal {problem.goal_text} does not hold at the end"
+    except _Unsound as reason:
+        return str(reason)
+    return faulty_link(plan, problem, bound)
+
+
+# --- the actions ---------------------------------------------------------------------------------
+def _bind(step: Step, domain: Domain, problem: Problem) -> tuple[Action, Binding]:
+    """The step's action schema with its binding."""
+    name, *arguments = step.action
+    action = next((action for action in domain.actions if action.name == name), None)
+    if action is None:
+        raise _Unsound(f"step {step.id}: the domain has no action '{name}'")
+    if len(arguments) != len(action.parameters):
+        raise _Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
+    objects = Objects(problem)
+    for parameter, argument in zip(action.parameters, arguments, strict=True):
+        if argument not in objects.of(parameter):
+            raise _Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
+    binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
+    _check_duration(step, action, binding, problem)
+    return action, binding
+
+
+def _check_duration(step: Step, action: Action, binding: Binding, problem: Problem) -> None:
+    if action.duration is None:
+        return
+    allowed = duration_range(action.duration, binding, world_of(problem))
+    if allowed is None:
+        raise _Unsound(f"step {step.id}: {atom(step.action)} has no possible duration")
+    if not allowed[0] - DURATION_SLACK_S <= step.duration <= allowed[1] + DURATION_SLACK_S:
+        raise _Unsound(f"step {step.id}: {atom(step.action)} cannot last {step.duration} s")
+
+
+# --- the simulation ------------------------------------------------------------------------------
+def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
+    """The state after the last event."""
+    state: State = frozenset(problem.initial)
+    running: list[Step] = []
+    began: dict[int, State] = {}  # by step, the state just before its start
+    for events in _happenings(plan, problem):
+        _check_conditions(events, state, problem, bound)
+        began.update((event.step.id, state) for event in events if event.step and not event.ends)
+        changes = [(event, *_changes(event, state, began, problem, bound)) for event in events]
+        _check_disturbance(changes, state, problem, bound)
+        added = frozenset().union(*(more for _, more, _ in changes))
+        removed = frozenset().union(*(less for _, _, less in changes))
+        state = (state - removed) | added
+        running += [event.step for event in events if event.step and not event.ends and plan.durative]
+        running = [step for step in running if not any(event.ends and event.step is step for event in events)]
+        _check_invariants(running, state, problem, bound)
+    return state
+
+
+def _happenings(plan: Plan, problem: Problem) -> Iterator[list[_Event]]:
+    """Events by time; those at one time together. Without durations every step is an event for itself."""
+    events = [_literal_event(timed.time_s, timed.literal.fact, timed.literal.positive) for timed in problem.timed]
+    for step in plan.steps:
+        events.append(_Event(step.start, 1, f"step {step.id}", step, ends=not plan.durative))
+        if plan.durative:
+            events.append(_Event(step.start + step.duration, 0, f"step {step.id}", step, ends=True))
+    if not plan.durative:
+        yield from ([event] for event in sorted(events, key=lambda event: event.time))
+        return
+    group: list[_Event] = []
+    for event in sorted(events, key=lambda event: (event.time, event.rank)):
+        if group and event.time - group[0].time > SAME_TIME_S:
+            yield group
+            group = []
+        group.append(event)
+    if group:
+        yield group
+
+
+def _literal_event(time_s: float, fact: Fact, positive: bool) -> _Event:
+    facts, none = frozenset([fact]), frozenset[Fact]()
+    label = f"the timed literal {atom(fact)}"
+    return _Event(time_s, 0, label, None, False, facts if positive else none, none if positive else facts)
+
+
+def _moments(event: _Event, action: Action) -> tuple[str, ...]:
+    """The moments of its action that an event stands for."""
+    if action.duration is None:
+        return ("start", "end") if event.ends else ()
+    return ("end",) if event.ends else ("start",)
+
+
+def _check_conditions(events: list[_Event], state: State, problem: Problem, bound: Bound) -> None:
+    for event in events:
+        when = _unmet(event, state, problem, bound)
+        if when and event.step is not None:
+            raise _Unsound(f"step {event.step.id}: {atom(event.step.action)} lacks a condition at its {when}")
+
+
+def _unmet(event: _Event, state: State, problem: Problem, bound: Bound) -> str:
+    """The moment of an event's condition that does not hold in a state; "" when all hold."""
+    if event.step is None:
+        return ""
+    action, binding = bound[event.step.id]
+    for when in _moments(event, action):
+        for condition in action.conditions:
+            if condition.when == when and not holds(condition.formula, binding, state, Objects(problem)):
+                return when
+    return ""
+
+
+def _check_invariants(running: list[Step], state: State, problem: Problem, bound: Bound) -> None:
+    for step in running:
+        action, binding = bound[step.id]
+        if not holds(conditions_at(action.conditions, "over"), binding, state, Objects(problem)):
+            raise _Unsound(f"step {step.id}: {atom(step.action)} loses a condition that it needs all the time")
+
+
+def _changes(
+    event: _Event, state: State, began: dict[int, State], problem: Problem, bound: Bound
+) -> tuple[frozenset[Fact], frozenset[Fact]]:
+    """What an event adds and removes; add effects win over delete effects of the same event."""
+    if event.step is None:
+        return event.added, event.removed
+    action, binding = bound[event.step.id]
+    added: set[Fact] = set()
+    removed: set[Fact] = set()
+    for effect in action.effects:
+        if effect.when in _moments(event, action):
+            facts = affected(effect, binding, state, Objects(problem), began.get(event.step.id, state))
+            (added if effect.positive else removed).update(facts)
+    return frozenset(added), frozenset(removed - added)
+
+
+def affected(
+    effect: Effect, binding: Binding, state: State, objects: Objects, began: State | None = None
+) -> Iterator[Fact]:
+    """The facts that an effect makes true or false in a state.
+
+    Its conditions at the action's start are asked of `began`, the state before it, where that is another one. (A
+    condition over all is asked of the effect's own state alone.)
+    """
+    before = state if began is None else began
+    for inner in objects.bindings(effect.variables, binding):
+        if all(holds(c.formula, inner, before if c.when == "start" else state, objects) for c in effect.condition):
+            yield fact_of(effect.atom, inner)
+
+
+_Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
+
+
+def _check_disturbance(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
+    """Simultaneous events must neither undo what another needs nor contradict one another (no moving targets).
+
+    What an event needs must hold whichever other comes first, and when all others do.
+    """
+    for other, more, less in changes:
+        others = [change for change in changes if change[0] is not other]
+        for event, added, removed in others:
+            if added & less or removed & more or _unmet(other, (state - removed) | added, problem, bound):
+                raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
+        gone = frozenset[Fact]().union(*(removed for _, _, removed in others))
+        come = frozenset[Fact]().union(*(added for _, added, _ in others))
+        if _unmet(other, (state - gone) | come, problem, bound):
+            raise _Unsound(f"what happens at the same time disturbs {other.label}")

@@ -1,0 +1,205 @@
+"""Reads a plan in VHPOP's plain or causal-link form: from our planner, a recording, or a real `vhpop` alike."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
+from tailor.executive.planning.structures.schedule import levels
+from tailor.schemas.errors import UsageError
+
+MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
+MAX_LINES = 20_000
+MAX_STEPS = 200  # as many as our own plans may have
+MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
+_NAME = r"[^\s()]+"
+_FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
+_PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
+_STEP = re.compile(r"Step\s+(\d+)\s*:\s*(\(.*\))")
+_LINK = re.compile(r"(\d+)\s*->\s*(\(.*\))")
+_PAIR = re.compile(r"(\d+)<(\d+)")
+_SKIPPED = ("Time:", "Makespan:", "Parsing time:", "Memory used")
+
+
+class PlanTextError(UsageError):
+    """Text that is no plan in either form; the message names the line."""
+
+
+@dataclass(slots=True)
+class _Draft:
+    """What has been read so far."""
+
+    problem: str = ""
+    initial: tuple[Fact, ...] = ()
+    plain: list[Step] = field(default_factory=list)
+    durations: int = 0
+    actions: dict[int, Fact] = field(default_factory=dict)
+    links: list[Link] = field(default_factory=list)
+    orderings: list[tuple[int, int]] = field(default_factory=list)
+    bounds: list[tuple[int | None, ...]] = field(default_factory=list)
+    bindings: list[str] = field(default_factory=list)
+    tick_s: float = DEFAULT_TICK_S
+    consumer: int | None = None
+    part: str = ""  # "orderings" or "bindings" while their lines follow
+    has_goal: bool = False
+
+
+def parse_plan(text: str) -> Plan:
+    """The plan that the text holds; "Initial  :" and the paper's "Initial 0 :" both do.
+
+    A plain form has no initial state, links or orderings; its steps are numbered by their order. From a causal-link
+    form of a durative plan, start times and durations are those of the printed bounds (ticks of 0.01 s).
+
+    Raises:
+      PlanTextError: No plan, or a malformed one.
+    """
+    lines = text[: MAX_CHARACTERS + 1].splitlines()
+    if len(text) > MAX_CHARACTERS or len(lines) > MAX_LINES:
+        raise PlanTextError(f"plan text: longer than {MAX_CHARACTERS} characters or {MAX_LINES} lines")
+    draft = _Draft()
+    for row, line in enumerate(lines, 1):
+        try:
+            _read_line(line.rstrip(), draft)
+        except ValueError as error:
+            raise PlanTextError(f"plan text, line {row}: {error}") from None
+    if max(len(draft.actions), len(draft.plain)) > MAX_STEPS:
+        raise PlanTextError(f"plan text: more than {MAX_STEPS} steps")
+    if draft.has_goal:
+        return _from_links(draft)
+    if draft.plain:
+        durative = draft.durations > 0
+        return Plan(draft.problem, (), tuple(draft.plain), durative=durative)
+    raise PlanTextError("plan text: expected steps such as '1:(action args)' or a part 'Goal     :'; there is no plan")
+
+
+def _read_line(line: str, draft: _Draft) -> None:
+    stripped = line.strip()
+    if not stripped or stripped.startswith(_SKIPPED):
+        return
+    if stripped.startswith(";"):
+        if not draft.problem:
+            draft.problem = stripped[1:]
+    elif stripped.startswith("Initial"):
+        draft.initial = tuple(_facts(stripped.partition(":")[2]))
+    elif stripped.startswith("Goal"):
+        draft.consumer, draft.has_goal = GOAL, True
+    elif stripped.startswith("orderings"):
+        draft.part = "orderings"
+        draft.orderings += [(_whole(i), _whole(j)) for i, j in _PAIR.findall(stripped)]
+    elif stripped.startswith("tolerance"):
+        draft.tick_s = _number(stripped.partition("=")[2].strip())
+    elif stripped.startswith("bindings"):
+        draft.part = "bindings"
+    elif draft.part == "bindings":
+        draft.bindings.append(line)
+    elif draft.part == "orderings":
+        draft.bounds.append(tuple(None if word == "inf" else _whole(word) for word in stripped.split()))
+    else:
+        _read_step(stripped, draft)
+
+
+def _read_step(line: str, draft: _Draft) -> None:
+    if match := _STEP.fullmatch(line):
+        draft.consumer = _whole(match[1])
+        if draft.consumer in draft.actions or draft.consumer == 0:
+            raise ValueError(f"step {draft.consumer} stands there twice")
+        draft.actions[draft.consumer] = _fact(match[2])
+    elif match := _LINK.fullmatch(line):
+        if draft.consumer is None:
+            raise ValueError("a causal link before any step")
+        draft.links.append(Link(_whole(match[1]), _literal(match[2]), draft.consumer))
+    elif match := _PLAIN.fullmatch(line):
+        duration = _number(match[3]) if match[3] else 1.0
+        draft.durations += match[3] is not None
+        draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), _number(match[1]), duration))
+    else:
+        raise ValueError(f"expected a step, a causal link or a part's name, found '{line[:60]}'")
+
+
+def _whole(text: str) -> int:
+    _check_length(text)
+    return int(text)
+
+
+def _number(text: str) -> float:
+    _check_length(text)
+    value = float(text)
+    if not 0 <= value < 10**MAX_DIGITS:
+        raise ValueError(f"expected a time, found '{text}'")
+    return value
+
+
+def _check_length(text: str) -> None:
+    if len(text.partition(".")[0].lstrip("-")) > MAX_DIGITS:
+        raise ValueError(f"a number of more than {MAX_DIGITS} digits: {text[:20]}...")
+
+
+def _facts(text: str) -> list[Fact]:
+    return [tuple(match.lower().split()) for match in _FACT.findall(text)]
+
+
+def _fact(text: str) -> Fact:
+    match = _FACT.fullmatch(text)
+    if match is None:
+        raise ValueError(f"expected (name argument ...), found '{text[:60]}'")
+    return tuple(match[1].lower().split())
+
+
+def _literal(text: str) -> Literal:
+    negated = re.fullmatch(r"\(not\s+(\(.*\))\s*\)", text)
+    return Literal(_fact(negated[1]), positive=False) if negated else Literal(_fact(text))
+
+
+# --- the causal-link form ------------------------------------------------------------------------
+def _from_links(draft: _Draft) -> Plan:
+    known = {0, GOAL, *draft.actions}
+    for i, j in [*draft.orderings, *((link.producer, link.consumer) for link in draft.links)]:
+        if i not in known or j not in known:
+            raise PlanTextError(f"plan text: {i} and {j} are linked or ordered, but there is no such step")
+    if not draft.bounds:
+        starts = levels(tuple(draft.actions), draft.orderings)
+        if starts is None:
+            raise PlanTextError("plan text: the orderings go round in a circle")
+        steps = tuple(Step(number, action, starts[number]) for number, action in draft.actions.items())
+        return _plan(draft, steps, tuple(draft.orderings))
+    size = 2 * len(draft.actions) + 1
+    if sorted(draft.actions) != list(range(1, len(draft.actions) + 1)) or {len(r) for r in draft.bounds} != {size}:
+        raise PlanTextError(f"plan text: expected a {size} x {size} table of orderings")
+    if len(draft.bounds) != size:
+        raise PlanTextError(f"plan text: expected {size} rows of orderings, found {len(draft.bounds)}")
+    return _durative(draft)
+
+
+def _durative(draft: _Draft) -> Plan:
+    tick_s = draft.tick_s
+    steps = []
+    for number, action in draft.actions.items():
+        start, end = draft.bounds[2 * number - 1][0], draft.bounds[2 * number][0]
+        if start is None or end is None:
+            raise PlanTextError(f"plan text: step {number} has no earliest time")
+        steps.append(Step(number, action, round(-start * tick_s, 9), round((start - end) * tick_s, 9)))
+    numbers = sorted(draft.actions)
+    pairs = []
+    for i in numbers:
+        for j in numbers:
+            bound = draft.bounds[2 * j - 1][2 * i]
+            if i != j and bound is not None and bound <= 0:
+                pairs.append((i, j))
+    return _plan(draft, tuple(steps), tuple(pairs))
+
+
+def _plan(draft: _Draft, steps: tuple[Step, ...], orderings: tuple[tuple[int, int], ...]) -> Plan:
+    return Plan(
+        draft.problem,
+        draft.initial,
+        tuple(sorted(steps, key=lambda step: step.start)),
+        tuple(draft.links),
+        orderings,
+        bool(draft.bounds),
+        tuple(draft.bounds),
+        draft.tick_s,
+        bindings=tuple(draft.bindings),
+    )

@@ -1,0 +1,58 @@
+"""Writes a plan as VHPOP prints it: the plain form, and the causal-link form of the paper's Figure 10."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tailor.executive.library import Fact
+from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan
+
+
+def format_plan(plan: Plan) -> str:
+    """The plain form: `;problem`, then `START:(action args)` a line, `[duration]` behind a durative one."""
+    lines = [f";{plan.problem}"]
+    for step in plan.steps:
+        duration = f"[{number(step.duration)}]" if plan.durative else ""
+        lines.append(f"{number(step.start)}:{atom(step.action)}{duration}")
+    return "\n".join(lines) + "\n"
+
+
+def format_links(plan: Plan) -> str:
+    """The causal-link form; a durative plan's orderings are printed as the bounds of its temporal network.
+
+    Their unit is 0.01 s as VHPOP's; for another tolerance a line of ours says so.
+    """
+    lines = [f";{plan.problem}", "Initial  :" + "".join(" " + atom(fact) for fact in plan.initial)]
+    for step in plan.steps:
+        lines += ["", f"Step {step.id:<3} : {atom(step.action)}", *_links(plan.links_to(step.id))]
+    lines += ["", "Goal     : ", *_links(plan.links_to(GOAL))]
+    if plan.bounds:
+        lines += ["orderings = ", *_matrix(plan)]
+        if plan.tick_s != DEFAULT_TICK_S:
+            lines.append(f"tolerance = {plan.tick_s!r}")
+    else:
+        lines.append("orderings = {" + "".join(f" {i}<{j}" for i, j in plan.orderings) + " }")
+    if plan.bindings:
+        lines += ["bindings = ", *plan.bindings]
+    return "\n".join(lines) + "\n"
+
+
+def _links(links: tuple[Link, ...]) -> Iterator[str]:
+    for link in links:
+        yield f"          {link.producer:<3} -> {link.literal}"
+
+
+def _matrix(plan: Plan) -> Iterator[str]:
+    for row in plan.bounds:
+        yield "".join(f" {'inf' if bound is None else bound:>6}" for bound in row)
+
+
+def atom(fact: Fact) -> str:
+    """A fact or action in parentheses."""
+    return f"({' '.join(fact)})"
+
+
+def number(value: float) -> str:
+    """A number without needless digits: 3, 0.01, 28.04."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return text or "0"

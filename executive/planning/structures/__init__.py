@@ -1,0 +1,1 @@
+"""Data structures of partial plans, ground and lifted: conditions, orderings, persistent lists."""

@@ -1,0 +1,43 @@
+"""An optimistic makespan of a partial plan: no step starts before its open conditions can hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tailor.executive.planning.structures.orderings import GOAL, INITIAL, Orderings
+from tailor.executive.planning.structures.temporal_network import UNBOUNDED, TemporalNetwork
+
+
+def makespan_estimate(orderings: Orderings, conditions: Iterable[tuple[int, float]]) -> float:
+    """The least makespan in ticks (in levels without durations).
+
+    Args:
+      orderings: Of the plan.
+      conditions: By open condition, its node and the earliest time at which it can hold.
+    """
+    earliest: dict[int, float] = {}
+    for node, time in conditions:
+        earliest[node] = max(time, earliest.get(node, 0))
+    if isinstance(orderings, TemporalNetwork):
+        return _over_network(orderings, earliest)
+    return _over_levels(orderings.late, earliest)
+
+
+def _over_network(network: TemporalNetwork, earliest: dict[int, float]) -> float:
+    makespan = max(network.earliest()[GOAL], earliest.get(GOAL, 0))
+    for node, time in earliest.items():
+        if node != GOAL:
+            # row[other] is the greatest t_node - t_other, so t_other is at least time - row[other]
+            for other, bound in enumerate(network.rows[node]):
+                if other not in (INITIAL, GOAL) and bound < UNBOUNDED // 2:
+                    makespan = max(makespan, time - bound)
+    return makespan
+
+
+def _over_levels(late: tuple[int, ...], earliest: dict[int, float]) -> float:
+    """The longest chain of unit steps, each lifted to the level that its open conditions need."""
+    levels: dict[int, float] = {}
+    for node in sorted(range(len(late)), key=lambda n: -late[n].bit_count()):
+        before = [level for other, level in levels.items() if late[other] >> node & 1]
+        levels[node] = max([earliest.get(node, 0), *before]) + (node not in (INITIAL, GOAL))
+    return levels[GOAL]

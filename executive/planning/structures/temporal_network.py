@@ -1,0 +1,106 @@
+"""Orderings of nodes that take time: a simple temporal network with all-pairs bounds in ticks.
+
+`rows[b][a]` is the greatest t_b - t_a that the constraints allow. Kept minimal by an incremental shortest-path update
+(Dechter, Meiri & Pearl 1991); an order between two nodes costs at least one tick, so that no two needed events meet.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tailor.executive.planning.structures.orderings import GOAL, INITIAL, Lasting
+
+UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
+_FAR = UNBOUNDED // 2  # as good as unbounded
+Row = tuple[int, ...]
+_FREE: Row = (UNBOUNDED, UNBOUNDED)  # the bounds of a new step's start and end to what does not touch them
+
+
+class TemporalNetwork(NamedTuple):
+    """Bounds between all nodes; the goal has no time of its own and stays unbounded."""
+
+    rows: tuple[Row, ...]
+    late: tuple[int, ...]
+
+    @classmethod
+    def start(cls, timed: tuple[int, ...]) -> TemporalNetwork:
+        """Initial state at time 0, the goal, and nodes at fixed ticks."""
+        times = [0, None, *timed]
+        rows = tuple(
+            tuple(0 if a == b else UNBOUNDED if s is None or t is None else t - s for a, s in enumerate(times))
+            for b, t in enumerate(times)
+        )
+        return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
+
+    @property
+    def entries(self) -> int:
+        """See `Orderings`."""
+        return len(self.rows) ** 2
+
+    def with_step(self, action: Lasting, moment: int, before: int) -> TemporalNetwork | None:
+        """See `Orderings`: start and end, as far apart as the duration allows, one of them before a node."""
+        start = len(self.rows)
+        end = start + 1
+        longest = UNBOUNDED if action.longest is None else action.longest
+        first = self.rows[INITIAL] + (-1, -1 - action.shortest)
+        unbounded = (UNBOUNDED,) * start
+        own = [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
+        if before != GOAL:
+            via = self.rows[before] + _FREE
+            node = start + moment
+            if via[INITIAL] + first[node] < 1:
+                return None
+            first = _through(first, first[node] - 1, via)
+            own = [_through(row, row[node] - 1, via) for row in own]
+        late = list(self.late)
+        late[INITIAL] |= 3 << start
+        rows = [first, *[row + _FREE for row in self.rows[1:]], *own]
+        # only the initial state comes before the step: others are bound to it by way of the start of all, if at all
+        for other, row in enumerate(rows):
+            if other != INITIAL and row[INITIAL] < _FAR:
+                rows[other] = _through(row, row[INITIAL], first)
+                if other < start:
+                    late[other] = _late(rows[other], other)
+        return TemporalNetwork(tuple(rows), (*late, _late(rows[start], start), _late(rows[end], end)))
+
+    def ordered(self, a: int, b: int) -> TemporalNetwork | None:
+        """See `Orderings`: t_a <= t_b - 1 tick."""
+        if self.late[b] >> a & 1:
+            return None
+        if b == GOAL or self.rows[a][b] <= -1:
+            return self
+        via = self.rows[b]
+        rows, late = list(self.rows), list(self.late)
+        for node, row in enumerate(self.rows):
+            reach = row[a] - 1
+            if reach < row[b]:
+                rows[node] = changed = _through(row, reach, via)
+                late[node] = _late(changed, node)
+        return TemporalNetwork(tuple(rows), tuple(late))
+
+    def earliest(self) -> tuple[float, ...]:
+        """Earliest times in ticks; the goal's is the makespan."""
+        times = [-bound for bound in self.rows[INITIAL]]
+        times[GOAL] = max([0, *times[GOAL + 1 :]])
+        return tuple(times)
+
+    def bounds(self) -> tuple[tuple[int | None, ...], ...]:
+        """Rows and columns of VHPOP's print, without the goal: [i][j] is the greatest t_j - t_i, None if unbounded."""
+        nodes = [node for node in range(len(self.rows)) if node != GOAL]
+        return tuple(tuple(_bound(self.rows[j][i]) for j in nodes) for i in nodes)
+
+
+def _through(row: Row, reach: int, via: Row) -> Row:
+    """The row with every bound that gets smaller by way of another node: `reach` to it, and its own row."""
+    return tuple([old if old <= reach + more else reach + more for old, more in zip(row, via, strict=True)])
+
+
+def _bound(value: int) -> int | None:
+    return value if value < _FAR else None
+
+
+def _late(row: Row, node: int) -> int:
+    """The nodes that cannot be a tick or more before this one; the goal is after all."""
+    if node == GOAL:
+        return 1 << GOAL
+    return sum([1 << other for other, bound in enumerate(row) if bound < 1 and other != GOAL], 1 << GOAL)

@@ -1,0 +1,1 @@
+"""What refinement minimises: sequences of instantiated actions and their predicted cost."""

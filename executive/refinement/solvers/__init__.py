@@ -1,0 +1,1 @@
+"""Optimisers behind one interface: exact chain search, differential evolution, genetic algorithm."""

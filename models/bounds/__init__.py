@@ -1,0 +1,1 @@
+"""Bounds on a model's predictions over boxes of arguments, read from its ONNX graph."""

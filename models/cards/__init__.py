@@ -1,0 +1,1 @@
+"""Model cards: contents, shape, checks."""

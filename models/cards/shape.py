@@ -1,0 +1,70 @@
+"""Whether a card says what a card says, in the right shape: what loading, listing and drawing read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tailor.models.cards.json_shape import arguments_error, is_number, is_range, short
+
+OUTPUTS = {
+    "duration": ["mean_s", "std_s"],
+    "energy": ["mean_j", "std_j"],
+    "success": ["success"],
+    "benefit": ["slower"],
+}
+THRESHOLDED = ("success", "benefit")
+FIGURES = {  # of the test, that every list of models tells
+    "duration": ("mae_s", "mean_duration_s"),
+    "energy": ("mae_j", "mean_energy_j"),
+    "success": ("accuracy_pct", "missed_failures_pct"),
+    "benefit": ("right_pct", "slower_pct"),
+}
+
+
+def card_error(card: Mapping[str, Any]) -> str:
+    """What is wrong with a card that has all its fields, and what was expected; empty if nothing is."""
+    for name in ("robot", "action", "kind", "features", "sha256", "command"):
+        if not isinstance(card[name], str) or not card[name]:
+            return f"{name} is {short(card[name])}, expected text"
+    if card["kind"] not in OUTPUTS:
+        return f"kind is '{card['kind']}', expected one of: {', '.join(OUTPUTS)}"
+    for name in ("episodes", "learner", "test", "golden", "versions", *(["feature_units"] * ("feature_units" in card))):
+        if not isinstance(card[name], dict):
+            return f"{name} is {short(card[name])}, expected an object"
+    return arguments_error(card["arguments"]) or _answers_error(card) or _golden_error(card) or _told_error(card)
+
+
+def _answers_error(card: Mapping[str, Any]) -> str:
+    expected = OUTPUTS[card["kind"]]
+    if card["outputs"] != expected:
+        return f"outputs is {short(card['outputs'])}, expected {expected} of a model of {card['kind']}"
+    if not is_range(card["output_range"]):
+        return f"output_range is {short(card['output_range'])}, expected two numbers, the lower one first"
+    if card["kind"] in THRESHOLDED and not is_number(card.get("threshold")):
+        return f"threshold is {short(card.get('threshold'))}, expected a number"
+    return ""
+
+
+def _golden_error(card: Mapping[str, Any]) -> str:
+    width, rows = len(card["arguments"]), card["golden"].get("arguments")
+    whole = isinstance(rows, list) and rows and all(isinstance(row, list) and len(row) == width for row in rows)
+    if not whole or not all(is_number(value) for row in rows for value in row):
+        return f"golden arguments are {short(rows)}, expected rows of {width} numbers"
+    for name in card["outputs"]:
+        values = card["golden"].get(name)
+        if not isinstance(values, list) or len(values) != len(rows) or not all(map(is_number, values)):
+            return f"golden {name} is {short(values)}, expected {len(rows)} numbers"
+    return ""
+
+
+def _told_error(card: Mapping[str, Any]) -> str:
+    """What lists and pages of models tell of it."""
+    if not isinstance(card["learner"].get("name"), str):
+        return f"learner's name is {short(card['learner'].get('name'))}, expected text"
+    if not is_number(card["episodes"].get("count")):
+        return f"episodes' count is {short(card['episodes'].get('count'))}, expected a number"
+    for name in FIGURES[card["kind"]]:
+        if not is_number(card["test"].get(name)):
+            return f"test's {name} is {short(card['test'].get(name))}, expected a number"
+    return ""

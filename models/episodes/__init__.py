@@ -1,0 +1,1 @@
+"""Data sets of episodes, and the training examples made from them."""

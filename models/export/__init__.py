@@ -1,0 +1,1 @@
+"""ONNX graphs of learned models, and their way into the zoo."""

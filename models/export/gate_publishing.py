@@ -1,0 +1,98 @@
+"""Writes a benefit tree into a zoo: the ONNX file, and the card that says what it was learned from and with."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.models.cards.card import FORMAT, Card, card_path, identity
+from tailor.models.export.onnx_features import add_features, as_columns
+from tailor.models.export.onnx_graph import Graph
+from tailor.models.export.onnx_trees import add_probability
+from tailor.models.export.publishing import GOLDEN, versions
+from tailor.models.export.zoo_writer import place
+from tailor.models.runtime import BENEFIT
+from tailor.models.training.gate_training import Pairs, TrainedBenefit, space
+
+
+@dataclass(frozen=True, slots=True)
+class AboutBenefit:
+    """What a card says beside what pairs and training know."""
+
+    robot: str
+    names: tuple[str, ...]  # of the situations' columns
+    sequences: tuple[tuple[str, ...], ...]  # of actions that it was learned for, detours left out
+    models: Mapping[str, str]  # SHA-256 of the action models by "action/kind": it judges their choices alone
+    settings: Mapping[str, Any]  # of refinement
+    episodes: Mapping[str, Any]  # where the pairs come from
+    learner: str
+    seed: int
+    command: str  # what makes the model again
+
+
+def publish_benefit(zoo: Path, pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> Path:
+    """Write `zoo/robot/refinement/benefit.onnx` and its card; returns the ONNX file's path."""
+    card = _card(pairs, trained, about)
+    return place(zoo, _exported(trained, about.names, card), card)
+
+
+def withdraw_benefit(zoo: Path, robot: str) -> bool:
+    """Remove a robot's benefit tree, as its action models have changed; whether there was one."""
+    path = zoo / robot / f"{BENEFIT}.onnx"
+    there = path.exists()
+    for file in (path, card_path(path)):
+        file.unlink(missing_ok=True)
+    return there
+
+
+def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> bytes:
+    """Double `arguments` (n, k) to float `slower` (n,)."""
+    graph, columns = Graph(), space(names)
+    features = as_columns(graph, add_features(graph, columns, "arguments"))
+    slower = add_probability(graph, features, trained.trees.steps)
+    return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
+
+
+def _card(pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> dict[str, Any]:
+    action, kind = BENEFIT.split("/")
+    columns = space(about.names)
+    low, high = pairs.situations.min(axis=0), pairs.situations.max(axis=0)
+    content = np.ascontiguousarray(np.column_stack([pairs.situations, pairs.greedy_s, pairs.refined_s]))
+    return {
+        "format": FORMAT,
+        "robot": about.robot,
+        "action": action,
+        "kind": kind,
+        "features": columns.name,
+        "feature_units": {quantity.name: quantity.unit for quantity in columns.features},
+        "arguments": [
+            {"name": q.name, "unit": q.unit, "lower": float(a), "upper": float(b)}
+            for q, a, b in zip(columns.arguments, low, high, strict=True)
+        ],
+        "outputs": ["slower"],
+        "output_range": [0.0, 1.0],
+        "threshold": trained.threshold,
+        "sequences": [list(names) for names in about.sequences],
+        "models": dict(about.models),
+        "settings": dict(about.settings),
+        "episodes": {**about.episodes, "count": len(pairs.slower), "sha256": hashlib.sha256(content).hexdigest()},
+        "learner": {"name": about.learner, "leaves": trained.trees.leaves, "seed": about.seed},
+        "test": trained.test,
+        "rules": list(trained.rules),
+        "golden": _golden(pairs, trained),
+        "versions": versions(),
+        "command": about.command,
+    }
+
+
+def _golden(pairs: Pairs, trained: TrainedBenefit) -> dict[str, Sequence[Any]]:
+    """Situations spread over the pairs, and what the learner itself says of them."""
+    chosen = np.linspace(0, len(pairs.slower) - 1, GOLDEN).astype(int)
+    situations = pairs.situations[chosen]
+    said = np.round(trained.trees.risk(situations), 6)
+    return {"arguments": situations.tolist(), "slower": said.tolist()}

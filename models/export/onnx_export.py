@@ -1,0 +1,61 @@
+"""Turns a fitted learner into one ONNX graph from raw action arguments to seconds, or to the probability of success."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import onnx
+
+from tailor.models.export.onnx_features import add_features, as_columns
+from tailor.models.export.onnx_graph import Graph
+from tailor.models.export.onnx_trees import add_bag, add_probability, add_tree
+from tailor.models.failure.failure_tree import FailureModel
+from tailor.models.features.features import FeatureSpace
+from tailor.models.training.sklearn_adapters import BorrowedClassifier, BorrowedRegressor
+from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
+
+
+def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str], unit: str = "s") -> onnx.ModelProto:
+    """Double `arguments` (n, k) to float `mean_s` and `std_s`, (n,); `notes` become the file's metadata.
+
+    Energy goes the same way, its `unit` is "j".
+
+    Raises:
+      TypeError: The learner is none of ours.
+    """
+    graph = Graph()
+    features = add_features(graph, space, "arguments")
+    match learner:
+        case BaggedModelTrees():
+            mean, spread = add_bag(graph, features, learner.trees_)
+        case ModelTreeRegressor():
+            mean, spread = add_tree(graph, features, learner.tree_)
+        case BorrowedRegressor():
+            from tailor.models.export.onnx_sklearn import add_regressor
+
+            columns = as_columns(graph, features)
+            mean, spread = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.spread_)
+        case _:
+            raise TypeError(f"no export for {type(learner).__name__}")
+    return graph.model(len(space.arguments), {f"mean_{unit}": mean, f"std_{unit}": spread}, notes)
+
+
+def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
+    """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata.
+
+    Raises:
+      TypeError: The learner is none of ours.
+    """
+    graph = Graph()
+    features = as_columns(graph, add_features(graph, space, "arguments"))
+    match learner:
+        case FailureModel():
+            success = add_probability(graph, features, learner.steps_)
+        case BorrowedClassifier():
+            from tailor.models.export.onnx_sklearn import add_classifier
+
+            success = add_classifier(graph, features, learner.inner_)
+        case _:
+            raise TypeError(f"no export for {type(learner).__name__}")
+    return graph.model(len(space.arguments), {"success": success}, notes)

@@ -1,0 +1,94 @@
+"""Traces feature spaces into ONNX: the functions of features.py run on symbols that write nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from onnx import TensorProto
+
+from tailor.models.export.onnx_graph import Sink, single
+from tailor.models.features.features import FeatureSpace
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """Rows of the graph under construction, shape (k, n), single precision."""
+
+    sink: Sink
+    name: str
+
+    def _with(self, op: str, other: Symbol | float, swapped: bool = False) -> Symbol:
+        name = other.name if isinstance(other, Symbol) else self.sink.constant(single(other))
+        pair = (name, self.name) if swapped else (self.name, name)
+        return Symbol(self.sink, self.sink.add(op, *pair))
+
+    def __getitem__(self, rows: list[int]) -> Symbol:
+        return Symbol(self.sink, self.sink.add("Gather", self.name, self.sink.constant(np.array(rows)), axis=0))
+
+    def __add__(self, other: Symbol | float) -> Symbol:
+        return self._with("Add", other)
+
+    def __sub__(self, other: Symbol | float) -> Symbol:
+        return self._with("Sub", other)
+
+    def __rsub__(self, other: float) -> Symbol:
+        return self._with("Sub", other, swapped=True)
+
+    def __mul__(self, other: Symbol | float) -> Symbol:
+        return self._with("Mul", other)
+
+    def __rtruediv__(self, other: float) -> Symbol:
+        return self._with("Div", other, swapped=True)
+
+    def __lt__(self, other: Symbol | float) -> Symbol:
+        return self._with("Less", other)
+
+
+class Tracing:
+    """The `Operations` of features.py on symbols."""
+
+    def sqrt(self, a: Symbol) -> Symbol:
+        """Square root."""
+        return Symbol(a.sink, a.sink.add("Sqrt", a.name))
+
+    def absolute(self, a: Symbol) -> Symbol:
+        """Magnitude."""
+        return Symbol(a.sink, a.sink.add("Abs", a.name))
+
+    def round(self, a: Symbol) -> Symbol:
+        """Nearest whole number, ties to even."""
+        return Symbol(a.sink, a.sink.add("Round", a.name))
+
+    def clip(self, a: Symbol, low: float, high: float) -> Symbol:
+        """What lies outside is brought to the nearer end."""
+        ends = (a.sink.constant(single(end)) for end in (low, high))
+        return Symbol(a.sink, a.sink.add("Clip", a.name, *ends))
+
+    def where(self, condition: Symbol, a: Symbol | float, b: Symbol) -> Symbol:
+        """Elements of `a` where the condition holds, of `b` elsewhere."""
+        first = a.name if isinstance(a, Symbol) else b.sink.constant(single(a))
+        return Symbol(b.sink, b.sink.add("Where", condition.name, first, b.name))
+
+    def stack(self, *parts: Symbol) -> Symbol:
+        """All rows of the parts, in order."""
+        return Symbol(parts[0].sink, parts[0].sink.add("Concat", *(part.name for part in parts), axis=0))
+
+
+def add_features(sink: Sink, space: FeatureSpace, arguments: str) -> str:
+    """Write a feature space into a graph: double arguments (n, k) to a row of each feature, float (f, n)."""
+    values = sink.add("Cast", arguments, to=TensorProto.FLOAT)
+    return space.rows(Symbol(sink, as_rows(sink, values, len(space.arguments))), Tracing()).name
+
+
+def as_rows(sink: Sink, columns: str, count: int) -> str:
+    """Columns (n, count) as rows (count, n): the runtime is quick on long rows.
+
+    A product with ones and zeros is exact, and makes everything NaN where one number is not finite.
+    """
+    return str(sink.add("Gemm", sink.constant(np.eye(count, dtype=np.float32)), columns, transB=1))
+
+
+def as_columns(sink: Sink, rows: str) -> str:
+    """Rows (f, n) as columns (n, f), which tree ensembles ask for."""
+    return str(sink.add("Transpose", rows, perm=[1, 0]))

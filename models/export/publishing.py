@@ -1,0 +1,137 @@
+"""Writes a trained model into a zoo: the ONNX file, and the card that says what it is."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+from numpy.typing import NDArray
+
+from tailor.models.cards.card import FORMAT, Card, identity
+from tailor.models.episodes.episodes import DataSet
+from tailor.models.episodes.regression_targets import AMOUNTS
+from tailor.models.export.onnx_export import export_duration, export_success
+from tailor.models.export.zoo_writer import place
+from tailor.models.features.features import FeatureSpace
+from tailor.models.training.training import Trained
+
+Array = NDArray[np.float64]
+GOLDEN = 32
+LONGEST_FACTOR = 3.0  # a prediction beyond three times the longest episode, or its energy, is no prediction
+LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
+
+
+@dataclass(frozen=True, slots=True)
+class Publication:
+    """What a card says beside what the data set and the training know."""
+
+    kind: str  # "duration", "energy" or "success"
+    learner: str
+    space: FeatureSpace
+    seed: int
+    command: str  # what makes the model again
+
+
+def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
+    """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
+    card = _card(data, trained, about)
+    return place(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
+
+
+def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
+    if about.kind == "success":
+        return export_success(learner, about.space, identity(card))
+    return export_duration(learner, about.space, identity(card), AMOUNTS[about.kind].unit)
+
+
+def _outputs(kind: str) -> list[str]:
+    """Names of the graph's outputs."""
+    return ["success"] if kind == "success" else [f"{name}_{AMOUNTS[kind].unit}" for name in ("mean", "std")]
+
+
+def _output_range(data: DataSet, kind: str) -> list[float]:
+    """Answers outside are no answers."""
+    if kind == "success":
+        return [0.0, 1.0]
+    return [0.0, LONGEST_FACTOR * max(AMOUNTS[kind].whole(episode) for episode in data.episodes)]
+
+
+def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]:
+    manifest = data.manifest
+    return {
+        "format": FORMAT,
+        "robot": manifest["robot"],
+        "action": manifest["action"],
+        "kind": about.kind,
+        "features": about.space.name,
+        "feature_units": {feature.name: feature.unit for feature in about.space.features},
+        "arguments": manifest["arguments"],
+        "outputs": _outputs(about.kind),
+        "output_range": _output_range(data, about.kind),
+        **({"threshold": trained.learner.threshold_} if about.kind == "success" else {}),
+        "episodes": _episodes(data),
+        "learner": _learner(trained, about),
+        "test": trained.test,
+        "golden": golden(data, trained.learner, about),
+        "versions": versions(),
+        "command": about.command,
+    }
+
+
+def _episodes(data: DataSet) -> dict[str, Any]:
+    """What a card says of the episodes that it was learned from."""
+    return {
+        "count": len(data.episodes),
+        "finished": sum(episode.finished for episode in data.episodes),
+        "on_policy": data.manifest.get("on_policy", 0),
+        "sha256": data.sha256,
+        **{key: data.manifest.get(key) for key in ("seed", "source", "source_sha256")},
+    }
+
+
+def _learner(trained: Trained, about: Publication) -> dict[str, Any]:
+    """What a card says of what learned it."""
+    return {
+        "name": about.learner,
+        "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
+        "leaves": leaves(trained.learner),
+        "n_i": trained.n_i,
+        "seed": about.seed,
+    }
+
+
+def versions() -> dict[str, str]:
+    """Of Python and of the libraries that a model depends on."""
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
+
+
+def _plain(value: object) -> bool:
+    return value is None or isinstance(value, bool | int | float | str)
+
+
+def leaves(learner: Any) -> list[int]:
+    """Number of leaves of each of a learner's trees, if it has any."""
+    if hasattr(learner, "steps_"):
+        return [splits.leaves for splits, _ in learner.steps_]
+    return [tree.leaves for tree in getattr(learner, "trees_", [])]
+
+
+def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequence[Any]]:
+    """Arguments spread over the episodes, the last at zero distance, and what the learner itself says of them."""
+    chosen = np.linspace(0, len(data.episodes) - 1, GOLDEN).astype(int)
+    arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
+    half = arguments.shape[1] // 2
+    arguments[-1, half:] = arguments[-1, :half]
+    features = about.space(arguments)
+    if about.kind == "success":
+        answers: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
+    else:
+        answers = dict(zip(_outputs(about.kind), learner.predict_spread(features), strict=True))
+    rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in answers.items()}
+    return {"arguments": arguments.tolist(), **rounded}

@@ -1,0 +1,1 @@
+"""Learned models in words: rules of trees, and which of them applied."""

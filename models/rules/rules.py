@@ -1,0 +1,90 @@
+"""Prints trees as rules in the manner of the paper's Figure 7: conditions, then the formula, with units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.models.bounds.tree_boxes import TreeBoxes
+from tailor.models.features.features import Quantity
+from tailor.models.trees.linear_tree import LinearTree
+from tailor.models.trees.split_tree import LEAF, SplitTree
+
+DEGREES = 180 / np.pi
+TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term
+NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What the path to a leaf says of each feature: lower < value <= upper."""
+
+    leaf: int
+    lower: NDArray[np.float64]  # (f,)
+    upper: NDArray[np.float64]  # (f,)
+
+
+def bounds(tree: SplitTree, features: int) -> Iterator[Bounds]:
+    """The box of every leaf, from left to right."""
+
+    def visit(node: int, lower: NDArray[np.float64], upper: NDArray[np.float64]) -> Iterator[Bounds]:
+        feature, threshold = int(tree.feature[node]), float(tree.threshold[node])
+        if feature == LEAF:
+            yield Bounds(int(tree.leaf[node]), lower, upper)
+            return
+        left, right = upper.copy(), lower.copy()
+        left[feature], right[feature] = min(upper[feature], threshold), max(lower[feature], threshold)
+        yield from visit(int(tree.left[node]), lower, left)
+        yield from visit(int(tree.right[node]), right, upper)
+
+    yield from visit(0, np.full(features, -np.inf), np.full(features, np.inf))
+
+
+def duration_rules(tree: LinearTree, quantities: Sequence[Quantity], unit: str = "s") -> list[str]:
+    """One rule a leaf: "if ... then time = ...", or "energy" where the unit is J."""
+    return [
+        f"if {conditions(box, quantities)}\nthen {NAMES[unit]} = {formula(tree, box.leaf, quantities, unit)}"
+        for box in bounds(tree.splits, len(quantities))
+    ]
+
+
+def success_rules(splits: SplitTree, success: NDArray[np.float32], quantities: Sequence[Quantity]) -> list[str]:
+    """One rule a leaf: "if ... then success in p %"."""
+    return [
+        f"if {conditions(box, quantities)}\nthen success in {100 * success[box.leaf]:.0f} %"
+        for box in bounds(splits, len(quantities))
+    ]
+
+
+def conditions(box: Bounds, quantities: Sequence[Quantity]) -> str:
+    """The conditions of a leaf, angles in degrees."""
+    said = []
+    for quantity, low, high in zip(quantities, box.lower, box.upper, strict=True):
+        below, above = np.isfinite(high), np.isfinite(low)
+        if below and above:
+            said.append(f"{_value(low, quantity)} < {quantity.name} <= {_value(high, quantity)}")
+        elif below:
+            said.append(f"{quantity.name} <= {_value(high, quantity)}")
+        elif above:
+            said.append(f"{quantity.name} > {_value(low, quantity)}")
+    return " and ".join(said) or "in all cases"
+
+
+def formula(tree: LinearTree | TreeBoxes, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
+    """The linear formula of a leaf in its unit, slopes of angles per degree, and the range that it is kept in."""
+    terms = []
+    for quantity, slope in zip(quantities, tree.slopes[leaf].tolist(), strict=True):
+        if abs(slope) >= TOO_SMALL:
+            shown, unit = (slope / DEGREES, f"{of}/°") if quantity.unit == "rad" else (slope, f"{of}/({quantity.unit})")
+            sign = "-" if shown < 0 else "+"
+            terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
+    start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
+    spread = "" if tree.spread is None else f", ± {tree.spread[leaf]:.2f} {of}"
+    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{spread}]"
+
+
+def _value(value: float, quantity: Quantity) -> str:
+    return f"{value * DEGREES:.0f}°" if quantity.unit == "rad" else f"{value:.2f} {quantity.unit}"

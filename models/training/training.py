@@ -1,0 +1,153 @@
+"""Trains and tests action models: whole episodes apart, n_i by cross-validation, the final model on all episodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.models.episodes.episodes import UNOBSERVED, Episode
+from tailor.models.episodes.examples import Examples, folds, split, success_examples
+from tailor.models.episodes.regression_targets import DURATION, Amount
+from tailor.models.features.features import FeatureSpace
+from tailor.models.training import learners, scores
+from tailor.models.training.calibration import calibrated
+from tailor.schemas.errors import UsageError
+
+Array = NDArray[np.float64]
+
+TEST_SHARE = 0.25  # paper 5.1: three quarters for training
+FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
+FOLDS = 4
+CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes
+LEAST = 40  # episodes: fewer cannot be split four ways
+
+
+@dataclass(frozen=True, slots=True)
+class Trained:
+    """A learner fitted to all episodes, and what its twin, fitted to three quarters, reached on the rest."""
+
+    learner: Any
+    n_i: int
+    test: Mapping[str, Any]
+
+
+def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Learn how long an action takes; see `train_amount`."""
+    return train_amount(DURATION, episodes, space, learner, seed)
+
+
+def train_amount(amount: Amount, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Learn how long an action takes, or how much energy.
+
+    Raises:
+      UsageError: Too few finished episodes that tell it, or an unknown learner.
+    """
+    finished = [episode for episode in episodes if episode.finished and amount.told(episode)]
+    _check_count(finished, "finished")
+    rng = np.random.default_rng(seed)
+    numbers = np.array([episode.number for episode in finished])
+    kept, apart = split(numbers, TEST_SHARE, rng)
+    n_i = _best_n_i(amount, finished, kept, space, rng)
+    rows = amount.examples(finished, n_i)
+    first = amount.examples(finished, 1).of(apart)
+    twin = fit(amount.kind, learner, rows.of(kept), space, seed)
+    mean, spread = twin.predict_spread(space(first.arguments))
+    errors = first.targets - mean
+    mae, ci = scores.mean_with_ci(np.abs(errors), rng)
+    chosen = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
+    unit = amount.unit
+    test = {
+        "n": len(apart),
+        "training_episodes": len(kept),
+        f"mean_{amount.kind}_{unit}": float(np.mean([amount.whole(episode) for episode in finished])),
+        f"mae_{unit}": mae,
+        "mae_ci95": list(ci),
+        f"mae_first_ticks_{unit}": _mae(twin, rows.of(apart), space),
+        f"bias_{unit}": float(-errors.mean()),
+        **calibrated(errors, spread, chosen),
+        "learning_curve": _curve(amount.kind, learner, rows, first, kept, space, rng, seed),
+    }
+    return Trained(fit(amount.kind, learner, rows, space, seed), n_i, test)
+
+
+def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Learn whether an action succeeds, from the first tick of each episode.
+
+    Raises:
+      UsageError: Too few episodes, only one outcome, or an unknown learner.
+    """
+    episodes = [episode for episode in episodes if episode.failure != UNOBSERVED]
+    _check_count(episodes, "")
+    if len({episode.success for episode in episodes}) < 2:
+        raise UsageError("all episodes ended alike, expected some successes and some failures")
+    rng = np.random.default_rng(seed)
+    rows = success_examples(episodes, 1)
+    kept, apart = split(rows.groups, TEST_SHARE, rng)
+    fresh = rows.of(apart)
+    twin = fit("success", learner, rows.of(kept), space, seed)
+    features = space(fresh.arguments)
+    observed, probability = fresh.targets > 0.5, twin.predict_proba(features)[:, 1]
+    table = scores.confusion(probability >= twin.threshold_, observed)
+    test = {
+        "n": table.n,
+        "training_episodes": len(kept),
+        "failure_rate_pct": float(100 * (1 - rows.targets.mean())),
+        "accuracy_pct": table.accuracy,
+        "missed_failures_pct": table.success_fail,
+        "false_alarms_pct": table.fail_success,
+        "confusion_pct": [table.fail_fail, table.fail_success, table.success_fail, table.success_success],
+        "reliability": [list(row) for row in scores.reliability(probability, observed)],
+    }
+    return Trained(fit("success", learner, rows, space, seed), 1, test)
+
+
+def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
+    """A learner of that name, fitted to examples in a feature space."""
+    learner = learners.make(kind, name, seed)
+    targets = rows.targets if kind != "success" else rows.targets.astype(np.int64)
+    return learner.fit(space(rows.arguments), targets, groups=rows.groups)
+
+
+def _check_count(episodes: Sequence[Episode], what: str) -> None:
+    if len(episodes) < LEAST:
+        raise UsageError(f"{len(episodes)} {what} episodes, expected at least {LEAST}".replace("  ", " "))
+
+
+def _best_n_i(
+    amount: Amount, episodes: Sequence[Episode], kept: NDArray[np.int64], space: FeatureSpace, rng: np.random.Generator
+) -> int:
+    """How many first ticks predict the whole duration of unseen episodes best, by single trees."""
+    first = amount.examples(episodes, 1)
+    parts = folds(kept, FOLDS, rng)
+    error = []
+    for n_i in FIRST_TICKS:
+        rows = amount.examples(episodes, n_i)
+        trees = [fit("duration", "linear", rows.of(np.setdiff1d(kept, part)), space, 0) for part in parts]
+        error.append(np.mean([_mae(tree, first.of(part), space) for tree, part in zip(trees, parts, strict=True)]))
+    return FIRST_TICKS[int(np.argmin(error))]
+
+
+def _mae(learner: Any, rows: Examples, space: FeatureSpace) -> float:
+    return float(np.abs(learner.predict(space(rows.arguments)) - rows.targets).mean())
+
+
+def _curve(
+    kind: str,
+    learner: str,
+    rows: Examples,
+    test: Examples,
+    kept: NDArray[np.int64],
+    space: FeatureSpace,
+    rng: np.random.Generator,
+    seed: int,
+) -> list[list[float]]:
+    """MAE on the test episodes against the number of training episodes (paper 5.1: to see where it flattens)."""
+    order, curve = rng.permutation(kept), []
+    for share in CURVE:
+        some = order[: round(share * len(order))]
+        curve.append([len(some), _mae(fit(kind, learner, rows.of(some), space, seed), test, space)])
+    return curve

@@ -1,0 +1,1 @@
+"""Model trees that predict durations: induction, fitting, distillation."""

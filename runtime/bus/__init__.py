@@ -1,0 +1,1 @@
+"""The zenoh bus: sessions, publishers, inboxes, services. Only session.py imports zenoh."""

@@ -1,0 +1,237 @@
+"""The only module that knows zenoh: opens sessions and makes publishers, inboxes, questions and taps of them."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from typing import Any
+
+import zenoh
+
+from tailor.runtime.bus import zenoh_config
+from tailor.runtime.bus.attachment import SENDER_BYTES
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.publisher import Publisher
+from tailor.runtime.bus.service import Question, Questions
+from tailor.runtime.clock import wall_ns
+from tailor.runtime.realtime import elevate_bus_threads
+from tailor.schemas.errors import UsageError
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.typesystem import ros_type
+
+SELF_CONNECT_MS = 500
+LONGEST_KEY = 1000  # bytes; a message of zenoh has room for 65 535
+_PRIORITIES = {
+    "real_time": zenoh.Priority.REAL_TIME,
+    "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
+    "data": zenoh.Priority.DATA,
+}
+
+
+def encoding_of(kind: type) -> str:
+    """The encoding string of a message type, e.g. application/cdr;std_msgs/msg/Bool."""
+    return f"application/cdr;{ros_type(kind)}"
+
+
+@contextmanager
+def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
+    """A session that routes for everyone who connects to `listen`, and can publish and subscribe itself.
+
+    Raises:
+      UsageError: The port is in use, or the endpoint cannot be listened at.
+    """
+    config = zenoh.Config.from_json5(zenoh_config.router(listen))
+    try:
+        opened = zenoh.open(config)
+    except zenoh.ZError as error:
+        why = "the port is in use" if "in use" in str(error) else "cannot listen there"
+        raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --connect") from error
+    with opened:
+        # The threads that serve clients come up with the first one: be it ourselves, so that they can be elevated now.
+        with suppress(zenoh.ZError), zenoh.open(zenoh.Config.from_json5(zenoh_config.client(listen, SELF_CONNECT_MS))):
+            pass
+        elevate_bus_threads()
+        yield Session(opened)
+
+
+@contextmanager
+def open_client(connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0) -> Iterator[Session]:
+    """A session with the router at `connect`.
+
+    Raises:
+      UsageError: Nobody answers there within `timeout_s`.
+    """
+    config = zenoh.Config.from_json5(zenoh_config.client(connect, int(timeout_s * 1000)))
+    try:
+        opened = zenoh.open(config)
+    except zenoh.ZError as error:
+        raise UsageError(f"bus endpoint {connect}: no router answers; start one with `tailor bus`") from error
+    with opened:
+        yield Session(opened)
+
+
+class Session:
+    """One process on the bus. `sender` is its name there: 32 hex digits, new with every start."""
+
+    def __init__(self, opened: zenoh.Session) -> None:
+        self.sender = secrets.token_hex(SENDER_BYTES)
+        self._zenoh = opened
+
+    @property
+    def connected(self) -> bool:
+        """Whether a client has its router; it looks for a lost one by itself until it is back."""
+        return bool(self._zenoh.info.routers_zid())
+
+    def publisher(self, name: str, robot: str) -> Publisher:
+        """An outlet for a topic of tailor.schemas.topics."""
+        topic, key = TOPICS[name], key_of(name, robot)
+        declared = self._zenoh.declare_publisher(
+            key,
+            encoding=encoding_of(topic.type),
+            priority=_PRIORITIES[topic.priority],
+            congestion_control=zenoh.CongestionControl.DROP,  # a stalled reader must never stall a tick
+            express=topic.priority != "data",
+        )
+        return Publisher(key, _Wire(declared), self.sender)
+
+    def player(self, key: str, ros_type: str) -> Publisher:
+        """An outlet for recorded bytes under any key; waits rather than lose one, so never use it in a tick.
+
+        Raises:
+          UsageError: Nothing can be said under this key, or it is a pattern of several.
+        """
+        if not _is_one_key(key):
+            raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
+        declared = self._zenoh.declare_publisher(
+            key,
+            encoding=f"application/cdr;{ros_type}" if ros_type else None,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            express=True,
+        )
+        return Publisher(key, _Wire(declared), self.sender)
+
+    def inbox(self, names: Sequence[str], robot: str, newest_only: bool = True) -> Inbox:
+        """The new samples of these topics, to be drained by a loop.
+
+        Args:
+          names: Of topics.
+          robot: Whose.
+          newest_only: Of a state topic, the newest sample alone; else several, for who tells senders apart.
+        """
+        rows = []
+        for name in names:
+            topic, key = TOPICS[name], key_of(name, robot)
+            kept = depth(topic) if newest_only else EVENT_DEPTH
+            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(kept))
+            rows.append((topic, key, _Source(subscriber)))
+        return Inbox(rows, encoding_of, time.monotonic_ns)
+
+    def questions(self, key: str) -> Questions:
+        """Questions that are asked under `key`, to be polled by a loop."""
+        return Questions(_Asked(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
+
+    def ask(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
+        """Ask under `key` and wait: (accepted, answer). Nobody there or no answer in time: (False, why)."""
+        for reply in self._zenoh.get(key, payload=text, timeout=timeout_s):
+            if reply.ok is not None:
+                return True, reply.ok.payload.to_string()
+            said = "" if reply.err is None else reply.err.payload.to_string()
+            return False, f"no answer within {timeout_s:g} s" if said == "Timeout" else said
+        return False, f"nobody answers at {key}"
+
+    def tap(self, pattern: str) -> tuple[Intake, Any]:
+        """Everything under a key pattern from now on, and the subscription: undeclare it at the end."""
+        intake = Intake()
+
+        def put(sample: zenoh.Sample) -> None:  # read in zenoh's own thread: a sample that waits pins its whole batch
+            intake.put(_taken(sample, wall_ns()))
+
+        handler: Any = zenoh.handlers.Callback(put, indirect=False)
+        return intake, self._zenoh.declare_subscriber(pattern, handler)
+
+
+def _is_one_key(key: str) -> bool:
+    """Whether something can be said under a key: zenoh takes it, and it is no pattern."""
+    try:
+        zenoh.KeyExpr(key)
+    except zenoh.ZError:
+        return False
+    return "*" not in key and len(key.encode()) <= LONGEST_KEY
+
+
+class _Wire:
+    def __init__(self, publisher: zenoh.Publisher) -> None:
+        self._publisher = publisher
+        builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; arrival.py says what it is for
+        self._note_reception = builder.set_receive(True).build()
+
+    def put(self, payload: bytes, attachment: bytes | None) -> None:
+        self._publisher.put(payload, attachment=attachment, timestamp_instrumentation=self._note_reception)
+
+    def matched(self) -> bool:
+        return bool(_status(self._publisher).matching)
+
+
+def _status(publisher: Any) -> Any:
+    return publisher.matching_status  # its type hint says bool, it is a MatchingStatus
+
+
+class _Source:
+    def __init__(self, subscriber: Any) -> None:
+        self._subscriber = subscriber
+
+    def take(self) -> Raw | None:
+        sample = self._subscriber.try_recv()
+        return None if sample is None else _raw(sample)
+
+
+class _Asked:
+    def __init__(self, queryable: Any) -> None:
+        self._queryable = queryable
+
+    def take(self) -> Question | None:
+        query = self._queryable.try_recv()
+        if query is None:
+            return None
+        payload = query.payload
+        text = "" if payload is None else payload.to_bytes().decode(errors="replace")
+
+        def answer(accepted: bool, said: str) -> None:
+            if accepted:
+                query.reply(query.key_expr, said)
+            else:
+                query.reply_err(said)
+            query.drop()
+
+        return Question(text, answer)
+
+
+def _raw(sample: zenoh.Sample) -> Raw:
+    attachment = sample.attachment
+    return Raw(
+        key=str(sample.key_expr),
+        payload=sample.payload.to_bytes(),
+        attachment=None if attachment is None else attachment.to_bytes(),
+        encoding=str(sample.encoding),
+        is_put=sample.kind == zenoh.SampleKind.PUT,
+        received_wall_ns=_received(sample),
+    )
+
+
+def _taken(sample: zenoh.Sample, at_ns: int) -> Raw:
+    """A sample that was put at a wall time; that stands for its reception where nothing better is known."""
+    raw = _raw(sample)
+    return raw if raw.received_wall_ns is not None else replace(raw, received_wall_ns=at_ns)
+
+
+def _received(sample: zenoh.Sample) -> int | None:
+    stack = sample.timestamp_stack
+    records = stack.records if stack is not None else []
+    if not records or records[-1].point != zenoh.InterceptionPoint.RECEIVE or records[-1].is_custom:
+        return None
+    fixed_point = int(str(records[-1].timestamp()).split("/", 1)[0])  # NTP64: seconds and a 32-bit fraction
+    return (fixed_point >> 32) * 1_000_000_000 + ((fixed_point & 0xFFFFFFFF) * 1_000_000_000 >> 32)

@@ -1,0 +1,166 @@
+"""Runs an external planner (a real `vhpop`) as a child process: polled, never waited for, killed with its whole group.
+
+Owns the child, its files and its limits of time, output and memory; reading the plan is the caller's business.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import shlex
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from tailor.runtime.processes.child import leashed
+from tailor.schemas.errors import UsageError
+
+MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
+MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share the machine with it
+_CHUNK = 65536
+_REAP_S = 0.005  # a killed process is gone by then, but for a huge one; nobody waits longer
+vars(subprocess)["_USE_VFORK"] = False  # vfork holds up all threads until the child has begun (see subprocess's notes)
+
+
+Outcome = Literal["answered", "crashed", "timeout", "flood"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerAnswer:
+    """How the child ended: by itself, by a signal of its own (crashed), or killed by us; and what it printed."""
+
+    outcome: Outcome
+    output: str
+    reason: str
+
+
+class PlannerProcess:
+    """One run of an external planner on one problem."""
+
+    def __init__(
+        self,
+        command: str,
+        domain: str,
+        problem: str,
+        limit_s: float,
+        max_bytes: int = MAX_OUTPUT_BYTES,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Starts the child as `command DOMAIN PROBLEM` in a process group of its own.
+
+        Args:
+          command: As in a shell, without one: "vhpop -g -f MW-Loc".
+          domain: PDDL text, handed over in a file.
+          problem: PDDL text, handed over in a file.
+          limit_s: Wall time after which the group is killed; vhpop's own -T only knows whole minutes.
+          max_bytes: Output after which the group is killed; a poll reads about 64 kB, a pipe holds no more.
+          clock: Seconds that only grow.
+
+        Raises:
+          UsageError: The command cannot be started.
+        """
+        self._clock = clock
+        self._limit_s = limit_s
+        self._max_bytes = max_bytes
+        self._output = bytearray()
+        self._answer: PlannerAnswer | None = None
+        self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-")
+        paths = [Path(self._folder.name) / name for name in ("domain.pddl", "problem.pddl")]
+        for path, text in zip(paths, (domain, problem), strict=True):
+            path.write_text(text, encoding="utf-8")
+        self._child = self._start(command, paths)
+        self._deadline = clock() + limit_s
+
+    def _start(self, command: str, paths: list[Path]) -> subprocess.Popen[bytes]:
+        try:
+            words = words_of(command)
+            child = subprocess.Popen(
+                leashed([*words, *map(str, paths)]),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._folder.cleanup()
+            raise _cannot_start(command, error) from None
+        except UsageError:
+            self._folder.cleanup()
+            raise
+        with contextlib.suppress(OSError):  # it has ended already
+            resource.prlimit(child.pid, resource.RLIMIT_AS, (MAX_MEMORY_BYTES, MAX_MEMORY_BYTES))
+        assert child.stdout is not None
+        os.set_blocking(child.stdout.fileno(), False)
+        return child
+
+    @property
+    def pid(self) -> int:
+        """The child's process id, which is its group's as well."""
+        return self._child.pid
+
+    def poll(self) -> PlannerAnswer | None:
+        """Reads what has been printed; the answer once there is one, None before. Never blocks."""
+        if self._answer is not None:
+            return self._answer
+        ended = self._child.poll() is not None
+        self._read()
+        if len(self._output) > self._max_bytes:
+            self._end("flood", f"the planner printed more than {self._max_bytes} bytes")
+        elif ended:
+            code = self._child.returncode
+            self._end("crashed" if code < 0 else "answered", f"the planner ended with code {code}")
+        elif self._clock() >= self._deadline:
+            self._end("timeout", f"the planner was killed after {self._limit_s:g} s")
+        return self._answer
+
+    def kill(self) -> None:
+        """Kills the child's whole group; safe to call again."""
+        if self._answer is None:
+            self._end("timeout", "the planner was killed")
+
+    def _read(self) -> None:
+        assert self._child.stdout is not None
+        descriptor = self._child.stdout.fileno()
+        while len(self._output) <= self._max_bytes:
+            try:
+                chunk = os.read(descriptor, _CHUNK)
+            except BlockingIOError:
+                return
+            if not chunk:
+                return
+            self._output += chunk
+
+    def _end(self, outcome: Outcome, reason: str) -> None:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._child.pid, signal.SIGKILL)  # a child that ended may have left children of its own
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._child.wait(_REAP_S)
+        assert self._child.stdout is not None
+        self._child.stdout.close()
+        self._folder.cleanup()
+        text = self._output[: self._max_bytes].decode("utf-8", errors="replace")
+        self._answer = PlannerAnswer(outcome, text, reason)
+
+
+def words_of(command: str) -> list[str]:
+    """A planner's command as program and arguments; raises UsageError if there is no such program."""
+    try:
+        words = shlex.split(command)
+    except ValueError as error:
+        raise _cannot_start(command, error) from None
+    if not words:
+        raise _cannot_start(command, "it is empty")
+    if shutil.which(words[0]) is None:
+        raise _cannot_start(command, f"there is no program '{words[0]}'")
+    return words
+
+
+def _cannot_start(command: str, why: object) -> UsageError:
+    return UsageError(f"planner command '{command}': cannot be started: {why}")

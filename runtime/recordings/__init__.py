@@ -1,0 +1,1 @@
+"""MCAP recordings: writing, reading damaged files, playing, snapshots."""

@@ -1,0 +1,111 @@
+"""Copies recordings record by record, whoever made them: whole, or only the messages that are wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mcap import records as r
+from mcap.writer import CompressionType, Writer
+
+from tailor.runtime.recordings.mcap_scan import Account, scan
+from tailor.runtime.recordings.mcap_writer import CHUNK_BYTES
+from tailor.schemas.errors import UsageError
+
+Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
+
+
+@dataclass(slots=True)
+class Copied:
+    """What a copy did."""
+
+    kept: int = 0
+    left_out: int = 0
+    account: Account = field(default_factory=Account)  # of the source
+
+
+class _Copy:
+    """Gives schemas and channels new numbers, and writes only those that have messages."""
+
+    def __init__(self, writer: Any) -> None:
+        self.writer = writer
+        self.schemas: dict[int, Any] = {}
+        self.channels: dict[int, Any] = {}
+        self._new_schemas: dict[tuple[str, str, bytes], int] = {}
+        self._new_channels: dict[tuple[int, str, int], int] = {}
+
+    def place(self, record: Any) -> tuple[str, str] | None:
+        """Key and ROS type of a message; None if its channel was lost."""
+        channel = self.channels.get(record.channel_id)
+        if channel is None:
+            return None
+        schema = self.schemas.get(channel.schema_id)
+        return channel.metadata.get("key") or channel.topic.strip("/"), "" if schema is None else schema.name
+
+    def write(self, record: Any) -> None:
+        """Copy one message."""
+        channel = self.channels[record.channel_id]
+        known = (channel.id, channel.topic, channel.schema_id)
+        if known not in self._new_channels:
+            schema = self._schema(self.schemas.get(channel.schema_id))
+            self._new_channels[known] = self.writer.register_channel(
+                channel.topic, channel.message_encoding, schema, channel.metadata
+            )
+        self.writer.add_message(
+            self._new_channels[known], record.log_time, record.data, record.publish_time, record.sequence
+        )
+
+    def _schema(self, schema: Any) -> int:
+        if schema is None:
+            return 0
+        known = (schema.name, schema.encoding, schema.data)
+        if known not in self._new_schemas:
+            self._new_schemas[known] = self.writer.register_schema(*known)
+        return self._new_schemas[known]
+
+
+def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Copied:
+    """Copy what `keep` wants, and all metadata, into a new file with index and footer.
+
+    Args:
+      source: Any MCAP file, damaged or not.
+      target: Must not exist.
+      keep: Says which messages to copy.
+      note: Entries of a metadata record named "copy".
+
+    Raises:
+      UsageError: The source is not there or no MCAP file, the target exists or cannot be written.
+    """
+    copied = Copied()
+    next(scan(source, Account(), with_chunks=False), None)  # a source that is no recording makes no target
+    try:
+        with target.open("xb") as file:
+            writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+            writer.start(profile="ros2", library="tailor")
+            _copy_records(source, _Copy(writer), keep, copied)
+            writer.add_metadata("copy", {"of": source.name, "damage": copied.account.text(), **note})
+            writer.finish()
+    except FileExistsError as error:
+        raise UsageError(f"{target}: exists already, expected the name of a new file") from error
+    except OSError as error:
+        raise UsageError(f"{target}: {error.strerror}") from error
+    return copied
+
+
+def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: Copied) -> None:
+    for record in scan(source, copied.account):
+        if isinstance(record, r.Schema):
+            copy_.schemas[record.id] = record
+        elif isinstance(record, r.Channel):
+            copy_.channels[record.id] = record
+        elif isinstance(record, r.Metadata):
+            copy_.writer.add_metadata(record.name, record.metadata)
+        elif isinstance(record, r.Message):
+            place = copy_.place(record)
+            if place is not None and keep(*place, record.log_time):
+                copy_.write(record)
+                copied.kept += 1
+            else:
+                copied.left_out += 1

@@ -1,0 +1,195 @@
+"""Reads the records of an MCAP file from front to back, whatever state it is in, and keeps account of what was lost.
+
+Trusts no length: a record must lie inside the file, a chunk must not unpack to more than MOST_CHUNK_BYTES.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import IO, Any
+
+import lz4.frame  # type: ignore[import-untyped]
+import zstandard
+from mcap import records as r
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+
+from tailor.runtime.recordings.mcap_chunk import records_of
+from tailor.schemas.errors import UsageError
+
+MAGIC = b"\x89MCAP0\r\n"
+MOST_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
+MOST_RECORD_BYTES = 128_000_000
+WINDOW_BYTES = 1_000_000
+CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
+_CHUNK = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})", re.DOTALL)
+_HEAD = struct.Struct("<BQ")  # opcode, length
+_FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its offsets, checksum
+_KINDS: dict[int, Any] = {
+    Opcode.HEADER: r.Header,
+    Opcode.SCHEMA: r.Schema,
+    Opcode.CHANNEL: r.Channel,
+    Opcode.METADATA: r.Metadata,
+    Opcode.CHUNK: r.Chunk,
+}
+DAMAGE = (McapError, struct.error, ValueError, zstandard.ZstdError, RuntimeError, zlib.error, EOFError)
+
+
+@dataclass(slots=True)
+class Account:
+    """What a scan found."""
+
+    chunks: int = 0
+    damaged_chunks: int = 0
+    lost_bytes: int = 0  # in damaged records, or behind the place where the file stops making sense
+    complete: bool = False  # the file ends with its footer
+    reasons: list[str] = field(default_factory=list)
+
+    def text(self) -> str:
+        """One line for people; empty for a file without damage."""
+        if self.complete and not self.damaged_chunks and not self.lost_bytes:
+            return ""
+        what = "" if self.complete else "no footer; "
+        why = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
+        return f"{what}{self.chunks} chunks whole, {self.damaged_chunks} damaged, {self.lost_bytes} bytes lost{why}"
+
+    def lose(self, size: int, why: str) -> None:
+        """Note damage."""
+        self.lost_bytes += size
+        self.reasons.append(why)
+
+
+def scan(path: Path, account: Account, with_chunks: bool = True) -> Iterator[Any]:
+    """Header, schemas, channels, messages and metadata in the order of the file; fills in `account` on the way.
+
+    Args:
+      path: The file.
+      account: Filled in; complete when the iterator is exhausted.
+      with_chunks: False skips all messages, which is fast.
+
+    Raises:
+      UsageError: Not there, or not an MCAP file.
+    """
+    try:
+        with path.open("rb") as file:
+            size = path.stat().st_size
+            if file.read(len(MAGIC)) != MAGIC:
+                raise UsageError(f"{path}: not an MCAP file")
+            yield from _summary(file, size)
+            file.seek(len(MAGIC))
+            yield from _records(file, size, account, with_chunks)
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
+
+
+def _summary(file: IO[bytes], size: int) -> Iterator[Any]:
+    """Schemas and channels from the index at the end, if there is one: the chunk that declares them may be damaged."""
+    file.seek(max(size - _FOOTER.size - len(MAGIC), 0))
+    end = file.read()
+    if len(end) < _FOOTER.size or not end.endswith(MAGIC):
+        return
+    opcode, _, start, _, _ = _FOOTER.unpack(end[: _FOOTER.size])
+    if opcode != Opcode.FOOTER or not 0 < start < size:
+        return
+    file.seek(start)
+    while len(head := file.read(_HEAD.size)) == _HEAD.size:
+        opcode, length = _HEAD.unpack(head)
+        if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or length > size - file.tell():
+            return
+        yield from _one(_KINDS[opcode].read, file.read(length), Account())
+
+
+def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) -> Iterator[Any]:
+    while True:
+        start = file.tell()
+        head = file.read(_HEAD.size)
+        if len(head) < _HEAD.size:
+            account.lose(len(head), "the file ends early")
+            return
+        opcode, length = _HEAD.unpack(head)
+        if opcode == 0 or length > min(size - file.tell(), MOST_RECORD_BYTES):
+            again = _next_chunk(file, start + 1, size)
+            if again == size:
+                account.lose(size - start, "the file ends inside a record")
+                return
+            account.lose(again - start, f"bytes {start} to {again} make no sense")
+            file.seek(again)
+            continue
+        if opcode == Opcode.DATA_END:
+            account.complete = _ends_well(file, size)
+            return
+        if opcode == Opcode.CHUNK and with_chunks:
+            yield from _chunk(file.read(length), account)
+        elif opcode == Opcode.MESSAGE and with_chunks:
+            yield from _one(partial(r.Message.read, length=length), file.read(length), account)
+        elif opcode in _KINDS and opcode != Opcode.CHUNK:
+            yield from _one(_KINDS[opcode].read, file.read(length), account)
+        else:
+            file.seek(length, 1)
+
+
+def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
+    """Where the next chunk seems to begin, from `start` on; the file's end if there is none."""
+    file.seek(start)
+    window, at = b"", start  # bytes of the file from `at` on
+    while block := file.read(WINDOW_BYTES):
+        window += block
+        for found in _CHUNK.finditer(window):
+            (length,) = struct.unpack_from("<Q", window, found.start() + 1)
+            if length <= min(size - at - found.start() - _HEAD.size, MOST_RECORD_BYTES):
+                return at + found.start()
+        at += max(len(window) - CHUNK_HEAD_BYTES, 0)
+        window = window[-CHUNK_HEAD_BYTES:]
+    return size
+
+
+def _one(read: Any, data: bytes, account: Account) -> Iterator[Any]:
+    try:
+        record = read(ReadDataStream(BytesIO(data)))
+    except DAMAGE as error:
+        account.lose(len(data), f"a record is damaged: {type(error).__name__}")
+        return
+    yield record
+
+
+def _chunk(data: bytes, account: Account) -> Iterator[Any]:
+    try:
+        chunk = r.Chunk.read(ReadDataStream(BytesIO(data)))
+        inside = records_of(_unpacked(chunk), chunk.uncompressed_crc)
+    except DAMAGE as error:
+        account.damaged_chunks += 1
+        account.lose(len(data), f"a chunk is damaged: {error or type(error).__name__}")
+        return
+    account.chunks += 1
+    yield from inside
+
+
+def _unpacked(chunk: Any) -> bytes:
+    """A chunk's records uncompressed, never more bytes than it declares and we allow."""
+    declared = chunk.uncompressed_size
+    if declared > MOST_CHUNK_BYTES:
+        raise ValueError(f"it declares {declared} bytes")
+    if chunk.compression == "zstd":
+        plain = zstandard.ZstdDecompressor().stream_reader(BytesIO(chunk.data)).read(declared + 1)
+    elif chunk.compression == "lz4":
+        plain = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=declared + 1)
+    elif chunk.compression == "":
+        plain = chunk.data
+    else:
+        raise ValueError(f"compression {chunk.compression!r} is not known")
+    if len(plain) != declared:
+        raise ValueError(f"it declares {declared} bytes and holds {len(plain)}")
+    return bytes(plain)
+
+
+def _ends_well(file: IO[bytes], size: int) -> bool:
+    file.seek(size - len(MAGIC))
+    return file.read() == MAGIC

@@ -1,0 +1,107 @@
+"""Reading recordings: messages in the order of their reception, metadata, and an account of any damage."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mcap import records as r
+
+from tailor.runtime.recordings.mcap_scan import Account, scan
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import Message
+from tailor.schemas.typesystem import definition, type_hash, type_of
+
+_SENDER = re.compile(r"[0-9a-f]{32}")
+_LATEST_NS = 2**63 - 1  # of a sender's clock: the bus has no more bits for it
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """One message of a recording."""
+
+    key: str  # on the bus, e.g. agilo/odom
+    ros_type: str  # empty if unknown
+    sender: str  # 32 hex digits, empty if unsigned
+    sequence: int
+    log_ns: int  # wall time of reception
+    publish_ns: int  # sender's wall time
+    data: bytes  # CDR
+
+
+class Recording:
+    """An MCAP file on disk; every call reads it anew, so that its size does not matter."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.account = Account()  # of the last complete iteration over messages()
+
+    def messages(self) -> Iterator[Recorded]:
+        """All messages in file order, which is the order of reception; damaged parts are left out, see `account`."""
+        schemas: dict[int, Any] = {0: None}
+        channels: dict[int, tuple[str, str, str]] = {}
+        self.account = Account()
+        for record in scan(self.path, self.account):
+            if isinstance(record, r.Message):
+                if record.channel_id in channels:
+                    yield _recorded(record, *channels[record.channel_id])
+            elif isinstance(record, r.Schema):
+                schemas[record.id] = record
+            elif isinstance(record, r.Channel):
+                schema = schemas.get(record.schema_id)
+                name = "" if schema is None else schema.name
+                self._check_schema(record, schema)
+                key = record.metadata.get("key") or record.topic.strip("/")
+                sender = record.metadata.get("sender", "")
+                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "")
+
+    def decoded(self) -> Iterator[tuple[Recorded, Message | Rejected]]:
+        """Messages of our own types with their values; others are left out."""
+        for recorded in self.messages():
+            kind = type_of(recorded.ros_type)
+            if kind is not None:
+                yield recorded, decode(kind, recorded.data)
+
+    def metadata(self) -> list[tuple[str, dict[str, str]]]:
+        """Metadata records, name and entries, in file order; of several with one name the last holds."""
+        found = scan(self.path, Account(), with_chunks=False)
+        return [(record.name, record.metadata) for record in found if isinstance(record, r.Metadata)]
+
+    def _check_schema(self, channel: Any, schema: Any) -> None:
+        """A type of ours that has changed since must not be guessed at."""
+        kind = type_of(schema.name) if schema is not None else None
+        if kind is None:
+            return
+        recorded, today = channel.metadata.get("type_hash"), type_hash(kind)
+        if recorded is None:
+            recorded, today = _squeezed(schema.data.decode(errors="replace")), _squeezed(definition(kind))
+        if recorded != today:
+            raise UsageError(
+                f"{self.path}: {schema.name} has changed since this was recorded, expected {type_hash(kind)[:20]}…"
+            )
+
+
+def open_recording(path: str | Path) -> Recording:
+    """A recording on disk.
+
+    Raises:
+      UsageError: Not there, or not an MCAP file.
+    """
+    recording = Recording(Path(path))
+    next(scan(recording.path, Account(), with_chunks=False), None)
+    return recording
+
+
+def _recorded(record: Any, key: str, name: str, sender: str) -> Recorded:
+    publish_ns = min(record.publish_time, _LATEST_NS)
+    return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data)
+
+
+def _squeezed(text: str) -> str:
+    """A definition without comments and spacing, as other recorders keep them."""
+    lines = (" ".join(line.split("#")[0].split()) for line in text.splitlines())
+    return "\n".join(line for line in lines if line)

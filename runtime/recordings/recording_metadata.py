@@ -1,0 +1,43 @@
+"""What a recording says about how it was made: the recorder, its clocks, and the configuration of who was recorded."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from tailor.runtime.bus.inbox import Raw
+from tailor.schemas.codec import decode
+from tailor.schemas.messages import Provenance
+from tailor.schemas.topics import TOPICS
+
+CLOCKS = {
+    "log_time": "wall time of reception, Unix nanoseconds",
+    "publish_time": "wall time of sending by the sender's clock, Unix nanoseconds",
+    "arrival": "exec/tick names inputs by key, sender and sequence, with monotonic arrival times",
+}
+
+
+class Facts:
+    """Metadata records of a recording, name -> entries; they go into each of its files."""
+
+    def __init__(self, version: str, started_ns: int) -> None:
+        """`version` of Tailor; `started_ns` is wall time."""
+        recorder = {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(CLOCKS)}
+        self.entries: dict[str, Mapping[str, str]] = {"recorder": recorder}
+
+    def put(self, name: str, entries: Mapping[str, str]) -> bool:
+        """Note something; False if it was known."""
+        if self.entries.get(name) == entries:
+            return False
+        self.entries[name] = dict(entries)
+        return True
+
+    def hear(self, raw: Raw) -> bool:
+        """Take an executive's configuration out of what goes by; True if it is news."""
+        if raw.key != TOPICS["provenance"].key:
+            return False
+        message = decode(Provenance, raw.payload)
+        if not isinstance(message, Provenance):
+            return False
+        sender = raw.attachment[17:].hex() if raw.attachment else ""
+        return self.put("provenance", {"sender": sender, "json": message.json})

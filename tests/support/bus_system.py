@@ -1,0 +1,67 @@
+"""A bus on a free loopback port, with child processes that end with the test; and a stand-in robot on it."""
+
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+from tailor.runtime.bus.session import open_client, open_router
+from tailor.runtime.processes.child import Child
+from tailor.schemas.errors import UsageError
+from tailor.tools.launch.system import free_endpoint
+from tests.support.patience import wait_until
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@contextmanager
+def bus_system():
+    """Yields (router session, endpoint, start), where start(module, *arguments) runs one of our modules."""
+    endpoint, children = free_endpoint(), []
+
+    def start(module, *arguments):
+        children.append(Child(module, [sys.executable, "-m", module, *map(str, arguments)]))
+        return children[-1]
+
+    with open_router(endpoint) as session:
+        try:
+            yield session, endpoint, start
+        finally:
+            for child in children:
+                child.kill()
+
+
+@contextmanager
+def guarded_robot(tmp_path):
+    """A bus with the stand-in simulator: yields (session, endpoint, start, trace of the guard's output)."""
+    with bus_system() as (session, endpoint, start):
+        trace = tmp_path / "trace"
+        start("tests.support.stand_in_sim", endpoint, trace)
+        wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
+        yield session, endpoint, start, trace
+
+
+def answers(endpoint):
+    """Whether a router is there."""
+    try:
+        with open_client(endpoint, timeout_s=0.5):
+            return True
+    except UsageError:
+        return False
+
+
+def outputs(trace):
+    """The guard's output over time: [(monotonic s, speed)]."""
+    rows = [line.split() for line in trace.read_text().splitlines() if line.count(" ") == 1]
+    return [(int(at) / 1e9, float(v)) for at, v in rows]
+
+
+def moving(trace, speed):
+    """Whether the guard's output is that speed, as a function."""
+    return lambda: trace.exists() and outputs(trace) and outputs(trace)[-1][1] == speed
+
+
+def driving(start, endpoint, trace, speed=0.5):
+    """An executive that drives the stand-in robot, which moves by now."""
+    executive = start("tests.support.stand_in_executive", endpoint, speed)
+    wait_until(moving(trace, speed), "robot moves")
+    return executive

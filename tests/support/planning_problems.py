@@ -1,0 +1,49 @@
+"""The project's own planning problems, the original's figures for them, and short ways to plan in tests."""
+
+import csv
+from pathlib import Path
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import MATCHING, Search, parse_domain, parse_problem
+
+DATA = Path(__file__).parents[1] / "data" / "pddl"
+SHARED = Path(__file__).parents[3] / "shared" / "pddl"
+OWN = tuple(sorted(p.stem for p in (DATA / "own").glob("*.pddl") if not p.stem.endswith("-domain")))
+UNLIMITED = 10**9  # checks
+
+
+def load(domain_file, problem_file):
+    domain = parse_domain(domain_file.read_text(), domain_file.name)
+    return domain, parse_problem(problem_file.read_text(), domain, problem_file.name)
+
+
+def own(name):
+    """Domain and problem of one of the project's own problems."""
+    return load(DATA / "own" / f"{name.rsplit('-', 1)[0]}-domain.pddl", DATA / "own" / f"{name}.pddl")
+
+
+def read(domain_text, problem_text):
+    domain = parse_domain(domain_text)
+    return domain, parse_problem(problem_text, domain)
+
+
+def solve(domain, problem, settings=MATCHING):
+    return Search(domain, problem, settings).advance(CheckBudget(UNLIMITED))
+
+
+def printed(name):
+    """What the original printed, without its line of time."""
+    text = (DATA / "vhpop-output" / f"{name}.txt").read_text()
+    return text[: text.rindex("Time:")]
+
+
+def reference(folder, config, status="solved"):
+    """The original's solved problems (status "": all that it tried): (domain, problem) -> row of the table.
+
+    Empty when the folder is absent.
+    """
+    if not folder.exists():
+        return {}
+    with (folder / "reference.csv").open() as lines:
+        rows = [row for row in csv.DictReader(lines) if row["config"] == config and status in ("", row["status"])]
+    return {(row["domain"], row["problem"]): row for row in rows}

@@ -1,0 +1,29 @@
+"""An executive that only drives: arms the driver once and commands a speed at 10 Hz. Arguments: endpoint, speed."""
+
+import sys
+
+from tailor.runtime.bus.session import open_client
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.loop import Loop
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.messages import ArmRequest, VelocityCommand
+
+
+def main(endpoint, speed):
+    stop = stop_on_signals()
+    codec.prime()
+    with open_client(endpoint) as session:
+        commands, arming = session.publisher("cmd_vel", "agilo"), session.publisher("arm_request", "agilo")
+        inbox, asked = session.inbox(["driver"], "agilo"), False
+        loop = Loop(100_000_000, MonotonicClock())
+        while not stop.requested:
+            turn = loop.next_turn()
+            if inbox.drain(turn.now_ns) and not asked:
+                arming.publish(ArmRequest(True, False, "", 0))
+                asked = True
+            commands.publish(VelocityCommand(turn.now_ns, float(speed), 0.0))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,45 @@
+"""A sim node with the fake body in its own process; writes every change of the guard's output with its time.
+
+Arguments: endpoint, file.
+"""
+
+import sys
+import time
+
+from tailor.runtime.bus.session import open_client
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.guard import Limit
+from tailor.simnodes.node import Node
+from tailor.simnodes.world import World
+from tests.support.fake_body import FakeBody
+
+LIMITS = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
+
+
+class Traced(FakeBody):
+    """Notes when the motors are told something new."""
+
+    def __init__(self, path):
+        self.trace = open(path, "w", buffering=1)  # noqa: SIM115  lives as long as the process
+        self.last = None
+
+    def command(self, values):
+        super().command(values)
+        if values != self.last:
+            self.trace.write(f"{time.monotonic_ns()} {values[0]!r}\n")
+            self.last = values
+
+
+def main(endpoint, path):
+    stop = stop_on_signals()
+    codec.prime()
+    with open_client(endpoint) as session:
+        world = World(Traced(path), {}, 0)
+        Node(world, LIMITS, session, MonotonicClock(), epoch=time.time_ns()).run(lambda: stop.requested)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,365 @@
+"""The core, tick by tick, with a robot on a line."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tailor.executive import planning
+from tailor.executive.core.command_guard import checked
+from tailor.executive.core.context import LONGEST_GOAL, Settings, check_goal
+from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.state import Inputs, initial_state
+from tailor.executive.core.step import step
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.library import Axis, Models
+from tailor.schemas import codec
+from tailor.schemas.messages import (
+    ActionFinished,
+    ArmRequest,
+    ExecStatus,
+    PlanReport,
+    RefinementReport,
+    Subgoals,
+    VelocityCommand,
+)
+from tailor.schemas.topics import TOPICS
+from tests.support.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
+
+TICK = 100_000_000
+GOAL = "(and (visited a) (visited b) (at b))"
+
+
+def drive(context, goal=GOAL, ticks=100, checks=200, world=None):
+    """Run the core against a point on a line that does what it is told; yields (state, outputs, x) each tick."""
+    state, x = initial_state(context), 0.0
+    for n in range(1, ticks + 1):
+        given = inputs(n * TICK, x, goal if n == 1 else "")
+        if world is not None:
+            given = world(n, given, x)
+        state, outputs = step(context, state, n * TICK, given, CheckBudget(checks))
+        x += 0.1 * state.command[0]
+        yield state, outputs, x
+
+
+def messages(run, kind):
+    return [output.message for _, outputs, _ in run for output in outputs if isinstance(output.message, kind)]
+
+
+def test_goal_is_planned_refined_and_reached_in_order():
+    run = list(drive(line_context()))
+    state = run[-1][0]
+    finished = messages(run, ActionFinished)
+    assert state.task.result == "achieved"
+    assert [(f.action, f.outcome, f.action_index) for f in finished] == [("slide", "done", 0), ("slide", "done", 1)]
+    assert run[-1][2] == pytest.approx(1.0, abs=0.06)
+    assert state.mode is Mode.READY
+    assert state.command == (0.0,)
+
+
+def test_refinement_chooses_the_fast_speed_that_greedy_leaves_at_the_next_place():
+    subgoals = messages(list(drive(line_context())), Subgoals)
+    speeds = [p.value for a in subgoals[0].actions for p in a.parameters if p.name == "v"]
+    assert speeds[0] == pytest.approx(0.5, abs=0.01)
+
+
+def test_plan_is_reused_as_suffix_after_each_action():
+    ways = [(plan.status, plan.way) for plan in messages(list(drive(line_context())), PlanReport)]
+    assert ways[0] == ("solved", "searched")
+    assert ways[1] == ("solved", "suffix")
+
+
+def test_same_inputs_and_checks_give_the_same_outputs():
+    first = [outputs for _, outputs, _ in drive(line_context(), checks=7)]
+    assert first == [outputs for _, outputs, _ in drive(line_context(), checks=7)]
+
+
+def test_starved_budget_only_delays_and_never_moves_without_a_decision():
+    run = list(drive(line_context(), checks=1, ticks=300))
+    assert run[0][0].command == (0.0,)
+    assert run[-1][0].task.result == "achieved"
+
+
+@pytest.mark.parametrize("silent", ["odom", "driver"])
+def test_stale_input_stops_the_robot_within_its_limit_and_motion_resumes_with_it(silent):
+    def world(n, given, x):
+        if 8 <= n < 18:
+            return Inputs(tuple(s for s in given.samples if not s.key.endswith(silent)))
+        return given
+
+    run = list(drive(line_context(), world=world, ticks=120))
+    moving = [abs(state.command[0]) > 0 for state, _, _ in run]
+    assert moving[5]
+    assert not any(moving[13:17])  # the last sample came in tick 7: stale after 0.5 s
+    assert run[14][0].mode is (Mode.HOLDING if silent == "odom" else Mode.DISARMED)
+    assert run[-1][0].task.result == "achieved"
+
+
+def test_commands_go_out_only_while_the_driver_obeys_this_executive():
+    def other(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, sender="ff" * 16)), given.goal)
+
+    run = list(drive(line_context(), world=other, ticks=10))
+    assert messages(run, VelocityCommand) == []
+    assert run[-1][0].reason.startswith("driver obeys another executive")
+
+
+def test_driver_is_asked_to_arm_once_and_never_again_after_it_stopped_or_restarted():
+    def world(n, given, x):
+        mode = "disarmed" if n <= 3 else "armed" if n < 10 else "stopped" if n < 20 else "disarmed"
+        epoch = 7 if n < 20 else 8
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, mode, epoch)), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=40))
+    requests = messages(run, ArmRequest)
+    assert requests == [ArmRequest(arm=True, reset=False, sender=SENDER, epoch=7)]
+    assert run[-1][0].mode is Mode.DISARMED
+    assert all(state.command == (0.0,) for state, _, _ in run[9:])
+
+
+def test_failing_action_is_replanned_once_and_then_a_fault():
+    context = line_context(places={"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}})
+    run = list(drive(context, goal="(visited a)", ticks=20))
+    finished = messages(run, ActionFinished)
+    assert [(f.outcome, f.reason) for f in finished] == [("failed", "too far")] * 2
+    assert run[-1][0].mode is Mode.FAULT
+    assert run[-1][0].reason == "slide: too far"
+    assert run[-1][0].command == (0.0,)
+
+
+def test_action_that_never_ends_is_given_up_at_its_time_limit():
+    def stuck(n, given, x):
+        return inputs(n * TICK, 0.0, given.goal)
+
+    finished = messages(list(drive(line_context(), world=stuck, ticks=130)), ActionFinished)
+    assert finished[0].outcome == "failed"
+    assert finished[0].reason == "slide took longer than 10.0 s"
+
+
+def test_unsolvable_goal_is_told_once_and_nothing_moves():
+    run = list(drive(line_context(), goal="(visited home)", ticks=10))
+    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert all(state.command == (0.0,) for state, _, _ in run)
+    assert len(messages(run, PlanReport)) == 1
+
+
+def test_a_goal_too_long_to_be_told_is_refused_and_the_longest_one_is_told():
+    context = line_context()
+    longest = GOAL + " " * (LONGEST_GOAL - len(GOAL))
+    assert check_goal(context, longest) == ""
+    assert check_goal(context, longest + " ") == "the goal has 8001 bytes, expected at most 8000"
+    run = drive(context, goal=longest, ticks=5)
+    told = messages(run, ExecStatus)
+    assert [codec.decode(TOPICS["status"], codec.encode(status)) for status in told] == told
+    assert told[-1].goal == longest
+
+
+def test_place_that_moves_redirects_the_running_action():
+    def world(n, given, x):
+        shift = 0.3 if n >= 6 else 0.0
+        return Inputs((odometry(n * TICK, x, n, shift), driver(n * TICK)), given.goal)
+
+    run = list(drive(line_context(), goal="(visited a)", world=world))
+    assert run[-1][0].task.result == "achieved"
+    assert run[-1][2] == pytest.approx(0.8, abs=0.06)
+    finished = messages(run, ActionFinished)
+    assert len(finished) == 1
+    assert finished[0].actual_s > 1.5, "its clock goes on"
+
+
+def test_stopping_brings_a_zero_command_and_lets_the_driver_go():
+    def world(n, given, x):
+        return dataclasses.replace(given, stopping=n == 6)
+
+    run = list(drive(line_context(), world=world, ticks=6))
+    last = [output.message for output in run[-1][1]]
+    assert run[4][0].command[0] > 0
+    assert VelocityCommand(6 * TICK, 0.0, 0.0) == last[0]
+    assert ArmRequest(arm=False, reset=False, sender=SENDER, epoch=7) in last
+
+
+def test_three_overruns_in_a_second_hold_the_robot():
+    def world(n, given, x):
+        return dataclasses.replace(given, skipped=1 if n in (5, 6, 7) else 0)
+
+    run = list(drive(line_context(), world=world, ticks=60))
+    assert run[6][0].mode is Mode.HOLDING
+    assert run[6][0].reason == "3 overruns in a second"
+    assert run[-1][0].task.result == "achieved"
+
+
+def test_clock_that_goes_back_holds_for_that_tick():
+    context = line_context()
+    state = initial_state(context)
+    for n in (1, 2, 3):
+        state, _ = step(context, state, n * TICK, inputs(n * TICK, 0.0, GOAL if n == 1 else ""), CheckBudget(99))
+    assert state.command[0] > 0
+    state, _ = step(context, state, TICK, Inputs(), CheckBudget(99))
+    assert state.mode is Mode.HOLDING
+    assert state.command == (0.0,)
+    assert state.now_ns == 3 * TICK
+
+
+@pytest.mark.parametrize(
+    ("mode", "now", "expected"),
+    [
+        (Mode.READY, Conditions(goal_active=True), (Mode.EXECUTING, "")),
+        (Mode.EXECUTING, Conditions(hold="stale: odom", goal_active=True), (Mode.HOLDING, "stale: odom")),
+        (Mode.READY, Conditions(hold="stale: odom"), (Mode.READY, "")),
+        (Mode.HOLDING, Conditions(goal_active=True), (Mode.EXECUTING, "")),
+        (Mode.EXECUTING, Conditions(disarmed="stopped", hold="x", goal_active=True), (Mode.DISARMED, "stopped")),
+        (Mode.EXECUTING, Conditions(fault="f", disarmed="d"), (Mode.FAULT, "f")),
+        (Mode.FAULT, Conditions(goal_active=True), (Mode.FAULT, "")),
+        (Mode.EXECUTING, Conditions(), (Mode.READY, "")),
+    ],
+)
+def test_mode_table(mode, now, expected):
+    assert next_mode(mode, now) == expected
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        ((0.7, 0.1), (0.5, 0.1)),
+        ((-0.7, -3.0), (-0.5, -1.0)),
+        ((float("nan"), 0.1), (0.0, 0.0)),
+        ((0.1, float("inf")), (0.0, 0.0)),
+        ((0.1,), (0.0, 0.0)),
+    ],
+)
+def test_command_guard_refuses_what_is_not_finite_and_clamps_the_rest(command, expected):
+    axes = (Axis("v", "m/s", -0.5, 0.5), Axis("omega", "rad/s", -1.0, 1.0))
+    assert checked(command, axes)[0] == expected
+
+
+def test_settings_default_to_the_papers_horizon():
+    assert Settings().refinement.horizon == 2
+
+
+def test_action_that_gives_way_to_another_one_is_told_as_aborted():
+    """The place moves behind a wall: an action of another plan step has to come first."""
+    settings = Settings()
+    run = list(drive(line_context(settings), ticks=3))
+    state, _, _ = run[-1]
+    other = dataclasses.replace(state.task.running, step=99)
+    state = dataclasses.replace(state, task=dataclasses.replace(state.task, running=other))
+    moved = Inputs((odometry(4 * TICK, 0.0, 4, 0.4), driver(4 * TICK)))
+    _, outputs = step(line_context(settings), state, 4 * TICK, moved, CheckBudget(2000))
+    ended = [output.message for output in outputs if isinstance(output.message, ActionFinished)]
+    assert [(f.action, f.outcome, f.action_index) for f in ended] == [("slide", "aborted", 0)]
+
+
+def test_action_whose_effects_hold_already_is_done_and_not_aborted():
+    context = line_context()
+
+    def anchor(belief, scenario, remembered):
+        there = (remembered - {("at", "home")}) | {("at", "a"), ("visited", "a")}
+        return there if belief.shift else remembered
+
+    context.domain.anchor = anchor
+
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
+
+    run = list(drive(context, goal="(visited a)", world=world, ticks=10))
+    ended = messages(run, ActionFinished)
+    assert [(f.outcome, f.reason) for f in ended] == [("done", "its effects hold already")]
+    assert run[-1][0].task.result == "achieved"
+
+
+def test_a_stopped_driver_gets_no_commands_though_it_names_us():
+    def world(n, given, x):
+        state = dataclasses.replace(driver(n * TICK).message, mode="stopped")
+        return Inputs((odometry(n * TICK, x, n), dataclasses.replace(driver(n * TICK), message=state)), given.goal)
+
+    assert messages(list(drive(line_context(), world=world, ticks=5)), VelocityCommand) == []
+
+
+def test_after_a_stop_the_plan_is_made_anew_from_where_the_robot_is():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "stopped" if 6 <= n < 10 else "armed")), given.goal)
+
+    run = list(drive(line_context(), world=world))
+    assert run[5][0].task.running is None
+    ways = [
+        (output.message.way, state.tick) for state, outputs, _ in run for output in outputs if output.topic == "plan"
+    ]
+    assert ways[1] == ("searched", 10)
+    assert run[-1][0].task.result == "achieved"
+
+
+def test_arming_is_asked_for_again_only_while_the_same_start_of_the_driver_stays_silent():
+    def world(n, given, x):
+        state = driver(n * TICK, "disarmed", 7 if n < 14 else 8, accepted=0)
+        return Inputs((odometry(n * TICK, x, n), state), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=30))
+    asked = [state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)]
+    assert asked == [1, 7, 13]
+
+
+def test_robot_coasts_two_ticks_between_actions_and_then_stands():
+    context = line_context()
+    state, x, commands = initial_state(context), 0.0, []
+    for n in range(1, 40):
+        given = inputs(n * TICK, x, GOAL if n == 1 else "")
+        state, _ = step(context, state, n * TICK, given, CheckBudget(200 if n < 5 else 0))
+        commands.append(state.command[0])
+        x += 0.1 * state.command[0]
+    arrived = commands.index(CREEP_MPS)
+    assert commands[arrived : arrived + 4] == [CREEP_MPS, CREEP_MPS, CREEP_MPS, 0.0]
+
+
+def test_action_whose_support_is_gone_does_not_start():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n, CLOSED if n >= 2 else 0.0), driver(n * TICK)), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=6))
+    assert run[0][0].task.decision is not None
+    assert all(state.task.running is None for state, _, _ in run)
+    assert run[-1][0].task.result.startswith("failed: no plan")
+
+
+def test_a_better_subgoal_is_adopted_while_the_action_runs_only_if_it_gains_enough():
+    def announced(gain_s):
+        return len(messages(list(drive(line_context(Settings(adopt_gain_s=gain_s)), checks=1, ticks=40)), Subgoals))
+
+    assert announced(0.0) > announced(1e9)
+
+
+def test_command_that_is_not_finite_fails_the_action_and_is_never_sent():
+    context = line_context(places={"home": {"x": 0.0}, "a": {"x": -6.0}, "b": {"x": 1.0}})
+    run = list(drive(context, goal="(visited a)", ticks=12))
+    assert [f.reason for f in messages(run, ActionFinished)] == ["command for v is nan"] * 2
+    assert all(command.v == 0.0 for command in messages(run, VelocityCommand))
+
+
+def test_unsound_plan_is_not_executed(monkeypatch):
+    class Broken:
+        def __init__(self, *arguments):
+            pass
+
+        def advance(self, budget):
+            plan = planning.Plan("p", (), (planning.Step(1, ("slide", "a", "b"), 1.0),))
+            return planning.Result("solved", plan, "", 1, 1)
+
+    monkeypatch.setattr(planning, "Search", Broken)
+    run = list(drive(line_context(), ticks=5))
+    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert all(state.command == (0.0,) for state, _, _ in run)
+
+
+def test_every_word_about_a_refinement_without_a_valid_choice_can_be_encoded():
+    class Never:
+        def predict(self, arguments):
+            return np.full(len(arguments), np.nan), np.full(len(arguments), np.nan)
+
+    context = line_context()
+    context = dataclasses.replace(context, models=Models({"slide/duration": Never()}, {}))
+    run = list(drive(context, ticks=5))
+    told = messages(run, RefinementReport)
+    assert told
+    assert all(isinstance(codec.decode(type(word), codec.encode(word)), RefinementReport) for word in told)
+    assert told[0].best_s == -1.0

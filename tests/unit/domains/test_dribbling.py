@@ -1,0 +1,84 @@
+"""What keeps the ball in the rail (gentle turns, a straight run-in), and how alike dribbles are that begin alike."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tailor.executive import domains
+from tailor.executive.actions.dribble_path import DribblePath
+from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.domains.soccer import robot
+from tailor.simnodes.agilo.body import AgiloBody
+from tailor.tools.lockstep.action_run import new_body, run_action, sample_arguments
+
+GRIP = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
+PATHS = DribblePath(0.75, 0.6, robot.IN_RAIL_M, braking_mps2=0.35)
+SOCCER = domains.load("soccer")
+
+
+def ball_held(v, omega):
+    """Whether the simulated ball is still in the rail after six seconds of a turn begun gently."""
+    body = AgiloBody()
+    body.reset(np.random.default_rng(0), {"v": v, "ball_x": robot.IN_RAIL_M, "ball_y": 0.0, "ball_vx": v})
+    for tick in range(90):
+        body.command((v, min(omega, 0.03 * tick)))
+        body.advance(100_000_000)
+    truth = body.truth()
+    return abs(math.hypot(truth.ball_x - truth.x, truth.ball_y - truth.y) - robot.IN_RAIL_M) < 0.03
+
+
+@pytest.mark.parametrize("v", [0.25, 0.36, 0.5, 0.6])
+def test_turns_that_the_grip_allows_keep_the_simulated_ball_and_much_sharper_ones_lose_it(v):
+    allowed = max(rate for rate in np.arange(0.0, 1.5, 0.01) if GRIP.yaw_radps2(v, rate, 0.0) > 0.0)
+    assert ball_held(v, allowed)
+    assert not ball_held(v, 1.35 * allowed)
+
+
+def test_straight_ahead_only_the_rolling_resistance_limits_braking():
+    assert GRIP.braking_mps2(0.4, 0.0) == pytest.approx(robot.BALL_ROLLING_MPS2)
+    assert GRIP.braking_mps2(0.0, 0.0) == 0.0, "a ball at rest pushes back with nothing"
+
+
+def test_grip_is_the_same_to_both_sides_and_less_the_sharper_the_turn():
+    rates = np.arange(0.0, 0.8, 0.1)
+    braking = [GRIP.braking_mps2(0.4, rate) for rate in rates]
+    yaw = [GRIP.yaw_radps2(0.4, rate, 0.1) for rate in rates]
+    assert braking == [GRIP.braking_mps2(0.4, -rate) for rate in rates]
+    assert yaw == [GRIP.yaw_radps2(0.4, -rate, 0.1) for rate in rates]
+    assert all(np.diff(braking) <= 0.0)
+    assert all(np.diff(yaw) <= 0.0)
+
+
+def planned(goal, v=0.25):
+    return PATHS.quickest(SimpleNamespace(x=0.0, y=0.0, phi=0.0), v, goal)
+
+
+@pytest.mark.parametrize("phi", np.arange(-3.0, 3.1, 0.5))
+def test_planned_path_begins_straight_and_brings_the_ball_to_its_target(phi):
+    goal = (1.2, 0.7, float(phi), 0.0)
+    path = planned(goal)
+    assert path.at(0.0)[:3] == pytest.approx((0.0, 0.0, 0.0))
+    assert path.pieces[0] == (0, PATHS.run_in_m)
+    x, y, heading, _ = path.at(path.length)
+    ball = x + robot.IN_RAIL_M * math.cos(heading), y + robot.IN_RAIL_M * math.sin(heading)
+    target = goal[0] + robot.IN_RAIL_M * math.cos(phi), goal[1] + robot.IN_RAIL_M * math.sin(phi)
+    assert math.dist(ball, target) <= max(PATHS.asides_m) + 1e-9
+    assert abs(math.remainder(heading - phi, math.tau)) <= max(PATHS.slants_rad) + 1e-9
+
+
+def test_speed_that_the_run_in_takes_off_does_not_widen_the_bends():
+    goal = (0.9, 0.6, 2.0, 0.0)
+    assert planned(goal, 0.38).radius == planned(goal, 0.28).radius
+    assert planned(goal, 0.7).radius > 1.0
+
+
+def test_same_dribble_takes_about_as_long_whatever_the_noise():
+    body, spreads = new_body(SOCCER), []
+    for number in range(12):
+        arguments = sample_arguments(SOCCER, "dribbleBall", np.random.default_rng([22, number]))
+        noise = [np.random.default_rng([23, number, repeat]) for repeat in range(4)]
+        took = [run_action(body, SOCCER, "dribbleBall", arguments, rng).duration_s for rng in noise]
+        spreads.append(np.abs(np.array(took) - np.median(took)).mean())
+    assert np.mean(spreads) < 0.45

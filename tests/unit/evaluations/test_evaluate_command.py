@@ -1,0 +1,131 @@
+"""tailor evaluate: several evaluations in one call, what is left out, what is gone on with, and the first page."""
+
+from __future__ import annotations
+
+import json
+import sys
+import types
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.commands.measure import evaluate
+from tailor.tools.evaluations.overview import write_overview
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.main import main
+
+CALLS: list[str] = []
+
+
+def module(name, domains, run):
+    """An evaluation that counts its calls and tells a row."""
+    made = types.ModuleType(name)
+    made.DOMAINS = domains
+
+    def configure(parser):
+        if name == "second":
+            parser.add_argument("places", nargs="*")  # no value of another's flag goes here
+        if name == "first":
+            parser.add_argument("--episodes", type=int, default=1)
+        configure_report(parser)
+
+    def really_run(arguments):
+        CALLS.append(name)
+        assert getattr(arguments, "places", []) == []
+        tell(Report(name, f"The {name} one", [{"scenario": name, "n": 3}]), arguments.json, arguments.report)
+        return run()
+
+    made.configure, made.run = configure, really_run
+    return made
+
+
+def refuse():
+    raise UsageError("no data here")
+
+
+@pytest.fixture(autouse=True)
+def three(monkeypatch):
+    """Evaluations "first" (soccer, 0), "second" (arm, 1) and "third" (soccer, refuses)."""
+    CALLS.clear()
+    made = {"first": (("soccer",), lambda: 0), "second": (("arm",), lambda: 1), "third": (("soccer",), refuse)}
+    for name, (domains, run) in made.items():
+        monkeypatch.setitem(sys.modules, f"stand_in.{name}", module(name, domains, run))
+    monkeypatch.setattr(evaluate, "EVALUATIONS", {name: (f"stand_in.{name}", "told") for name in made})
+
+
+def test_the_worst_exit_code_is_that_of_all(capsys):
+    assert main(["evaluate", "first", "second"]) == 1
+    assert CALLS == ["first", "second"]
+
+
+def test_the_lot_goes_on_where_one_cannot_run(capsys, tmp_path):
+    assert main(["evaluate", "all", "--report", str(tmp_path)]) == 2
+    assert CALLS == ["first", "second", "third"]
+    assert "third: no data here" in capsys.readouterr().err
+
+
+def test_one_that_cannot_run_alone_is_a_usage_error(capsys):
+    assert main(["evaluate", "third"]) == 2
+    assert capsys.readouterr().err == "tailor evaluate: no data here\n"
+
+
+def test_resume_leaves_out_what_has_a_page(tmp_path, capsys):
+    main(["evaluate", "first", "--report", str(tmp_path)])
+    assert main(["evaluate", "first", "second", "--report", str(tmp_path), "--resume"]) == 1
+    assert CALLS == ["first", "second"]
+
+
+def test_a_page_that_was_broken_off_is_made_again(tmp_path, capsys):
+    main(["evaluate", "first", "--report", str(tmp_path)])
+    (tmp_path / "first.json").unlink()
+    main(["evaluate", "first", "--report", str(tmp_path), "--resume"])
+    assert CALLS == ["first", "first"]
+
+
+def test_the_lot_takes_flags_that_some_evaluation_knows(capsys):
+    assert main(["evaluate", "all", "--episodes", "2", "--jobs=1"]) == 2  # the third's refusal
+    assert CALLS == ["first", "second", "third"]
+
+
+@pytest.mark.parametrize("words", [["all", "--bogus"], ["first", "second", "--episodes", "2"]])
+def test_a_flag_that_is_not_known_is_told_before_anything_runs(words, capsys):
+    assert main(["evaluate", *words]) == 2
+    assert CALLS == []
+    assert words[-2 if "--episodes" in words else -1] in capsys.readouterr().err
+
+
+def test_of_the_lot_only_those_of_the_domain_run(capsys):
+    assert main(["evaluate", "all", "--domain", "arm"]) == 1
+    assert CALLS == ["second"]
+
+
+def test_an_evaluation_of_another_domain_is_a_usage_error(capsys):
+    assert main(["evaluate", "first", "--domain", "arm"]) == 2
+    assert "first is of: soccer" in capsys.readouterr().err
+
+
+def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, capsys):
+    main(["evaluate", "first", "--report", str(tmp_path)])
+    text = write_overview(tmp_path, ["first", "second"]).read_text()
+    assert '<a href="first.html">The first one</a>' in text
+    assert "Not run: second." in text
+
+
+def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
+    rows = [{"scenario": f"row-{k}"} for k in range(10)]
+    tell(Report("first", "The first one", rows), True, tmp_path)
+    text = write_overview(tmp_path, ["first"]).read_text()
+    assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
+
+
+def test_json_of_a_report_has_its_rows(tmp_path, capsys):
+    main(["evaluate", "first", "--json", "--report", str(tmp_path)])
+    said = json.loads(capsys.readouterr().out)
+    assert said["rows"] == [{"scenario": "first", "n": 3}]
+    assert json.loads((tmp_path / "first.json").read_text()) == said
+
+
+def test_what_is_no_number_is_null_in_json(capsys):
+    tell(Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None)
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]

@@ -1,0 +1,147 @@
+"""Figures 1, 11 and 15: what is measured on the runs that they draw."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.schemas.messages import ActionFinished
+from tailor.tools.evaluations.assertion import figure15
+from tailor.tools.evaluations.assertion.figure16 import assertion_task, variants
+from tailor.tools.evaluations.assertion.subgoal_map import ground_of
+from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_ground
+from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.refinement import figure11
+from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
+from tailor.tools.evaluations.refinement.sweep import sweep_of
+from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
+from tailor.tools.evaluations.watched import watch
+from tailor.tools.figures.track import Point, Track
+from tests.unit.evaluations.test_refinement_evaluations import DONE
+
+TRAINING_SEED = 700_000  # evaluation seeds begin at a million
+FORESEEN = (("goToPose", True, 2.0), ("approachBall", False, 3.0), ("dribbleBall", False, 4.0))
+
+
+def point(time_s, v, name):
+    return Point(time_s, 0.0, 0.0, 0.0, v, 0.0, 0.0, 0, name)
+
+
+def test_time_spent_hardly_moving_and_the_speed_at_the_ball_are_read_off_the_track():
+    speeds = [("approachBall", 0.5), ("approachBall", 0.05), ("dribbleBall", -0.02), ("dribbleBall", 0.3)]
+    track = Track("run", [point(0.1 * k, v, name) for k, (name, v) in enumerate(speeds)])
+    assert slow_s(track) == pytest.approx(0.2)
+    assert handover_mps(track) == pytest.approx(0.02)
+    assert math.isnan(handover_mps(Track("run", track.points[:2])))
+
+
+def test_path_and_durations_are_read_off_the_track():
+    track = Track("run", [replace(point(0.1 * k, 0.5, "a"), x=0.3 * k, y=0.4 * k) for k in range(3)])
+    names = ("approachBall", "dribbleBall", "approachBall", "dribbleBall")
+    track.finished += [ActionFinished(0, 0, name, k, "done", "", 0.0, k + 1.0) for k, name in enumerate(names)]
+    assert path_m(track) == pytest.approx(1.0)
+    assert (until_ball_s(track), dribble_s(track)) == (6.0, 4.0)
+    assert path_m(Track("empty")) == 0.0
+
+
+def test_sweep_splits_an_episode_where_the_approach_has_succeeded():
+    twice = ("approachBall", "approachBall", "dribbleBall")
+    tried_again = replace(
+        DONE, actions=twice, outcomes=("failed", "done", "done"), actual_s=(2.0, 3.0, 4.0), duration_s=9.5
+    )
+    sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[tried_again], [DONE]], 0.0, 0.0)
+    assert sweep.simulated_s[:, 0].tolist() == [5.0, 4.5, 9.5]
+    assert sweep.simulated_s[:, 1].tolist() == [4.0, 6.0, 10.0]
+
+
+def test_sweep_predicts_detours_as_part_of_the_approach():
+    sweep = sweep_of(1, np.array([0.0]), 0.2, [[replace(DONE, foreseen=FORESEEN)]], 0.0, 0.0)
+    assert sweep.predicted_s[:, 0].tolist() == [5.0, 4.0, 9.0]
+    assert sweep.detoured.tolist() == [True]
+
+
+def test_sweep_leaves_failed_runs_out_and_needs_one_that_is_not():
+    failed = replace(DONE, achieved=False, foreseen=FORESEEN)
+    done = replace(DONE, foreseen=FORESEEN)
+    sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[failed, done], [failed, failed]], 0.0, 0.0)
+    assert sweep.simulated_s[2, 0] == 10.0
+    assert np.isnan(sweep.simulated_s[:, 1]).all()
+    assert sweep.model_best == 0
+    assert sweep_of(1, np.array([0.0]), 0.2, [[failed]], 0.0, 0.0) is None
+
+
+def test_sweep_leaves_out_a_run_that_reached_its_goal_without_an_approach():
+    aborted = replace(DONE, outcomes=("aborted", "done"), foreseen=FORESEEN)
+    done = replace(DONE, foreseen=FORESEEN)
+    sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[aborted], [done]], 0.0, 0.0)
+    assert np.isnan(sweep.simulated_s[:, 0]).all()
+
+
+def test_duration_between_two_angles_wraps_round_the_circle():
+    angles = np.linspace(-math.pi, math.pi, 4, endpoint=False)
+    runs = [[replace(DONE, duration_s=s, foreseen=FORESEEN)] for s in (8.0, 20.0, 20.0, 10.0)]
+    sweep = sweep_of(1, angles, 0.2, runs, 0.0, 0.0)
+    assert sweep.simulated_at(0.75 * math.pi) == pytest.approx(9.0)
+
+
+def test_an_angle_that_is_forced_is_the_one_that_is_taken(tmp_path):
+    watched, _ = watch(Task("soccer", "approach-dribble"), figure11._pinned(1.0, 0.2, 0), TRAINING_SEED)
+    told = {(label, quantity): value for label, quantity, value in watched.outcome.bound}
+    assert (told["pos2", "phi"], told["pos2", "v"]) == (1.0, 0.2)
+    assert [name for name, *_ in watched.outcome.foreseen][-2:] == ["approachBall", "dribbleBall"]
+    sweep = sweep_of(1, np.array([-1.0, 1.0]), 0.2, [[watched.outcome]] * 2, 0.0, 0.0)
+    draw_sweep(sweep, [watched.track] * 3, tmp_path / "sweep.png")
+    assert (tmp_path / "sweep.png").stat().st_size > 10_000
+
+
+def test_other_noise_is_another_run_from_the_same_start():
+    task, plain = Task("soccer", "approach-dribble"), Variant("h2")
+    first, again, other = (watch(task, v, TRAINING_SEED)[0] for v in (plain, plain, replace(plain, noise=500_000)))
+    assert first.outcome == again.outcome
+    assert first.track.points != other.track.points
+    assert (first.track.points[0].x, first.track.points[0].ball_x) == pytest.approx(
+        (other.track.points[0].x, other.track.points[0].ball_x), abs=0.05
+    )
+
+
+@pytest.fixture(scope="module")
+def asserted():
+    """The first approach with a subgoal before it."""
+    _, asserting = variants()
+    for seed in range(TRAINING_SEED, TRAINING_SEED + 40):
+        watched, context = watch(assertion_task(""), asserting, seed)
+        ground = ground_of(watched.subgoals[0], context) if watched.subgoals else None
+        if ground is not None:
+            return watched, ground
+    raise AssertionError("no subgoal was asserted in 40 approaches")
+
+
+def test_ground_is_valid_exactly_where_the_approach_is_predicted_to_succeed(asserted):
+    _, ground = asserted
+    assert np.array_equal(np.isfinite(ground.total_s), ground.success >= 1 - ground.limit)
+    assert 0 < ground.valid_pct < 100
+    assert ground.least_s <= sum(ground.chosen_s)
+
+
+def test_the_chosen_subgoal_costs_what_was_predicted_for_it(asserted):
+    watched, ground = asserted
+    assert sum(ground.chosen_s) == pytest.approx(sum(s for *_, s in watched.outcome.foreseen[:2]), abs=0.02)
+    assert ground.start == pytest.approx((watched.track.points[0].x, watched.track.points[0].y), abs=0.25)
+
+
+def test_ground_is_drawn(asserted, tmp_path):
+    watched, ground = asserted
+    draw_ground(ground, (0.0, 0.0), [watched.track] * 2, "start", tmp_path / "ground.png")
+    assert (tmp_path / "ground.png").stat().st_size > 10_000
+
+
+def test_figure_15_counts_the_starts_at_which_a_subgoal_was_asserted():
+    approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
+    detour = replace(approach, asserted=True, foreseen=(("goToPose", True, 2.0), ("approachBall", False, 1.5)))
+    found = {"blind": {1: replace(approach, ball_moved_m=0.2)}, "asserted": {1: detour}}
+    row = figure15._summary(found, [1])
+    assert (row["n"], row["success_before_pct"], row["success_after_pct"]) == (1, 0.0, 100.0)
+    assert (row["predicted_s"], row["took_s"], row["bias_s"]) == (3.5, 4.0, -0.5)

@@ -1,0 +1,49 @@
+"""Pictures of models: each of what it says it is, for any robot, and none for arguments that nobody drew yet."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tailor.models.features.features import SPACES
+from tailor.models.runtime import load_model
+from tailor.tools.figures.learned import flat_from
+from tailor.tools.figures.learned_regions import JOINTS, POSES, region_of, swept
+from tailor.tools.main import main
+
+
+@pytest.mark.parametrize(
+    ("curve", "high", "flat"),
+    [
+        ([[100, 0.3], [200, 0.2], [400, 0.19]], 0.21, 200),
+        ([[100, 0.3], [200, 0.25], [400, 0.19]], 0.21, 400),  # still falling
+        ([[100, 0.2], [200, 0.3], [400, 0.19]], 0.21, 400),  # it was luck
+        ([[100, 0.2], [200, 0.2], [400, 0.19]], 0.21, 100),
+    ],
+)
+def test_a_learning_curve_is_flat_from_where_no_error_leaves_the_last_one_s_interval(curve, high, flat) -> None:
+    assert flat_from(curve, high) == flat
+
+
+@pytest.mark.parametrize("region", [POSES, JOINTS])
+def test_the_sweep_turns_the_angle_that_it_names_and_nothing_else(region) -> None:
+    angle = np.linspace(-3.0, 3.0, 25)
+    features = SPACES[region.space.name](swept(region, angle))
+    names = [quantity.name for quantity in region.space.features]
+    turned = names.index(region.swept)
+    assert np.allclose(features[:, turned], angle, atol=1e-4)
+    assert np.allclose(np.delete(features, turned, axis=1), np.delete(features[:1], turned, axis=1), atol=1e-4)
+
+
+def test_arguments_that_nobody_drew_have_no_region() -> None:
+    assert region_of(load_model("powercube/reach/duration").card) is JOINTS
+    assert region_of(load_model("agilo/goToPose/duration").card) is POSES
+    assert region_of({"arguments": [{"name": "force"}]}) is None
+
+
+def test_plots_are_named_by_robot_action_and_kind(tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)  # no episodes here
+    assert main(["models", "plot", "powercube/reach/energy", "--out", "plots"]) == 0
+    drawn = capsys.readouterr().out.split()
+    assert drawn == [f"plots/powercube-reach-energy-{name}.png" for name in ("figure7", "learning-curve")]
+    assert all(Path(path).stat().st_size > 10_000 for path in drawn)

@@ -1,0 +1,223 @@
+"""Evaluations of refinement: the paper's statistics, episodes kept over a break, baselines told apart."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.executive.library import Interval
+from tailor.schemas.errors import UsageError
+from tailor.tools.commands.measure import evaluate
+from tailor.tools.evaluations.assertion import figure15, figure16
+from tailor.tools.evaluations.comparison import compare, share_interval
+from tailor.tools.evaluations.journal import Journal
+from tailor.tools.evaluations.live import live
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pinned import PinnedDomain
+from tailor.tools.evaluations.refinement import figure1, figure11, gate, oracle, replicas, table3, table4
+from tailor.tools.evaluations.refinement.baselines import against_oracle
+from tailor.tools.evaluations.refinement.oracle import _judged, _values, subgoal_parameters
+from tailor.tools.evaluations.trials import paired
+
+DONE = Outcome(
+    seed=1,
+    variant="h1",
+    achieved=True,
+    duration_s=10.0,
+    result="achieved",
+    actions=("approachBall", "dribbleBall"),
+    outcomes=("done", "done"),
+    predicted_s=(4.0, 5.0),
+    actual_s=(4.0, 6.0),
+    asserted=False,
+    ball_moved_m=0.0,
+    free=(("pos2", "phi", -3.0, 3.0, 0.5), ("subgoal12", "x", -3.0, 3.0, 1.0)),
+    bound=(("pos1", "x", 0.0),),
+    greedy_cost_s=11.0,
+    refined_cost_s=10.0,
+)
+
+
+def test_improvement_is_the_mean_of_the_paired_ratios():
+    said = compare([10.0, 20.0, 10.0, 10.0], [9.0, 10.0, 11.0, 10.0])
+    assert said.improvement_pct == pytest.approx(100 * np.mean([0.1, 0.5, -0.1, 0.0]))
+    assert said.gain_of_means_pct == pytest.approx(100 * (1 - 40 / 50))
+    assert said.slower_pct == 25.0
+    assert said.ci95[0] < said.improvement_pct < said.ci95[1]
+
+
+def test_no_difference_is_not_significant():
+    said = compare([10.0, 12.0], [10.0, 12.0])
+    assert (said.improvement_pct, said.p_value, said.p_wilcoxon) == (0.0, 1.0, 1.0)
+
+
+def test_unequal_or_single_pairs_are_refused():
+    with pytest.raises(UsageError, match="1 episodes to compare, expected two"):
+        compare([1.0], [1.0])
+    with pytest.raises(ValueError, match="expected as many"):
+        compare([1.0, 2.0], [1.0])
+
+
+def test_share_of_nothing_is_unknown():
+    assert share_interval(0, 0) == (0.0, 100.0)
+    low, high = share_interval(98, 100)
+    assert low < 98 < high
+
+
+def test_only_episodes_that_both_reached_the_goal_are_paired():
+    failed = replace(DONE, seed=2, achieved=False)
+    assert paired({1: DONE, 2: DONE}, {1: replace(DONE, duration_s=9.0), 2: failed}) == ([10.0], [9.0])
+
+
+def test_finished_episodes_survive_a_break_and_a_torn_line(tmp_path):
+    task, variant = Task("soccer", "approach-dribble"), Variant("h1")
+    Journal(tmp_path, task, variant, ["a"]).note(DONE)
+    next(tmp_path.iterdir()).open("a").write('{"seed": 2, "vari')
+    again = Journal(tmp_path, task, variant, ["a"])
+    assert again.known == {1: DONE}
+    again.note(replace(DONE, seed=3))
+    assert sorted(Journal(tmp_path, task, variant, ["a"]).known) == [1, 3]
+
+
+@pytest.mark.parametrize("damage", [b'{"seed": 5}\n', b"[1, 2]\n", b"7\n", b'\xff\xfe"\n'])
+def test_a_damaged_line_costs_its_own_episode_and_no_other(tmp_path, damage):
+    task, variant = Task("soccer", "approach-dribble"), Variant("h1")
+    Journal(tmp_path, task, variant, ["a"]).note(DONE)
+    path = next(tmp_path.iterdir())
+    path.write_bytes(damage + path.read_bytes())
+    assert Journal(tmp_path, task, variant, ["a"]).known == {1: DONE}
+
+
+def test_other_models_or_settings_are_other_episodes(tmp_path):
+    task, variant = Task("soccer", "approach-dribble"), Variant("h1")
+    Journal(tmp_path, task, variant, ["a"]).note(DONE)
+    assert Journal(tmp_path, task, variant, ["b"]).known == {}
+    other = replace(variant, refinement=replace(variant.refinement, k_std=2.0))
+    assert Journal(tmp_path, task, other, ["a"]).known == {}
+
+
+def test_pin_binds_what_is_free_and_nothing_else():
+    class Inner:
+        name = "inner"
+
+        def value(self, quantity, label, *rest):
+            return {"x": Interval(1.0, 1.0), "v": Interval(0.0, 0.3)}.get(quantity)
+
+    domain = PinnedDomain(Inner(), {("pos2", "v"): 0.1, ("pos2", "x"): 5.0, ("pos2", "phi"): 2.0})
+    rest = ((), (), None, None)
+    assert domain.value("v", "pos2", *rest) == Interval(0.1, 0.1)
+    assert domain.value("phi", "pos2", *rest) == Interval(2.0, 2.0)
+    assert domain.value("x", "pos2", *rest) == Interval(1.0, 1.0)
+    assert domain.value("v", "pos3", *rest) == Interval(0.0, 0.3)
+    assert domain.name == "inner"
+
+
+def test_oracle_tells_ceiling_greedy_and_zero_apart():
+    slow_start = replace(DONE, duration_s=8.0, actual_s=(5.0, 3.0))
+    quick_start = replace(DONE, duration_s=12.0, actual_s=(3.0, 9.0))
+    failed = replace(DONE, achieved=False, duration_s=1.0)
+    said = _judged(1, [slow_start, quick_start, failed], DONE)
+    assert (said.ceiling_s, said.greedy_s, said.zero_s) == (8.0, 12.0, 10.0)
+    row = against_oracle([said], {1: DONE}, {1: replace(DONE, duration_s=9.0)})
+    assert row["oracle_pct"] == pytest.approx(20.0)
+    assert row["refined_same_starts_pct"] == pytest.approx(10.0)
+
+
+def test_oracle_chooses_for_the_plan_not_for_detours():
+    assert subgoal_parameters(DONE) == [("pos2", "phi", -3.0, 3.0)]
+    assert len(_values(("pos2", "phi", -np.pi, np.pi), 12)) == 12
+    assert _values(("pos2", "v", 0.0, 0.3), 12) == pytest.approx([0.0, 0.15, 0.3])
+
+
+def test_assertion_is_counted_as_the_paper_counts_it():
+    approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
+    bumped = replace(approach, ball_moved_m=0.2)
+    detour = replace(approach, asserted=True, actual_s=(4.4,))
+    before = {1: approach, 2: bumped, 3: approach, 4: approach}
+    after = {1: approach, 2: detour, 3: detour, 4: replace(detour, actual_s=(4.8,))}
+    row = figure16.summary(before, after)
+    assert row["success_before_pct"] == 75.0
+    assert row["success_after_pct"] == 100.0
+    assert row["needless_pct"] == 50.0
+    assert row["needless_slower_pct"] == pytest.approx(15.0)
+    assert row["predicted_fail_observed_success_pct"] == 75.0
+
+
+@pytest.mark.parametrize("module", [table3, table4, figure1, figure11, figure15, figure16, gate, live])
+def test_every_evaluation_has_the_same_flags(module):
+    parser = argparse.ArgumentParser()
+    module.configure(parser)
+    given = parser.parse_args(["--episodes", "3", "--jobs", "1", "--json"])
+    assert (given.episodes, given.jobs, given.json) == (3, 1, True)
+
+
+@pytest.mark.parametrize("name", evaluate.EVALUATIONS)
+def test_every_evaluation_can_be_one_of_the_lot(name):
+    module, given, unknown = evaluate._parsed(name, ["--jobs", "1", "--report", "out", "--json", "--domain", "soccer"])
+    assert (given.jobs, given.json, str(given.report), unknown) == (1, True, "out", [])
+    assert callable(module.run)
+
+
+@pytest.mark.parametrize("module", [table3, table4])
+def test_unknown_scenario_is_a_usage_error(module):
+    parser = argparse.ArgumentParser()
+    module.configure(parser)
+    with pytest.raises(UsageError, match="chess"):
+        module.run(parser.parse_args(["chess"]))
+
+
+def test_the_row_over_models_has_an_interval_between_models():
+    row = {"scenario": "soccer", "horizon": 2, "n": 100, "mean_greedy_s": 12.0, "mean_refined_s": 11.0}
+    row |= {"slower_pct": 10.0, "bias_greedy_s": 0.1, "bias_refined_s": 0.3}
+    over = replicas.over_models([{**row, "improvement_pct": gain} for gain in (8.0, 9.0, 10.0)])
+    assert (over["n"], over["improvement_pct"], over["least_pct"], over["most_pct"]) == (300, 9.0, 8.0, 10.0)
+    assert over["ci95"] == pytest.approx((9 - 4.303 / np.sqrt(3), 9 + 4.303 / np.sqrt(3)), abs=0.01)
+    assert over["p_value"] < 0.01
+
+
+@pytest.mark.slow
+def test_a_model_trained_anew_is_made_once_and_is_another_than_the_next(tmp_path):
+    recipe = replicas.Recipe("soccer", "agilo", 60, 0)
+    first, second = (replicas.replica(recipe, number, tmp_path, 2) for number in (1, 2))
+    sums = [json.loads((zoo / "agilo/goToPose/duration.card.json").read_text())["sha256"] for zoo in (first, second)]
+    assert sums[0] != sums[1]
+    made = _files(tmp_path)
+    assert replicas.replica(recipe, 1, tmp_path, 2) == first
+    assert _files(tmp_path) == made
+
+
+def _files(folder):
+    """When each was written; manifests are written every time."""
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json")
+    return {path: path.stat().st_mtime_ns for path in files}
+
+
+def test_oracles_choice_is_executed_again_with_other_noise(monkeypatch):
+    asked = []
+
+    def run_all(task, variants, seeds, jobs, store, title):
+        asked.extend(variants)
+        took = {"again": 9.0}
+        return {v.name: {s: replace(DONE, seed=s, duration_s=took.get(v.name.split("-")[0], 8.0 + abs(v.pins[0][2])))
+                         for s in seeds} for v in variants}  # fmt: skip
+
+    monkeypatch.setattr(oracle, "run_all", run_all)
+    free = [("pos2", "phi", -np.pi, np.pi)]
+    (one,) = oracle.consult(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
+    again = [variant for variant in asked if variant.name.startswith("again")]
+    assert {round(variant.pins[0][2], 9) for variant in again} == {0.0}
+    assert len({variant.noise for variant in again}) == len(again) == 3
+    assert all(variant.noise for variant in again)
+    assert one.again_s == 9.0
+
+
+def test_greedy_by_the_oracle_does_not_count_an_approach_that_failed_soon():
+    failed_soon = replace(
+        DONE, actions=("approachBall", *DONE.actions), outcomes=("failed", "done", "done"),
+        actual_s=(1.0, 4.0, 6.0), duration_s=20.0,
+    )  # fmt: skip
+    assert _judged(1, [DONE, failed_soon], DONE).greedy_s == DONE.duration_s

@@ -1,0 +1,52 @@
+"""A command loads what it needs, and nothing that takes long to load and that it does not need."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.support.bus_system import ROOT
+
+HEAVY = {"scipy", "sklearn", "pandas", "matplotlib", "mujoco", "plotly", "onnx", "skl2onnx", "pytest"}
+WITHOUT = {
+    "main": {*HEAVY, "numpy", "rich", "onnxruntime", "zenoh", "rosbags", "mcap", "executive"},
+    "info": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "recover": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "cut": {*HEAVY, "onnxruntime", "zenoh", "executive"},
+    "verify": {*HEAVY, "zenoh", "rich"},
+    "why": {*HEAVY, "zenoh"},
+    "replay": {*HEAVY, "onnxruntime", "executive"},
+    "record": {*HEAVY, "onnxruntime", "executive"},
+    "bus": {*HEAVY, "onnxruntime", "executive"},
+    "estop": {*HEAVY, "onnxruntime", "executive"},
+    "arm": {*HEAVY, "onnxruntime", "executive"},
+    "goal": {*HEAVY, "onnxruntime", "executive"},
+}
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
+    asked = f"import sys, tools.{name}; print(*{{module.split('.')[0] for module in sys.modules}})"
+    loaded = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert set(loaded.split()) & WITHOUT[name] == set()
+
+
+RUN = """
+import sys
+from pathlib import Path
+from tailor.executive.replay import replay
+from tools import verify
+runs = verify.RecordedRuns(Path(sys.argv[1]))
+context = verify.recompose(runs.runs[0].provenance)
+before = set(sys.modules)
+assert sum(1 for _ in replay(context, runs.ticks(runs.runs[0]))) > 50
+print(*sorted(set(sys.modules) - before))
+"""
+
+
+@pytest.mark.parametrize("name", ["soccer-approach-dribble", "soccer-kicked-ball", "arm-word-I"])
+def test_no_tick_loads_a_module(name):
+    """Live, it would be late by as long as that takes: numpy.ma alone, which np.unique loads, takes 40 ms."""
+    golden = ROOT / "tests" / "data" / "golden" / f"{name}.mcap"
+    asked = [sys.executable, "-c", RUN, str(golden)]
+    assert subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT).stdout.split() == []

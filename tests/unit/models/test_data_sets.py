@@ -1,0 +1,119 @@
+"""Data sets of episodes: what is damaged, of something else, or there twice is refused in one line that names it."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tailor.models.episodes.episodes import Episode, merge, read_data_set, write_part
+from tailor.models.episodes.manifest import write_manifest
+from tailor.schemas.errors import UsageError
+from tests.support import standin
+
+NAMES = ["x", "y", "phi", "v", "xg", "yg", "phig", "vg"]
+PART = "part-000000-000006.parquet"
+
+
+def make(folder: Path, action: str = "goToPose", robot: str = "toy", seed: int = 1) -> Path:
+    """A data set of six episodes of the stand-in."""
+    folder.mkdir(parents=True)
+    made = [Episode(k, t[0], t, d, ok, "") for k, (t, d, ok) in enumerate(standin.episodes(6, seed))]
+    write_part(folder / PART, made, NAMES)
+    arguments = [{"name": name, "unit": "m", "lower": -4.0, "upper": 4.0} for name in NAMES]
+    about = {"robot": robot, "action": action, "arguments": arguments, "seed": seed, "source": "stand-in"}
+    write_manifest(folder, about)
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return make(tmp_path / "goToPose")
+
+
+def flip(path: Path) -> None:
+    """One bit within the data of the first page."""
+    content = bytearray(path.read_bytes())
+    content[300] ^= 4
+    path.write_bytes(content)
+
+
+def truncate(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-100])
+
+
+def change(column: str, value: object) -> Callable[[Path], None]:
+    """One cell, or the column away when the value is None."""
+
+    def apply(path: Path) -> None:
+        table = pq.read_table(path)
+        place = table.column_names.index(column)
+        if value is None:
+            table = table.remove_column(place)
+        else:
+            cells = table[column].to_pylist()
+            cells[3] = value
+            table = table.set_column(place, column, pa.array(cells))
+        pq.write_table(table, path)
+
+    return apply
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (flip, "cannot be read"),
+        (truncate, "cannot be read"),
+        (lambda path: path.write_bytes(b""), "cannot be read"),
+        (lambda path: pq.write_table(pa.table({"a": [1]}), path), "lacks episode, success"),
+        (lambda path: pq.write_table(pq.read_table(path).slice(0, 0), path), "lacks rows"),
+        (change("xg", None), "lacks xg"),
+        (change("xg", float("nan")), "column xg holds what is no finite number"),
+    ],
+)
+def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], said: str) -> None:
+    damage(folder / PART)
+    with pytest.raises(UsageError, match=said) as told:
+        read_data_set(folder)
+    assert str(folder / PART) in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("robot", 1, "robot is 1, expected a name"),
+        ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
+        ("arguments", [], "arguments is"),
+        ("arguments", [{"name": "x"}], "argument {'name': 'x'}, expected name, unit, and numbers lower <= upper"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": 1, "upper": 0}], "expected name, unit, and numbers lower"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),
+    ],
+)
+def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, said: str) -> None:
+    path = folder / "manifest.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
+    with pytest.raises(UsageError, match="not a manifest") as told:
+        read_data_set(folder)
+    assert said in str(told.value)
+
+
+def test_an_episode_that_is_there_twice_would_be_in_training_and_test(folder: Path) -> None:
+    shutil.copy(folder / PART, folder / "part-000006-000012.parquet")
+    with pytest.raises(UsageError, match="holds episode 0 twice"):
+        read_data_set(folder)
+
+
+def test_two_data_sets_of_one_seed_hold_the_same_episodes(folder: Path, tmp_path: Path) -> None:
+    same = read_data_set(folder)
+    longer = read_data_set(make(tmp_path / "longer"))
+    other = read_data_set(make(tmp_path / "other", seed=2))
+    assert len(merge([same, other]).episodes) == 12
+    assert len(np.unique([e.number for e in merge([same, other]).episodes])) == 12
+    for twice in ([same, same], [same, other, longer]):
+        with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 1\)"):
+            merge(twice)

@@ -1,0 +1,239 @@
+"""Benefit trees are learned reproducibly, checked before use, named in provenance, and can be switched off."""
+
+import argparse
+import dataclasses
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from tailor.executive.composition import Order, compose, load_models, provenance, recompose
+from tailor.executive.core.context import Settings
+from tailor.executive.refinement.gate import SITUATION
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.models import runtime
+from tailor.models.cards.card import card_path, read_card, write_card
+from tailor.models.export.gate_publishing import AboutBenefit, publish_benefit, withdraw_benefit
+from tailor.models.training.gate_training import Pairs, TrainedBenefit, train_benefit
+from tailor.models.training.gate_trees import LEARNERS
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import RefinementReport
+from tailor.tools.commands.learn import train
+from tailor.tools.commands.look.verify import verify
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.goldens import renew
+from tailor.tools.main import main
+from tailor.tools.recordings.recorded_run import RecordedRuns
+from tailor.tools.viewer.recorded import timed
+
+KIND = ("approachBall", "dribbleBall")
+TURNED = SITUATION.index("turned_rad")
+
+
+def pairs(seed: int = 0, count: int = 300) -> Pairs:
+    """Refining costs time nine times in ten where it hardly turns the choice."""
+    rng = np.random.default_rng(seed)
+    situations = rng.uniform(0, 1, (count, len(SITUATION)))
+    lost = (situations[:, TURNED] < 0.2) == (rng.uniform(size=count) < 0.9)
+    return Pairs(situations, np.full(count, 10.0), np.where(lost, 10.5, 9.0))
+
+
+def about(models, **changes) -> AboutBenefit:
+    loaded = {**models.durations, **models.successes}
+    made_with = {name: model.card["sha256"] for name, model in loaded.items()}
+    told = AboutBenefit(
+        "agilo", SITUATION, (KIND,), made_with, {"horizon": 2}, {"seed": 1}, "forest", 1, "made by hand"
+    )
+    return dataclasses.replace(told, **changes)
+
+
+@pytest.fixture(scope="module")
+def trained() -> TrainedBenefit:
+    return train_benefit(pairs(), SITUATION, "tree", 1)
+
+
+@pytest.fixture
+def zoo(tmp_path: Path, trained: TrainedBenefit) -> Path:
+    """The shipped models with a tree learned from made-up pairs."""
+    folder = tmp_path / "zoo"
+    shutil.copytree(runtime.ZOO / "agilo", folder / "agilo")
+    publish_benefit(folder, pairs(), trained, about(load_models("agilo", str(folder))))
+    return folder
+
+
+def tree_of(zoo: Path) -> Path:
+    return zoo / "agilo" / "refinement" / "benefit.onnx"
+
+
+@pytest.mark.parametrize("learner", LEARNERS)
+def test_what_can_be_learned_is_learned(learner: str) -> None:
+    trained = train_benefit(pairs(), SITUATION, learner, 1)
+    assert trained.test["right_pct"] > 85
+    assert trained.test["slower_pct"] < trained.test["ungated"]["slower_pct"] / 2
+    assert trained.test["improvement_pct"] >= trained.test["ungated"]["improvement_pct"]
+    assert np.sum(trained.test["confusion"]) == 300
+    assert any("turned_rad" in rule for rule in trained.rules)
+
+
+def test_what_cannot_be_learned_costs_nothing() -> None:
+    rng = np.random.default_rng(0)
+    noise = Pairs(rng.uniform(0, 1, (400, len(SITUATION))), np.full(400, 10.0), rng.normal(9.5, 0.5, 400))
+    test = train_benefit(noise, SITUATION, "forest", 1).test
+    assert test["improvement_pct"] >= test["ungated"]["improvement_pct"] - 0.3
+
+
+def test_training_is_reproducible(tmp_path: Path) -> None:
+    told = about(load_models("agilo"))
+    paths = [
+        publish_benefit(tmp_path / name, pairs(), train_benefit(pairs(), SITUATION, "forest", 1), told)
+        for name in ("one", "other")
+    ]
+    assert len({path.read_bytes() for path in paths}) == 1
+    assert len({card_path(path).read_bytes() for path in paths}) == 1
+
+
+def test_too_few_pairs_or_an_unknown_learner_are_refused() -> None:
+    with pytest.raises(UsageError, match="50 pairs of episodes, expected at least 100"):
+        train_benefit(pairs(count=50), SITUATION, "forest", 1)
+    with pytest.raises(UsageError, match="learner 'oracle' is unknown for benefit"):
+        train_benefit(pairs(), SITUATION, "oracle", 1)
+
+
+def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
+    assert main(["train-benefit", "agilo", "--seed", "999900", "--episodes", "101"]) == 2
+    assert "fresh ones judge" in capsys.readouterr().err
+
+
+def made_up(seed: int, variant: str, greedy_s: float, refined_s: float, situation: np.ndarray) -> Outcome:
+    duration_s = greedy_s if variant == "h1" else refined_s
+    told = (("goToPose", True, 2.0), (KIND[0], False, 3.0), (KIND[1], False, 5.0))
+    seen = tuple(situation) if variant == "h2" else ()
+    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (), foreseen=told,
+                   situation=seen)  # fmt: skip
+
+
+def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes(tmp_path, monkeypatch, capsys) -> None:
+    known, ran = pairs(), []
+
+    def run_all(task, variants, seeds, jobs, store, title):
+        ran.extend(variants)
+        rows = list(zip(seeds, known.greedy_s, known.refined_s, known.situations, strict=True))
+        return {v.name: {row[0]: made_up(row[0], v.name, *row[1:]) for row in rows} for v in variants}
+
+    monkeypatch.setattr("tailor.tools.evaluations.trials.run_all", run_all)
+    shutil.copytree(runtime.ZOO / "agilo", tmp_path / "agilo")
+    words = ["agilo", "--episodes", "300", "--zoo", str(tmp_path), "--learner", "tree"]
+    assert main(["train-benefit", *words]) == 0
+    assert "slower episodes" in capsys.readouterr().out
+    assert [(v.refinement.horizon, v.refinement.benefit_gate) for v in ran] == [(1, False), (2, False)]
+    tree = load_models("agilo", str(tmp_path), gated=True).benefit
+    assert tree.sequences == {KIND}  # the detour is left out
+    assert tree.card["episodes"]["seed"] < tree.card["episodes"]["seed"] + 300 <= 1_000_000
+    assert "refinement/benefit" not in tree.card["models"]
+    again = tree.card["command"].split()[1:]
+    assert main([*again, "--zoo", str(tmp_path)]) == 0  # the card's command makes the same bytes
+    assert load_models("agilo", str(tmp_path), gated=True).benefit.card["sha256"] == tree.card["sha256"]
+
+
+def test_a_published_tree_says_what_its_learner_said(zoo: Path, trained: TrainedBenefit) -> None:
+    tree = load_models("agilo", str(zoo), gated=True).benefit
+    fresh = pairs(1).situations
+    assert tree.slower(fresh) == pytest.approx(trained.trees.risk(fresh), abs=1e-6)
+    assert tree.sequences == {KIND}
+    assert np.isnan(tree.slower(np.full((1, len(SITUATION)), np.nan)))[0]
+
+
+def test_a_zoo_without_a_tree_has_none_and_a_gate_that_is_off_loads_none(zoo: Path) -> None:
+    assert load_models("powercube", gated=True).benefit is None
+    assert load_models("agilo", str(zoo), gated=False).benefit is None
+
+
+def test_a_tree_that_was_learned_with_other_models_is_refused(zoo: Path) -> None:
+    card = read_card(card_path(tree_of(zoo)))
+    write_card(card_path(tree_of(zoo)), {**card, "models": {**card["models"], "dribbleBall/duration": "0" * 64}})
+    with pytest.raises(UsageError, match=r"learned when dribbleBall/duration was 0{12}.*train-benefit.*benefit_gate"):
+        load_models("agilo", str(zoo), gated=True)
+    assert load_models("agilo", str(zoo), gated=False).benefit is None
+    assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 1
+
+
+@pytest.mark.parametrize("gone", ["benefit.onnx", "benefit.card.json"])
+def test_a_tree_without_its_card_or_a_card_without_its_tree_is_refused(zoo: Path, gone: str) -> None:
+    tree_of(zoo).with_name(gone).unlink()
+    with pytest.raises(UsageError, match="no such file"):
+        load_models("agilo", str(zoo), gated=True)
+
+
+def test_a_flipped_bit_of_the_tree_is_refused(zoo: Path) -> None:
+    content = bytearray(tree_of(zoo).read_bytes())
+    content[len(content) // 2] ^= 1
+    tree_of(zoo).write_bytes(content)
+    with pytest.raises(UsageError, match="sha256"):
+        load_models("agilo", str(zoo), gated=True)
+
+
+def test_a_tree_that_asks_for_something_else_is_refused(zoo: Path, trained: TrainedBenefit) -> None:
+    publish_benefit(zoo, pairs(), trained, about(load_models("agilo", str(zoo)), names=("luck", *SITUATION[1:])))
+    with pytest.raises(UsageError, match=r"asks for luck.*expected gain_s"):
+        load_models("agilo", str(zoo), gated=True)
+
+
+def test_models_commands_know_the_tree(zoo: Path, capsys) -> None:
+    assert main(["models", "list", "--zoo", str(zoo), "--json"]) == 0
+    listed = {row["model"]: row for row in json.loads(capsys.readouterr().out)}
+    assert "% right" in listed["agilo/refinement/benefit"]["test"]
+    assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 0
+    assert main(["models", "rules", "agilo/refinement", "--zoo", str(zoo)]) == 0
+    assert "then refining risks" in capsys.readouterr().out
+    assert main(["models", "show", "agilo/refinement", "--zoo", str(zoo)]) == 0
+    assert "outputs: [slower]" in capsys.readouterr().out
+
+
+def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
+    assert withdraw_benefit(zoo, "agilo")
+    assert load_models("agilo", str(zoo), gated=True).benefit is None
+    assert not withdraw_benefit(zoo, "agilo")
+
+
+def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(zoo: Path) -> None:
+    console = Console(record=True, width=200)
+    train._withdraw(argparse.Namespace(zoo=zoo, robot="agilo"), console)
+    assert not tree_of(zoo).exists()
+    assert "`tailor train-benefit agilo` makes it" in console.export_text()
+
+
+def gated_order(zoo: Path, gate: bool = True) -> Order:
+    settings = Settings(seed=4, refinement=RefinementSettings(benefit_gate=gate))
+    return Order("soccer", "approach-dribble", settings, str(zoo))
+
+
+def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_without(zoo: Path) -> None:
+    with_tree = provenance(order := gated_order(zoo), compose(order, "ab" * 16))
+    without = provenance(order := gated_order(zoo, gate=False), compose(order, "ab" * 16))
+    assert with_tree["models"]["refinement/benefit"] == read_card(card_path(tree_of(zoo)))["sha256"]
+    assert recompose(with_tree).models.benefit is not None
+    assert recompose(without).models.benefit is None
+    del without["order"]["settings"]["refinement"]["benefit_gate"]  # recorded before there were trees
+    assert recompose(without).models.benefit is None
+    withdraw_benefit(zoo, "agilo")
+    with pytest.raises(UsageError, match="refinement/benefit is missing"):
+        recompose(with_tree)
+
+
+def test_a_run_that_was_advised_verifies_bit_for_bit(zoo: Path, tmp_path: Path, monkeypatch) -> None:
+    fearful = read_card(card_path(tree_of(zoo)))
+    write_card(card_path(tree_of(zoo)), {**fearful, "threshold": 0.0})  # always keeps greedy
+    monkeypatch.setattr(renew, "Order", lambda *words: dataclasses.replace(Order(*words), zoo=str(zoo)))
+    renew.record(renew.Golden("soccer", "approach-dribble", 2), tmp_path / "run.mcap")
+    runs = RecordedRuns(tmp_path / "run.mcap")
+    said = [m.message for m in _reports(tmp_path / "run.mcap")]
+    assert any(report.kept_greedy for report in said)
+    verdict = verify(runs, runs.runs[0], recompose(runs.runs[0].provenance))
+    assert verdict.difference is None
+
+
+def _reports(path: Path):
+    return [t for t in timed(path, "") if isinstance(t.message, RefinementReport)]

@@ -1,0 +1,197 @@
+"""A model is used only if bytes, card and answers agree; what is refused is told with both sides named."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tailor.executive.composition import load_models
+from tailor.models import runtime
+from tailor.models.cards.card import card_path, read_card, sha256_of, write_card
+from tailor.models.features.features import projective
+from tailor.schemas.errors import UsageError
+from tailor.tools.main import main
+
+SHIPPED = runtime.ZOO / "agilo"
+
+
+@pytest.fixture
+def zoo(tmp_path: Path) -> Path:
+    shutil.copytree(runtime.ZOO, tmp_path / "zoo")
+    return tmp_path / "zoo"
+
+
+def duration(zoo: Path) -> Path:
+    return zoo / "agilo" / "goToPose" / "duration.onnx"
+
+
+def changed_card(path: Path, **changes: object) -> None:
+    write_card(card_path(path), {**read_card(card_path(path)), **changes})
+
+
+def test_all_shipped_models_load_and_name_their_makers() -> None:
+    durations, successes = runtime.load_robot("agilo")
+    assert set(durations) >= {"goToPose/duration", "approachBall/duration", "dribbleBall/duration"}
+    assert {name.split("/")[1] for name in durations} <= {"duration", "energy"}
+    assert set(successes) == {"approachBall/success"}
+    for model in (*durations.values(), *successes.values()):
+        assert model.card["episodes"]["count"] >= 1000
+        assert model.card["command"].startswith("tailor gather agilo")
+        assert len(model.card["golden"]["arguments"]) == 32
+
+
+def test_a_model_loads_by_name_too() -> None:
+    model = runtime.load_model("agilo/goToPose/duration")
+    mean, std = model.predict(np.array([[0, 0, 0, 0, 2.0, 0, 0, 0], [0, 0, np.nan, 0, 2, 0, 0, 0]]))
+    assert 2 < mean[0] < 8
+    assert std[0] >= 0
+    assert np.isnan([mean[1], std[1]]).all()
+
+
+def test_an_answer_out_of_range_is_invalid() -> None:
+    model = runtime.load_model("agilo/goToPose/duration")
+    narrow = runtime.OnnxDuration(model.session, model.card, 0.0, 0.1)
+    assert np.isnan(narrow.predict(np.array([[0, 0, 0, 0, 2.0, 0, 0, 0]]))[0]).all()
+
+
+def test_probability_of_what_is_not_a_number_is_invalid() -> None:
+    model = runtime.load_model("agilo/approachBall/success")
+    assert np.isnan(model.probability(np.array([[0, 0, np.nan, 0, 2.0, 0, 0, 0]]))).all()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_flipped_bit_is_refused(zoo: Path, seed: int) -> None:
+    content = bytearray(duration(zoo).read_bytes())
+    rng = np.random.default_rng(seed)
+    content[rng.integers(len(content))] ^= 1 << rng.integers(8)
+    duration(zoo).write_bytes(content)
+    with pytest.raises(UsageError, match=r"sha256 is \w{12}…, expected \w{12}… by its card"):
+        runtime.load_robot("agilo", zoo)
+
+
+def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -> None:
+    content = duration(zoo).read_bytes()[:-2000]
+    duration(zoo).write_bytes(content)
+    changed_card(duration(zoo), sha256=sha256_of(content))
+    with pytest.raises(UsageError, match="not a model that runs here"):
+        runtime.load_model(duration(zoo))
+
+
+def test_a_model_of_another_robot_is_refused(zoo: Path) -> None:
+    shutil.copytree(zoo / "agilo", zoo / "b21")
+    with pytest.raises(UsageError, match=r"model of agilo/\w+/duration, expected b21/\w+/duration"):
+        runtime.load_robot("b21", zoo)
+
+
+def test_a_model_of_another_action_is_refused(zoo: Path) -> None:
+    shutil.copytree(zoo / "agilo" / "dribbleBall", zoo / "agilo" / "reach")
+    with pytest.raises(UsageError, match="agilo/dribbleBall/duration, expected agilo/reach/duration"):
+        runtime.load_robot("agilo", zoo)
+
+
+@pytest.mark.parametrize(("key", "value"), [("robot", "b21"), ("features", "relative"), ("action", "reach")])
+def test_a_card_of_another_model_is_refused(zoo: Path, key: str, value: str) -> None:
+    changed_card(duration(zoo), **{key: value})
+    with pytest.raises(UsageError, match=f"the model's {key} is '.*', expected '{value}' by its card"):
+        runtime.load_model(duration(zoo))
+
+
+def test_ranges_that_the_model_has_not_seen_are_refused(zoo: Path) -> None:
+    runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.6)}})
+    with pytest.raises(UsageError, match=r"vg was learned in \[0, 0.6\] m/s, expected to cover \[0, 0.9\]"):
+        runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.9)}})
+    with pytest.raises(UsageError, match="knows no argument 'z'"):
+        runtime.load_robot("agilo", zoo, {"goToPose": {"z": (0.0, 0.9)}})
+
+
+def test_a_model_that_answers_otherwise_than_its_card_says_is_refused(zoo: Path) -> None:
+    golden = dict(read_card(card_path(duration(zoo)))["golden"])
+    golden["mean_s"] = [value + (0.001 if k == 5 else 0) for k, value in enumerate(golden["mean_s"])]
+    changed_card(duration(zoo), golden=golden)
+    with pytest.raises(UsageError, match="golden example 5 gives mean_s"):
+        runtime.load_model(duration(zoo))
+
+
+@pytest.mark.parametrize("gone", ["duration.onnx", "duration.card.json"])
+def test_a_model_without_its_card_or_a_card_without_its_model_is_refused(zoo: Path, gone: str) -> None:
+    (zoo / "agilo" / "goToPose" / gone).unlink()
+    with pytest.raises(UsageError, match="no such file"):
+        runtime.load_robot("agilo", zoo)
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"format": 99}', json.dumps({"format": 1, "robot": "agilo"}), "\x00"])
+def test_a_broken_card_is_refused(zoo: Path, content: str) -> None:
+    card_path(duration(zoo)).write_text(content)
+    with pytest.raises(UsageError, match="card"):
+        runtime.load_robot("agilo", zoo)
+
+
+NUMBERS = [0.5] * 32
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("arguments", "x", "arguments is 'x', expected a list"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": "a", "upper": 1}], "expected name, unit, and numbers"),
+        ("golden", "x", "golden is 'x', expected an object"),
+        ("golden", {"arguments": [], "mean_s": [], "std_s": []}, "golden arguments are"),
+        ("golden", {"arguments": [[1]] * 32, "mean_s": NUMBERS, "std_s": NUMBERS}, "expected rows of 8 numbers"),
+        ("golden", {"arguments": [[0] * 8] * 32, "mean_s": NUMBERS[:2], "std_s": NUMBERS}, "golden mean_s is"),
+        ("golden", {"arguments": [[0] * 8] * 32, "std_s": NUMBERS}, "golden mean_s is None, expected 32 numbers"),
+        ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'std_s']"),
+        ("output_range", [60, 0], "output_range is [60, 0], expected two numbers"),
+        ("output_range", [float("nan"), 1], "output_range is [nan, 1]"),
+        ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success, benefit"),
+        ("sha256", None, "sha256 is None, expected text"),
+        ("test", {}, "test's mae_s is None, expected a number"),
+        ("learner", None, "learner is None, expected an object"),
+        ("feature_units", None, "feature_units is None, expected an object"),
+    ],
+)
+def test_a_card_whose_parts_are_of_another_shape_is_refused(zoo: Path, key: str, value: object, said: str) -> None:
+    changed_card(duration(zoo), **{key: value})
+    with pytest.raises(UsageError, match="card's") as told:
+        runtime.load_model(duration(zoo))
+    assert said in str(told.value)
+
+
+def test_a_success_model_without_its_threshold_is_refused(zoo: Path) -> None:
+    path = zoo / "agilo" / "approachBall" / "success.onnx"
+    changed_card(path, threshold="high")
+    with pytest.raises(UsageError, match="threshold is 'high', expected a number"):
+        runtime.load_model(path)
+
+
+def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: Path) -> None:
+    """The executive, and whatever else composes models, asks the domain for the ranges."""
+    arguments = read_card(card_path(duration(zoo)))["arguments"]
+    changed_card(duration(zoo), arguments=[{**a, **({"upper": 0.2} if a["name"] == "vg" else {})} for a in arguments])
+    with pytest.raises(UsageError, match=r"vg was learned in \[0, 0.2\] m/s, expected to cover \[0, 0.6\]"):
+        load_models("agilo", str(zoo))
+    assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
+
+
+def test_an_oversized_card_is_refused_before_it_is_read(zoo: Path) -> None:
+    with card_path(duration(zoo)).open("wb") as file:
+        file.truncate(1 << 30)
+    with pytest.raises(UsageError, match="expected at most"):
+        runtime.load_robot("agilo", zoo)
+
+
+@pytest.mark.parametrize("name", ["../../etc/passwd", "agilo/goToPose", "agilo/../duration", "agilo/goToPose/x"])
+def test_a_name_cannot_leave_the_zoo(name: str) -> None:
+    with pytest.raises(UsageError, match="names no model"):
+        runtime.load_model(name)
+
+
+def test_an_unknown_robot_is_told_with_those_that_there_are() -> None:
+    with pytest.raises(UsageError, match=r"no action models for robot 'r2d2'.*agilo"):
+        runtime.load_robot("r2d2")
+
+
+def test_golden_examples_hold_the_degenerate_case() -> None:
+    golden = np.array(read_card(SHIPPED / "goToPose" / "duration.card.json")["golden"]["arguments"])
+    assert projective(golden)[-1, 2] == 0

@@ -1,0 +1,107 @@
+"""Episodes to a model that is published and loaded again, on a kinematic stand-in."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.models import runtime
+from tailor.models.episodes.episodes import DataSet, Episode
+from tailor.models.episodes.regression_targets import ENERGY
+from tailor.models.export.publishing import Publication, publish
+from tailor.models.export.zoo_writer import place
+from tailor.models.features import features
+from tailor.models.training.training import Trained, train_amount, train_duration, train_success
+from tailor.schemas.errors import UsageError
+from tests.support import standin
+
+ARGUMENTS = [
+    {"name": q.name, "unit": q.unit, "lower": -4.0, "upper": 4.0} for q in features.SPACES["projective"].arguments
+]
+
+
+def data_set(count: int, seed: int = 1) -> DataSet:
+    made = standin.episodes(count, seed)
+    episodes = tuple(Episode(k, t[0], t, d, ok, "" if ok else "ball") for k, (t, d, ok) in enumerate(made))
+    return DataSet({"robot": "toy", "action": "goToPose", "arguments": ARGUMENTS}, episodes, "0" * 64)
+
+
+def test_a_model_that_cannot_be_written_whole_leaves_the_one_that_was_there(tmp_path, monkeypatch) -> None:
+    card = {"robot": "toy", "action": "goToPose", "kind": "duration"}
+    path = place(tmp_path, b"old", card)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("tailor.models.export.zoo_writer.write_card", full)
+    with pytest.raises(OSError, match="No space"):
+        place(tmp_path, b"new", card)
+    assert path.read_bytes() == b"old"
+    assert sorted(file.name for file in path.parent.iterdir()) == ["duration.card.json", "duration.onnx"]
+
+
+@pytest.fixture(scope="module")
+def data() -> DataSet:
+    return data_set(240)
+
+
+@pytest.fixture(scope="module")
+def duration(data: DataSet) -> Trained:
+    return train_duration(data.episodes, features.projective, "linear", seed=3)
+
+
+def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
+    about = Publication("duration", "linear", features.projective, 3, "tailor train toy")
+    model = runtime.load_model(publish(tmp_path, data, duration, about))
+    arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
+    mean, std = model.predict(arguments)
+    expected = duration.learner.predict_spread(features.projective(arguments))
+    assert np.abs(mean - expected[0]).max() <= 1e-4
+    assert np.abs(std - expected[1]).max() <= 1e-4
+    assert model.card["test"]["mae_s"] < 0.3 * model.card["test"]["mean_duration_s"]
+
+
+def test_training_twice_gives_the_same_bits(data, duration) -> None:
+    again = train_duration(data.episodes, features.projective, "linear", seed=3)
+    assert again.test == duration.test
+    rows = features.projective(data.episodes[0].ticks)
+    assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
+
+
+def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
+    trained = train_success(data.episodes, features.projective, "tree", seed=3)
+    about = Publication("success", "tree", features.projective, 3, "tailor train toy")
+    model = runtime.load_model(publish(tmp_path, data, trained, about))
+    fresh = data_set(300, seed=8)
+    probability = model.probability(np.stack([e.ticks[0] for e in fresh.episodes]))
+    observed = np.array([e.success for e in fresh.episodes])
+    missed = (probability >= model.threshold) & ~observed
+    assert missed.sum() < 0.3 * (~observed).sum()
+
+
+def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
+    ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
+    told = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
+    trained = train_amount(ENERGY, told, features.projective, "linear", seed=3)
+    about = Publication("energy", "linear", features.projective, 3, "tailor train toy")
+    publish(tmp_path, replace(data, episodes=told), trained, about)
+    model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
+    assert model.card["outputs"] == ["mean_j", "std_j"]
+    assert model.card["test"]["mae_j"] < 0.3 * model.card["test"]["mean_energy_j"]
+    arguments = np.stack([e.ticks[0] for e in told[:50]])
+    assert np.abs(model.predict(arguments)[0] - trained.learner.predict(features.projective(arguments))).max() <= 1e-4
+    with pytest.raises(UsageError, match="0 finished episodes, expected at least 40"):
+        train_amount(ENERGY, data.episodes, features.projective, "linear", seed=3)
+
+
+def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data) -> None:
+    chosen = [replace(e, on_policy=e.number % 4 > 0) for e in data.episodes]
+    test = train_duration(chosen, features.projective, "linear", seed=3).test
+    assert test["interval90_on"] == "on-policy"
+    assert test["interval90_n"] >= 30
+    assert test["interval90_random_factor"] > 0
+
+
+def test_too_few_episodes_are_told_not_trained_on(data) -> None:
+    with pytest.raises(UsageError, match="10 finished episodes, expected at least 40"):
+        train_duration(data.episodes[:10], features.projective, "bag", seed=3)

@@ -1,0 +1,111 @@
+"""What goes to an external planner and what comes back: a problem as PDDL, and a plan whose links are completed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tailor.executive import domains
+from tailor.executive.planning import (
+    Link,
+    Literal,
+    completed,
+    format_links,
+    format_plan,
+    format_problem,
+    parse_domain,
+    parse_plan,
+    parse_problem,
+    validate,
+)
+from tailor.executive.planning.plans.links import links_of
+from tests.support.planning_problems import DATA, OWN, own, printed, read, solve
+
+RICH_DOMAIN = """(define (domain rich) (:requirements :typing :fluents :timed-initial-literals :durative-actions)
+  (:types cup plate - thing robot) (:constants dock - object)
+  (:predicates (open ?x) (washed ?t - thing)) (:functions (time-for ?t - thing))
+  (:durative-action wash :parameters (?t - thing) :duration (= ?duration (time-for ?t))
+    :condition (over all (open dock)) :effect (at end (washed ?t))))"""
+RICH_PROBLEM = """(define (problem much) (:domain rich)
+  (:objects c - cup x - (either cup plate) r - robot y)
+  (:init (open dock) (= (time-for c) 2.25) (= (time-for x) 3) (at 50.5 (not (open dock))) (at 60 (open dock)))
+  (:goal (and (washed c) (not (washed x)) (exists (?t - thing) (washed ?t)))) (:metric minimize (total-time)))"""
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_a_problem_reads_back_as_itself(name):
+    domain, problem = own(name)
+    assert parse_problem(format_problem(problem), domain) == problem
+
+
+def test_types_values_timed_literals_and_the_metric_are_written_too():
+    domain, problem = read(RICH_DOMAIN, RICH_PROBLEM)
+    assert len(problem.timed) == 2
+    assert parse_problem(format_problem(problem), domain) == problem
+
+
+@pytest.mark.parametrize("name", domains.DOMAINS)
+def test_every_scenario_of_every_domain_can_be_asked(name):
+    loaded = domains.load(name)
+    domain = parse_domain(loaded.pddl)
+    for scenario in domains.scenarios(name)[:8]:
+        problem = parse_problem(domains.seeded_scenario(name, scenario, 0)[0].problem, domain)
+        assert parse_problem(format_problem(problem), domain) == problem
+
+
+@pytest.mark.parametrize("name", [name for name in OWN if "durative" not in name])
+def test_a_plain_plan_gets_a_sound_link_for_every_condition(name):
+    domain, problem = own(name)
+    whole = solve(domain, problem).plan
+    linked = completed(parse_plan(format_plan(whole)), domain, problem)
+    assert validate(linked, domain, problem) == ""
+    assert supported(linked) == supported(whole)
+
+
+def supported(plan):
+    """What each action has a link for; the plain form numbers its steps anew."""
+    actions = {step.id: step.action for step in plan.steps}
+    return {(link.literal, actions.get(link.consumer)) for link in plan.links}
+
+
+def test_links_from_static_facts_are_added_and_the_planners_own_stand():
+    loaded = domains.load("soccer")
+    domain = parse_domain(loaded.pddl)
+    problem = parse_problem(domains.seeded_scenario("soccer", "waypoints", 0)[0].problem, domain)
+    whole = solve(domain, problem).plan
+    changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
+    static = [link for link in whole.links if link.literal.fact[0] not in changing]
+    assert static, "else this test proves nothing"
+    bare = replace(whole, links=tuple(link for link in whole.links if link not in static))
+    linked = completed(parse_plan(format_links(bare)), domain, problem)
+    assert set(linked.links) == set(whole.links)
+    assert linked.orderings == whole.orderings
+    assert linked.initial == problem.initial
+
+
+@pytest.mark.parametrize("path", sorted((DATA / "vhpop-output").glob("*.txt")), ids=lambda path: path.stem)
+def test_every_plan_that_the_original_printed_is_believed_keeps_its_links_and_gets_those_that_it_lacks(path):
+    domain, problem = own(path.name.split(".")[0])
+    plan = parse_plan(path.read_text())
+    linked = completed(plan, domain, problem)
+    assert validate(linked, domain, problem) == ""
+    assert set(plan.links) <= set(linked.links)
+    needed = links_of(replace(linked, links=()), domain, problem)
+    assert {(x.literal, x.consumer) for x in needed} <= {(x.literal, x.consumer) for x in linked.links}
+
+
+def test_a_link_that_is_neither_there_nor_static_makes_all_of_them_anew():
+    domain, problem = own("kitchen-s1")
+    whole = parse_plan(printed("kitchen-s1.ground.links"))
+    linked = completed(replace(whole, links=whole.links[1:]), domain, problem)
+    assert {(x.literal, x.consumer) for x in linked.links} >= {(x.literal, x.consumer) for x in whole.links}
+    assert validate(linked, domain, problem) == ""
+
+
+def test_an_unsound_plan_stays_out_and_the_reason_is_told():
+    domain, problem = own("kitchen-s1")
+    whole = parse_plan(printed("kitchen-s1.ground.links"))
+    assert "lacks a condition" in completed(replace(whole, steps=whole.steps[1:], links=()), domain, problem)
+    wrong = Link(0, Literal(("holding", "r1", "cup1")), whole.steps[0].id)
+    assert "causal link" in completed(replace(whole, links=(*whole.links, wrong)), domain, problem)

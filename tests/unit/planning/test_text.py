@@ -1,0 +1,87 @@
+"""Plans as text: VHPOP's forms written and read, and bad text refused with its line."""
+
+import pytest
+
+from tailor.executive.planning import (
+    GOAL,
+    Link,
+    Literal,
+    PlanTextError,
+    Settings,
+    format_links,
+    format_plan,
+    parse_plan,
+)
+from tests.support.planning_problems import OWN, own, printed, solve
+
+FIGURE_10 = """Initial 0 : (robot pos1) (ball pos2) (final pos3)
+
+Step 2   : (approachball pos1 pos2)
+          0  -> (ball pos2)
+          0  -> (robot pos1)
+
+Step 1   : (dribbleball pos2 pos3)
+          2  -> (atball pos2)
+
+Goal     :
+          0  -> (final pos3)
+          1  -> (atball pos3)
+"""
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_is_written_is_read_back_as_the_same_plan(name):
+    plan = solve(*own(name)).plan
+    assert parse_plan(format_links(plan)) == plan
+
+
+def test_plain_form_keeps_times_and_durations():
+    plan = parse_plan(format_plan(solve(*own("soccer-durative-p1")).plan))
+    assert [(step.start, step.duration) for step in plan.steps] == [(0.01, 3), (3.02, 1), (4.03, 5), (9.04, 5)]
+    assert plan.durative
+
+
+def test_the_papers_figure_10_is_read():
+    plan = parse_plan(FIGURE_10 + "orderings = { 2<1 }\n")
+    assert plan.initial == (("robot", "pos1"), ("ball", "pos2"), ("final", "pos3"))
+    assert [step.action for step in plan.steps] == [("approachball", "pos1", "pos2"), ("dribbleball", "pos2", "pos3")]
+    assert plan.links_to(1) == (Link(2, Literal(("atball", "pos2")), 1),)
+    assert plan.links_to(GOAL)[0] == Link(0, Literal(("final", "pos3")), GOAL)
+
+
+def test_lifted_plan_prints_its_bindings_as_the_original_does():
+    plan = solve(*own("soccer-p1"), Settings(ground=False)).plan
+    assert format_links(plan) == printed("soccer-p1.lifted.links")
+
+
+def test_negated_literals_survive():
+    text = ";p\nInitial  : (a)\n\nGoal     : \n          0   -> (not (b x))\norderings = { }\n"
+    plan = parse_plan(text)
+    assert plan.links == (Link(0, Literal(("b", "x"), False), GOAL),)
+    assert format_links(plan) == text
+
+
+def test_an_empty_plan_has_a_goal_and_nothing_else():
+    assert parse_plan(";p\nInitial  : (a)\n\nGoal     : \norderings = { }\n").steps == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "there is no plan"),
+        (";p\nno plan\n", "line 2: expected a step"),
+        (";p\n1:(move a b\n", "line 2: expected a step"),
+        ("Step 1   : (a)\nStep 1   : (b)\nGoal     : \n", "line 2: step 1 stands there twice"),
+        ("          0   -> (a)\n", "line 1: a causal link before any step"),
+        ("Step 1   : (a)\n          7   -> (b)\nGoal     : \n", "7 and 1 are linked or ordered"),
+        ("Step 1   : (a)\nStep 2   : (b)\nGoal     : \norderings = { 1<2 2<1 }\n", "circle"),
+        ("Step 1   : (a)\nGoal     : \norderings = \n  0 inf\n", "expected a 3 x 3 table"),
+        ("x" * 2_000_000, "longer than"),
+        ("1:(a)\n" * 300, "more than 200 steps"),
+        ("Step 1   : (a)\nGoal     : \norderings = \n  0\ntolerance = soon\n", "line 5"),
+    ],
+)
+def test_bad_text_is_refused_with_its_line(text, message):
+    with pytest.raises(PlanTextError) as caught:
+        parse_plan(text)
+    assert message in str(caught.value)

@@ -1,0 +1,44 @@
+"""The alternatives of a subgoal are what the objective says of them, and greedy is told apart from refined."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.refinement.alternatives import alternatives
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.refinement import Refinement
+from tests.support.synthetic_models import MODELS, approach_dribble
+
+SETTINGS = RefinementSettings(k_std=0.0, arrival_spread=(), risk_cost_s=0.0)
+
+
+def test_alternatives_agree_with_the_choice():
+    given = approach_dribble()
+    search = Refinement(given, MODELS, SETTINGS, np.random.default_rng(0))
+    search.advance(CheckBudget(500))
+    angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
+    said = alternatives(given, search.choice.values, MODELS, SETTINGS, angle, 721)
+    assert said.durations_s.shape == (2, 721)
+    valid = np.isfinite(said.total_s)
+    np.testing.assert_allclose(said.durations_s.sum(axis=0)[valid], said.total_s[valid])
+    assert said.total_s.min() >= search.choice.total_s - 1e-9
+    assert said.best == pytest.approx(search.choice.values[angle], abs=0.02)
+
+
+def test_greedy_alternative_is_what_horizon_one_chooses():
+    given = approach_dribble((1.0, -1.5, 1.5))
+    alone = Refinement(given, MODELS, replace(SETTINGS, horizon=1), np.random.default_rng(0))
+    alone.advance(CheckBudget(500))
+    angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
+    said = alternatives(given, alone.choice.values, MODELS, SETTINGS, angle, 721)
+    assert said.greedy == pytest.approx(alone.choice.values[angle], abs=0.02)
+    assert said.best != pytest.approx(said.greedy, abs=0.05)
+
+
+def test_bound_variable_has_no_alternatives():
+    with pytest.raises(KeyError):
+        alternatives(approach_dribble(), {}, MODELS, SETTINGS, 0)

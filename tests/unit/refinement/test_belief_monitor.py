@@ -1,0 +1,103 @@
+"""A watched sequence notices exactly what instantiating the plan anew would show, and looks up less."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tailor.executive.library import Conflict, Interval
+from tailor.executive.refinement.belief_monitor import Watch
+from tailor.executive.refinement.instantiation import Failure, Pattern, instantiate
+from tailor.executive.refinement.objective.sequence import InstantiatedAction
+from tests.support.synthetic_models import LIBRARY
+from tests.unit.refinement.test_instantiation import paper_plan
+
+TOLERANCES = {"x": 0.1, "y": 0.1, "phi": 0.2, "xg": 0.1, "yg": 0.1}
+
+
+def tolerant(action):
+    parameters = (replace(parameter, tolerance=TOLERANCES.get(parameter.name)) for parameter in action.parameters)
+    return replace(action, parameters=tuple(parameters))
+
+
+@dataclass
+class ShiftingDomain:
+    """The belief gives x and y of the robot and of the ball, which has not been seen if it has none, and a heading."""
+
+    actions: dict[str, Any] = field(default_factory=lambda: {name: tolerant(LIBRARY[name]) for name in LIBRARY})
+    executables: dict[str, str] = field(
+        default_factory=lambda: {"approachball": "approachBall", "dribbleball": "dribbleBall"}
+    )
+    asked: int = 0
+
+    def value(self, quantity, label, holds, achieved, belief, scenario):
+        self.asked += 1
+        for fact in holds:
+            if fact[0] == "ball" and belief["ball"] is None:
+                raise Conflict("the ball has not been seen")
+            known = belief.get(fact[0])
+            if known is not None and quantity in known:
+                return Interval(known[quantity], known[quantity])
+        return Interval(-belief["width"], belief["width"]) if quantity == "phi" else None
+
+
+def places_moved_by_definition(plan, domain, then, belief):
+    """Instantiate anew and compare every value that has a tolerance."""
+    now = instantiate(plan, domain, belief, None)
+    if isinstance(now, Failure):
+        return False
+    current = {(a.step, a.action.name): a for a in now.actions}
+    for action in then.actions:
+        other = current.get((action.step, action.action.name))
+        for parameter, old_id, new_id in zip(action.action.parameters, action.variables, other.variables, strict=True):
+            old, new = then.variables[old_id].value, now.variables[new_id].value
+            if None not in (parameter.tolerance, old, new) and abs(old - new) > parameter.tolerance:
+                return True
+    return False
+
+
+places = st.fixed_dictionaries({"x": st.sampled_from([0.0, 0.09, 0.11, 3.0]), "y": st.sampled_from([0.0, 0.05, 1.0])})
+beliefs = st.fixed_dictionaries(
+    {"robot": places, "ball": st.none() | places, "final": st.just({"x": 1.0}), "width": st.sampled_from([0.0, 2.0])}
+)
+START = {"robot": {"x": 0.0, "y": 0.0}, "ball": {"x": 3.0, "y": 0.0}, "final": {"x": 1.0}, "width": 0.0}
+
+
+@given(belief=beliefs)
+def test_watch_says_what_a_new_instantiation_would(belief):
+    plan, domain = paper_plan(), ShiftingDomain()
+    then = instantiate(plan, domain, START, None)
+    watch = Watch(Pattern(plan, domain, None), then)
+    assert watch.moved(belief) == places_moved_by_definition(plan, domain, then, belief)
+
+
+def test_watch_notices_a_moved_ball_but_not_one_that_is_out_of_sight():
+    plan, domain = paper_plan(), ShiftingDomain()
+    watch = Watch(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
+    assert not watch.moved(START)
+    assert watch.moved({**START, "ball": {"x": 3.0, "y": 0.2}})
+    assert not watch.moved({**START, "ball": None})
+
+
+def test_watch_asks_for_no_more_than_the_values_with_a_tolerance():
+    plan, domain = paper_plan(), ShiftingDomain()
+    sequence = instantiate(plan, domain, START, None)
+    watch, domain.asked = Watch(Pattern(plan, domain, None), sequence), 0
+    watch.moved(START)
+    watched = {
+        v for a in sequence.actions for p, v in zip(a.action.parameters, a.variables, strict=True) if p.tolerance
+    }
+    assert 0 < domain.asked <= len(watched) < len(sequence.variables)
+
+
+def test_a_detour_is_not_watched():
+    plan, domain = paper_plan(), ShiftingDomain()
+    pattern = Pattern(plan, domain, None)
+    sequence = pattern.sequence(START)
+    first = sequence.actions[0]
+    detour = InstantiatedAction(replace(first.action, name="goToPose"), first.step, first.variables, asserted=True)
+    alone = replace(sequence, actions=(detour,))
+    assert not Watch(pattern, alone).moved({**START, "ball": {"x": 9.0, "y": 9.0}})

@@ -1,0 +1,147 @@
+"""When not to refine: the tree's advice is followed where it holds, told, and judged by what it did."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.refinement.gate import SITUATION, situation
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.refinement import Refinement
+from tailor.schemas.messages import RefinementReport
+from tailor.tools.commands.learn.train_gate import pairs_of
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.refinement import gate as judging
+from tailor.tools.evaluations.refinement import gate_ceiling
+from tailor.tools.viewer.wording import advice
+from tests.support.synthetic_models import MODELS, approach_dribble
+
+KIND = ("approachBall", "dribbleBall")
+
+
+@dataclasses.dataclass(frozen=True)
+class Advisor:
+    """Says the same of every situation, and keeps them."""
+
+    probability: float
+    sequences: frozenset[tuple[str, ...]] = frozenset({KIND})
+    asks: tuple[str, ...] = SITUATION
+    threshold: float = 0.5
+    heard: list[tuple[float, ...]] = dataclasses.field(default_factory=list)
+
+    def slower(self, situations):
+        self.heard.extend(map(tuple, situations.tolist()))
+        return np.full(len(situations), self.probability)
+
+
+def searched(benefit, slices: int = 1, horizon: int = 2) -> Refinement:
+    models = dataclasses.replace(MODELS, benefit=benefit)
+    settings = RefinementSettings(horizon=horizon, arrival_spread=())
+    search = Refinement(approach_dribble((3.0, 0.0, 0.0)), models, settings, np.random.default_rng(3))
+    while not search.finished:
+        search.advance(CheckBudget(10_000 // slices))
+    return search
+
+
+def test_a_tree_that_fears_a_loss_keeps_the_greedy_choice_searched_out_as_a_horizon_of_one_does() -> None:
+    free, kept = searched(None), searched(Advisor(0.9))
+    assert free.choice.total_s < kept.choice.total_s  # the refined choice is better by the models
+    alone = searched(None, horizon=1).choice
+    assert kept.choice.predicted_s[0] == pytest.approx(alone.predicted_s[0], abs=0.02)
+    verdict = kept.report().verdict
+    assert (verdict.slower, verdict.keep_greedy) == (0.9, True)
+
+
+def test_a_tree_that_fears_nothing_changes_nothing() -> None:
+    free, refined = searched(None), searched(Advisor(0.5))
+    assert refined.choice == free.choice
+    assert refined.report().verdict.slower == 0.5
+    assert not refined.report().verdict.keep_greedy
+
+
+def test_a_tree_is_not_asked_about_sequences_that_it_was_not_learned_for() -> None:
+    stranger = Advisor(1.0, sequences=frozenset({("goToPose", "goToPose")}))
+    assert searched(stranger).choice == searched(None).choice
+    assert stranger.heard == []
+
+
+def test_a_tree_that_gives_no_number_is_not_obeyed() -> None:
+    search = searched(Advisor(float("nan")))
+    assert search.choice == searched(None).choice
+    assert search.report().verdict.slower == -1
+
+
+def test_nothing_is_asked_when_nothing_is_looked_ahead() -> None:
+    advisor = Advisor(1.0)
+    assert searched(advisor, horizon=1).report().verdict.situation == ()
+    assert advisor.heard == []
+
+
+def test_advice_is_the_same_in_slices() -> None:
+    assert searched(Advisor(0.9), slices=2000).choice == searched(Advisor(0.9)).choice
+
+
+def test_the_situation_tells_gain_price_and_return_in_seconds() -> None:
+    search = searched(Advisor(0.0))
+    said = dict(zip(SITUATION, search.report().verdict.situation, strict=True))
+    greedy, refined = searched(None, horizon=1).choice, search.choice
+    assert said["gain_s"] == pytest.approx(search.report().greedy_s - refined.total_s)
+    assert said["first_s"] + said["price_s"] == pytest.approx(refined.predicted_s[0])
+    assert said["rest_s"] - said["return_s"] == pytest.approx(refined.predicted_s[1])
+    assert said["first_s"] == pytest.approx(greedy.predicted_s[0], abs=0.1)
+    assert 0 < said["turned_rad"] <= np.pi
+
+
+def test_an_angle_is_compared_the_short_way_round() -> None:
+    sequence = approach_dribble()
+    heading = next(v.id for v in sequence.free() if v.periodic)
+    speed = next(v.id for v in sequence.free() if not v.periodic)
+    one = searched(None).choice
+    greedy = dataclasses.replace(one, values={heading: 3.1, speed: 0.3})
+    refined = dataclasses.replace(one, values={heading: -3.1, speed: 0.0})
+    said = dict(zip(SITUATION, situation(sequence, greedy, refined), strict=True))
+    assert said["turned_rad"] == pytest.approx(2 * np.pi - 6.2)
+    assert said["moved"] == 1.0
+
+
+def test_why_says_what_the_tree_advised() -> None:
+    report = RefinementReport(0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, slower=0.62, kept_greedy=True)
+    assert advice(report) == "greedy kept: the benefit tree puts the risk that refining costs time at 62 %"
+    assert advice(dataclasses.replace(report, slower=0.1, kept_greedy=False)).startswith("refined: ")
+    assert advice(dataclasses.replace(report, slower=-1.0)) == ""
+
+
+DONE = Outcome(1, "h2", True, 10.0, "achieved", (), (), (), (), False, 0.0, (), ())
+
+
+def test_only_pairs_that_both_arrived_and_had_a_choice_are_learned_from() -> None:
+    seen = dataclasses.replace(DONE, situation=(1.0, 2.0), duration_s=9.0)
+    lost = dataclasses.replace(DONE, achieved=False)
+    found = pairs_of([(DONE, seen), (lost, seen), (DONE, DONE)])
+    assert (found.situations.tolist(), found.greedy_s.tolist(), found.refined_s.tolist()) == ([[1, 2]], [10], [9])
+
+
+def test_a_gate_is_judged_by_what_it_did() -> None:
+    fast, slow = dataclasses.replace(DONE, duration_s=8.0), dataclasses.replace(DONE, duration_s=12.0)
+    asked = dataclasses.replace(slow, situation=tuple([0.0] * len(SITUATION)))
+    starts = [(DONE, fast, fast), (DONE, asked, DONE), (DONE, fast, fast), (DONE, slow, slow)]
+    row = judging.summary(starts, Advisor(0.9))
+    assert row["right_pct"] == 75.0
+    assert row["always_refining_right_pct"] == 50.0
+    assert row["kept_pct"] == 25.0
+    assert row["improvement_pct"] == pytest.approx(0.0)
+    assert row["gated_pct"] == pytest.approx(5.0)
+    assert row["perfect_pct"] == pytest.approx(10.0)
+    assert (row["slower_pct"], row["gated_slower_pct"]) == (50.0, 25.0)
+    assert row["lost_s"] == 1.0
+
+
+def test_foreknowledge_is_of_the_other_runs_and_never_of_the_one_that_is_judged() -> None:
+    greedy_s = np.full((2, 5), 10.0)
+    refined_s = np.array([[11.0, 11, 11, 11, 9], [9.0, 9, 9, 11, 9]])
+    row = gate_ceiling.judged(greedy_s, refined_s)
+    assert row["foreknown_right_pct"] == 80.0  # the one run of each start that went otherwise is not foreseen
+    assert row["luck_always_right_pct"] == 50.0
+    assert row["foreknown_improvement_pct"] == pytest.approx((4 * 10 - 10) / 10)
+    assert row["mostly_slower_starts_pct"] == 50.0

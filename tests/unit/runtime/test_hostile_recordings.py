@@ -1,0 +1,191 @@
+"""Whatever stands in a recording, commands that read it end in an answer or in one clear line, soon."""
+
+import json
+import struct
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mcap.writer import Writer
+
+from tailor.executive.composition import recompose
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.recordings.mcap_scan import MAGIC
+from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.selection import Selection
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Provenance
+from tailor.schemas.topics import TOPICS
+from tailor.tools.main import main
+from tailor.tools.recordings import recorded_run
+from tailor.tools.recordings.playback import Passage
+from tailor.tools.recordings.recorded_run import RecordedRuns
+from tailor.tools.recordings.survey import survey
+from tests.support.bus_system import bus_system
+from tests.support.cpu_time import least_cpu_s
+from tests.unit.runtime.test_mcap_writer import chunk_bounds, write_tape
+
+NOTHING = Selection(("no/such/key",))
+GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
+
+
+def foreign(path, rows=((10, "x"),), metadata=()):
+    """A recording that another program made; rows of log time and topic."""
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2", library="other")
+        schema = writer.register_schema("std_msgs/msg/Bool", "ros2msg", b"bool data")
+        for log_ns, topic in rows:
+            channel = writer.register_channel(topic, "cdr", schema, {})
+            writer.add_message(channel, log_ns, b"\0\1\0\0\1", log_ns)
+        for name, entries in metadata:
+            writer.add_metadata(name, entries)
+        writer.finish()
+    return path
+
+
+@pytest.mark.parametrize(
+    "metadata",
+    [("drops", {"odom": "many"}), ("provenance", {"json": "[" * 100_000}), ("provenance", {"json": "[1, 2]"})],
+)
+def test_info_takes_whatever_the_metadata_says(tmp_path, capsys, metadata):
+    path = foreign(tmp_path / "a.mcap", metadata=[metadata])
+    assert main(["info", str(path)]) == int(metadata[0] == "drops")
+    assert main(["info", "--json", str(path)]) == int(metadata[0] == "drops")
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["messages"] == 1
+
+
+def test_info_prints_topics_as_they_are_and_obeys_none(tmp_path, capsys):
+    assert main(["info", str(foreign(tmp_path / "a.mcap", [(1, "[/bold]"), (2, "[red]\x1b[31m")]))]) == 0
+    said = capsys.readouterr().out
+    assert "[/bold]" in said
+    assert "[red]\\x1b[31m" in said
+    assert "\x1b" not in said
+
+
+def test_info_of_thousands_of_topics_ends_soon(tmp_path, capsys):
+    path = foreign(tmp_path / "a.mcap", [(k, f"t{k}") for k in range(5000)])
+    codes = []
+    assert least_cpu_s(lambda: codes.append(main(["info", str(path)])), 5.0) < 5.0
+    assert set(codes) == {0}
+    assert "and 4500 topics more" in capsys.readouterr().out
+
+
+def test_a_recording_without_order_lasts_from_its_earliest_message_and_is_cut_and_replayed_whole(tmp_path, capsys):
+    path = foreign(tmp_path / "a.mcap", [(5_000_000_000, "x"), (2_000_000_000, "x"), (9_000_000_000, "x")])
+    assert survey(open_recording(path)).span_ns == (2_000_000_000, 9_000_000_000)
+    assert main(["cut", str(path), "-o", str(tmp_path / "b.mcap")]) == 0
+    assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 3
+
+
+@pytest.mark.parametrize("damage", ["length", "opcode", "hole"])
+def test_what_stands_behind_a_damaged_record_is_found_again(tmp_path, damage):
+    data = bytearray(write_tape(tmp_path / "a.mcap").read_bytes())
+    start, end = list(chunk_bounds(data))[1]
+    if damage == "length":
+        data[start - 2] = 0x7F
+    elif damage == "opcode":
+        data[start - 9] = 0
+    else:
+        data[start - 9 : end] = bytes(end - start + 9)
+    (tmp_path / "bad.mcap").write_bytes(data)
+    recording = open_recording(tmp_path / "bad.mcap")
+    assert [m.sequence for m in recording.messages()] == [*range(1, 11), *range(21, 51)]
+    assert "bytes lost" in recording.account.text()
+
+
+@pytest.mark.parametrize("opcode", [0x03, 0x06, 0x0C])
+def test_a_file_with_a_hole_of_200_mb_is_read_at_once(tmp_path, opcode):
+    path = tmp_path / "sparse.mcap"
+    with path.open("wb") as file:
+        file.write(MAGIC + struct.pack("<BQ", opcode, 50_000_000))
+        file.truncate(200_000_000)
+    assert list(open_recording(path).messages()) == []
+    assert least_cpu_s(lambda: list(open_recording(path).messages()), 2.0) < 2.0
+
+
+def test_recover_says_by_its_exit_code_that_nothing_was_left(tmp_path, capsys):
+    path = tmp_path / "torn.mcap"
+    path.write_bytes(write_tape(tmp_path / "a.mcap").read_bytes()[:200])
+    assert main(["recover", str(path)]) == 1
+    assert "0 messages recovered" in capsys.readouterr().out
+
+
+# --- provenance ----------------------------------------------------------------------------------
+def with_provenance(monkeypatch, text):
+    """Recordings in which the golden run says this of itself; None: nothing."""
+    whole = open_recording(GOLDEN)
+    messages = [m for m in whole.messages() if text is not None or m.key != TOPICS["provenance"].key]
+    for n, message in enumerate(messages):
+        if message.key == TOPICS["provenance"].key:
+            said = decode(Provenance, message.data)
+            messages[n] = replace(message, data=encode(replace(said, json=text)))
+    monkeypatch.setattr(whole, "messages", lambda: iter(messages), raising=False)
+    monkeypatch.setattr(recorded_run, "open_recording", lambda path: whole)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", "[" * 100_000, "{}", '{"order": 5}', None])
+def test_a_run_that_does_not_say_what_it_was_made_of_is_refused_in_one_line(monkeypatch, text):
+    with_provenance(monkeypatch, text)
+    with pytest.raises(UsageError, match="provenance"):
+        recompose(RecordedRuns(GOLDEN).runs[0].provenance)
+
+
+@pytest.mark.parametrize("name", ["order", "sender", "stamp_offset_ns", "models", "machine"])
+@pytest.mark.parametrize("value", [None, "x", 1.5, []])
+def test_every_part_of_a_provenance_is_checked(name, value):
+    said = RecordedRuns(GOLDEN).runs[0].provenance
+    if name == "sender" and value == "x":
+        return
+    with pytest.raises(UsageError, match=name):
+        recompose({**said, name: value})
+
+
+def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):
+    path = tmp_path / "torn.mcap"
+    path.write_bytes(GOLDEN.read_bytes()[:10_000])
+    assert main(["verify", str(path)]) == 2
+    assert "no footer" in capsys.readouterr().err
+
+
+def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch):
+    """A recording of 0.2 MB can hold 2.5 GB of zeros."""
+    monkeypatch.setattr(recorded_run, "MOST_BYTES", 10_000)
+    with pytest.raises(UsageError, match="more than 10000 bytes of messages"):
+        RecordedRuns(GOLDEN)
+
+
+# --- replay --------------------------------------------------------------------------------------
+def test_what_a_sender_cannot_be_counts_as_unsigned(tmp_path):
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2", library="other")
+        for n, sender in enumerate(("zz", "ab", "g" * 32, "é" * 16, "ab" * 16)):
+            channel = writer.register_channel(f"x{n}", "cdr", 0, {"sender": sender})
+            writer.add_message(channel, 10, b"", 2**64 - 1)
+        writer.finish()
+    found = list(open_recording(path).messages())
+    assert [m.sender for m in found] == ["", "", "", "", "ab" * 16]
+    for message in found:
+        pack(Origin(message.sequence, message.publish_ns, message.sender or "00" * 16))
+
+
+def test_nothing_to_play_is_a_mistake_and_no_endless_loop(tmp_path):
+    path = foreign(tmp_path / "a.mcap")
+    for passage in (Passage(open_recording(path), Selection(), start_s=99.0), Passage(open_recording(path), NOTHING)):
+        with pytest.raises(UsageError, match="something to play"):
+            passage.places()
+
+
+def test_what_is_barred_is_barred_under_its_new_key_as_well(tmp_path):
+    recording = open_recording(foreign(tmp_path / "a.mcap", [(1, "x"), (2, "y")]))
+    passage = Passage(recording, Selection(), {"x": "agilo/cmd_vel"}, barred=Selection(exclude=("cmd_vel",)))
+    assert [m.key for m in passage.messages()] == ["y"]
+
+
+@pytest.mark.parametrize("key", ["", "/", "a/", "**", "agilo/*", "a#b", "x" * 70_000])
+def test_a_key_that_is_none_or_a_pattern_is_not_played(key):
+    with bus_system() as (session, _, _), pytest.raises(UsageError, match="expected one that the bus can carry"):
+        session.player(key, "std_msgs/msg/Bool")

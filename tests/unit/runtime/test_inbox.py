@@ -1,0 +1,166 @@
+"""Inbox, attachment and arrival times without a bus."""
+
+import pytest
+
+from tailor.runtime.bus.arrival import Instant, arrival_ns
+from tailor.runtime.bus.attachment import UNSIGNED, Origin, pack, unpack
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.bus.publisher import Publisher
+from tailor.runtime.bus.session import encoding_of
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import EStop, Odometry, Sample, VelocityCommand
+from tailor.schemas.topics import TOPICS
+
+SENDER = "0123456789abcdef" * 2
+MS = 1_000_000
+
+
+class Line:
+    """Raw samples that wait, as a subscription gives them."""
+
+    def __init__(self, *raws):
+        self.raws = list(raws)
+
+    def take(self):
+        return self.raws.pop(0) if self.raws else None
+
+
+def raw(message, key="agilo/odom", **changes):
+    fields = {
+        "key": key,
+        "payload": encode(message),
+        "attachment": pack(Origin(7, 123, SENDER)),
+        "encoding": encoding_of(type(message)),
+        "is_put": True,
+        "received_wall_ns": None,
+    }
+    return Raw(**{**fields, **changes})
+
+
+def inbox(*raws, topic="odom", key="agilo/odom", wall=0):
+    return Inbox([(TOPICS[topic], key, Line(*raws))], encoding_of, now=lambda: 0, wall=lambda: wall)
+
+
+ODOMETRY = Odometry(5, 1.0, 2.0, 0.0, 0.5, 0.25)
+
+
+def test_a_sample_comes_out_with_its_origin():
+    assert inbox(raw(ODOMETRY)).drain(9) == (Sample("agilo/odom", ODOMETRY, 9, 7, SENDER),)
+
+
+def test_an_empty_inbox_gives_nothing():
+    assert inbox().drain(9) == ()
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"key": "agilo/**"}, "other key"),
+        ({"key": "nomad/odom"}, "other key"),
+        ({"is_put": False}, "not a put"),
+        ({"encoding": "application/cdr;std_msgs/msg/Bool"}, "other type"),
+        ({"attachment": b"short"}, "bad attachment"),
+        ({"payload": b"\0\1\0\0"}, "malformed"),
+        ({"payload": bytes(5000)}, "too long"),
+    ],
+)
+def test_what_cannot_be_used_is_counted_by_reason(changes, reason):
+    box = inbox(raw(ODOMETRY, **changes), raw(ODOMETRY))
+    assert len(box.drain(9)) == 1
+    assert box.rejected == {("agilo/odom", reason): 1}
+
+
+def test_an_unsigned_publication_of_another_ros_node_is_taken():
+    samples = inbox(raw(ODOMETRY, attachment=None, encoding="zenoh/bytes")).drain(9)
+    assert [(s.sequence, s.sender) for s in samples] == [(0, "")]
+
+
+def numbered(message, number, key="agilo/odom", sender=SENDER):
+    return raw(message, key, attachment=pack(Origin(number, 123, sender)))
+
+
+def test_a_flood_is_drained_in_bounded_portions():
+    flood = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in range(1, 41)]
+    assert len(inbox(*flood, topic="cmd_vel", key="agilo/cmd_vel").drain(1)) == EVENT_DEPTH
+
+
+def test_a_frozen_sensor_is_not_heard_again_but_one_that_starts_anew_or_is_replayed_is():
+    line = Line(*(numbered(ODOMETRY, number) for number in (7, 7, 7, 8, 8, 3)), numbered(ODOMETRY, 3, sender="ff" * 16))
+    box = Inbox([(TOPICS["odom"], "agilo/odom", line)], encoding_of, now=lambda: 0, wall=lambda: 0)
+    assert [sample.sequence for sample in box.drain(9)] == [7, 8, 3, 3]
+    assert box.rejected == {("agilo/odom", "repeated"): 3}
+
+
+def test_a_frozen_sensor_without_numbers_is_heard():  # a ROS 2 bridge sends none
+    assert len(inbox(*[raw(ODOMETRY, attachment=None)] * 3).drain(9)) == 3
+
+
+def test_states_replace_each_other_events_and_commands_do_not():
+    assert {name: depth(TOPICS[name]) for name in ("odom", "status", "cmd_vel", "arm_request", "estop")} == {
+        "odom": 1,
+        "status": 1,
+        "cmd_vel": EVENT_DEPTH,
+        "arm_request": EVENT_DEPTH,
+        "estop": EVENT_DEPTH,
+    }
+
+
+def test_arrival_is_the_time_of_reception_not_of_the_drain():
+    before, now = Instant(1000 * MS, 5000 * MS), Instant(1100 * MS, 5100 * MS)
+    assert arrival_ns(5070 * MS, before, now) == 1070 * MS
+    assert arrival_ns(None, before, now) == 1100 * MS
+
+
+@pytest.mark.parametrize("jump_ns", [3600 * 1000 * MS, -3600 * 1000 * MS])
+def test_a_jump_of_the_wall_clock_moves_an_arrival_by_less_than_a_tick(jump_ns):
+    before, now = Instant(1000 * MS, 5000 * MS), Instant(1100 * MS, 5100 * MS + jump_ns)
+    assert 1000 * MS <= arrival_ns(5070 * MS, before, now) <= 1100 * MS
+
+
+def test_samples_of_several_topics_come_oldest_first():
+    rows = [
+        (TOPICS["odom"], "agilo/odom", Line(raw(ODOMETRY, received_wall_ns=80))),
+        (TOPICS["estop"], "estop", Line(raw(EStop(True), "estop", received_wall_ns=20))),
+    ]
+    walls = iter([0, 100])
+    box = Inbox(rows, encoding_of, now=lambda: 0, wall=lambda: next(walls))
+    assert [(s.key, s.arrival_ns) for s in box.drain(100)] == [("estop", 20), ("agilo/odom", 80)]
+
+
+def test_an_attachment_has_rmw_zenohs_33_bytes():
+    data = pack(Origin(258, 1, SENDER))
+    assert data == b"\x02\x01" + bytes(6) + b"\x01" + bytes(7) + b"\x10" + bytes.fromhex(SENDER)
+    assert unpack(data) == Origin(258, 1, SENDER)
+    assert unpack(None) == UNSIGNED
+    assert unpack(data[:-1]) == Rejected("bad attachment")
+    assert unpack(data[:16] + b"\x0f" + data[17:]) == Rejected("bad attachment")
+
+
+class Wire:
+    def __init__(self):
+        self.sent = []
+
+    def put(self, payload, attachment):
+        self.sent.append((payload, attachment))
+
+    def matched(self):
+        return True
+
+
+def test_a_publisher_numbers_and_signs_from_one():
+    wire = Wire()
+    publisher = Publisher("estop", wire, SENDER, wall=lambda: 99)
+    assert [publisher.publish(EStop(True)), publisher.publish(EStop(False))] == [1, 2]
+    assert wire.sent == [
+        (encode(EStop(True)), pack(Origin(1, 99, SENDER))),
+        (encode(EStop(False)), pack(Origin(2, 99, SENDER))),
+    ]
+
+
+def test_raw_bytes_keep_the_origin_that_they_had_or_had_not():
+    wire = Wire()
+    publisher = Publisher("estop", wire, SENDER)
+    publisher.put_raw(b"x", Origin(41, 5, "ff" * 16))
+    publisher.put_raw(b"y", UNSIGNED)
+    assert wire.sent == [(b"x", pack(Origin(41, 5, "ff" * 16))), (b"y", None)]

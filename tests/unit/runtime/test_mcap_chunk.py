@@ -1,0 +1,61 @@
+"""Chunks of recordings: what mcap's own reader finds in them, and a clear no for what was not written so."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+
+from tailor.runtime.recordings.mcap_chunk import records_of
+from tailor.runtime.recordings.recording import open_recording
+from tailor.tools.recordings.survey import percentiles
+
+GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
+
+
+def record(opcode, body):
+    return struct.pack("<BQ", opcode, len(body)) + body
+
+
+MESSAGE = record(5, struct.pack("<HIQQ", 3, 7, 10, 9) + b"data")
+
+
+def test_every_message_is_the_one_that_mcaps_own_reader_finds():
+    with GOLDEN.open("rb") as file:
+        theirs = [(m.sequence, m.log_time, m.publish_time, m.data) for _, _, m in make_reader(file).iter_messages()]
+    ours = [(m.sequence, m.log_ns, m.publish_ns, m.data) for m in open_recording(GOLDEN).messages()]
+    assert sorted(ours) == sorted(theirs)
+    assert len(ours) > 300
+
+
+def test_a_message_is_read_and_an_unknown_record_passed_over():
+    plain = record(0x77, b"later versions") + MESSAGE
+    (found,) = records_of(plain, zlib.crc32(plain))
+    assert (found.channel_id, found.sequence, found.log_time, found.publish_time) == (3, 7, 10, 9)
+    assert found.data == b"data"
+
+
+def test_where_no_checksum_is_given_none_is_asked_for():
+    assert len(records_of(MESSAGE, 0)) == 1
+
+
+@pytest.mark.parametrize(
+    ("plain", "crc", "why"),
+    [
+        (MESSAGE, 1, "checksum"),
+        (MESSAGE[:-1], 0, "beyond its end"),
+        (record(5, b"short"), 0, "no room"),
+        (struct.pack("<BQ", 5, 2**64 - 1), 0, "beyond its end"),
+    ],
+)
+def test_what_was_not_written_so_is_refused(plain, crc, why):
+    with pytest.raises(ValueError, match=why):
+        records_of(plain, crc)
+
+
+@pytest.mark.parametrize("values", [[], [3.0], [2.0, 1.0], list(np.random.default_rng(0).normal(size=137))])
+def test_percentiles_are_numpys(values):
+    expected = [round(float(np.percentile(values or [0.0], q)), 3) for q in (50, 99, 100)]
+    assert list(percentiles(values).values()) == expected

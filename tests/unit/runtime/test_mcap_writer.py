@@ -1,0 +1,409 @@
+"""Files of recordings: sinks, tapes, rings, selections, reading back what is whole."""
+
+import errno
+import os
+import struct
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.session import encoding_of
+from tailor.runtime.recordings.mcap_scan import MAGIC, Account, scan
+from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.recorder import Limits, Recorder
+from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.recording_metadata import Facts
+from tailor.runtime.recordings.selection import Selection, selection
+from tailor.runtime.recordings.sink import Sink
+from tailor.runtime.recordings.snapshot import Alarm, Ring
+from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState, EStop, ExecStatus, Odometry, Provenance
+from tailor.schemas.own import example
+
+SENDER = "ab" * 16
+EVERYTHING = Selection()
+S = 1_000_000_000
+
+
+def raw(message, sequence=1, key="agilo/odom", **changes):
+    fields = {
+        "key": key,
+        "payload": encode(message),
+        "attachment": pack(Origin(sequence, 500 + sequence, SENDER)),
+        "encoding": encoding_of(type(message)),
+        "is_put": True,
+        "received_wall_ns": sequence * S,
+    }
+    return Raw(**{**fields, **changes})
+
+
+def odometry(sequence, **changes):
+    return raw(Odometry(sequence, float(sequence), 0.0, 0.0, 0.0, 0.0), sequence, **changes)
+
+
+def write_tape(path, count=50, chunks=5):
+    tape = Tape(path, {"made": {"by": "test"}})
+    for sequence in range(1, count + 1):
+        tape.write(odometry(sequence), sequence * S)
+        if sequence % (count // chunks) == 0:
+            tape.flush()
+    tape.close()
+    return path
+
+
+def test_a_tape_reads_back_exactly_what_went_in(tmp_path):
+    recording = open_recording(write_tape(tmp_path / "a.mcap"))
+    found = list(recording.messages())
+    assert [(m.key, m.ros_type, m.sender, m.sequence, m.log_ns, m.publish_ns) for m in found] == [
+        ("agilo/odom", "nav_msgs/msg/Odometry", SENDER, k, k * S, 500 + k) for k in range(1, 51)
+    ]
+    assert [m.data for m in found] == [odometry(k).payload for k in range(1, 51)]
+    assert dict(recording.metadata())["made"] == {"by": "test"}
+    assert (recording.account.chunks, recording.account.text()) == (5, "")
+
+
+def test_an_unsigned_message_of_a_known_key_gets_its_type_from_the_table(tmp_path):
+    tape = Tape(tmp_path / "a.mcap", {})
+    tape.write(odometry(1, attachment=None, encoding="zenoh/bytes"), 7)
+    tape.write(raw(EStop(True), key="some/where", attachment=b"?", encoding="text/plain"), 8)
+    tape.close()
+    found = list(open_recording(tmp_path / "a.mcap").messages())
+    assert [(m.ros_type, m.sender, m.sequence, m.publish_ns) for m in found] == [
+        ("nav_msgs/msg/Odometry", "", 0, 7),
+        ("", "", 0, 8),
+    ]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.05, 0.3, 0.5, 0.9, 0.99])
+def test_a_cut_file_gives_back_every_whole_chunk(tmp_path, share):
+    data = write_tape(tmp_path / "a.mcap").read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(data[: max(len(MAGIC), int(len(data) * share))])
+    recording = open_recording(cut)
+    sequences = [m.sequence for m in recording.messages()]
+    assert sequences == list(range(1, len(sequences) + 1))
+    assert len(sequences) % 10 == 0
+    assert not recording.account.complete
+    assert recording.account.text().startswith("no footer; ")
+
+
+def chunk_bounds(data):
+    """Places of the bytes inside each chunk record."""
+    at = len(MAGIC)
+    while data[at] != 0x0F:
+        length = struct.unpack_from("<Q", data, at + 1)[0]
+        if data[at] == 0x06:
+            yield at + 9, at + 9 + length
+        at += 9 + length
+
+
+def test_a_damaged_chunk_costs_its_own_messages_only(tmp_path):
+    data = bytearray(write_tape(tmp_path / "a.mcap").read_bytes())
+    _, end = next(chunk_bounds(data))
+    data[end - 20] ^= 0xFF
+    (tmp_path / "bad.mcap").write_bytes(data)
+    recording = open_recording(tmp_path / "bad.mcap")
+    assert [m.sequence for m in recording.messages()] == list(range(11, 51)), "channels come from the index"
+    assert (recording.account.chunks, recording.account.damaged_chunks) == (4, 1)
+    assert "1 damaged" in recording.account.text()
+
+
+def test_flipped_bits_anywhere_never_raise_anything_but_a_usage_error(tmp_path):
+    data = write_tape(tmp_path / "a.mcap", count=10, chunks=2).read_bytes()
+    path = tmp_path / "bad.mcap"
+    for at in range(0, len(data), 7):
+        damaged = bytearray(data)
+        damaged[at] ^= 1 << (at % 8)
+        path.write_bytes(damaged)
+        try:
+            recording = open_recording(path)
+            assert len(list(recording.decoded())) <= 10
+        except UsageError:
+            pass
+
+
+@pytest.mark.parametrize("length", [2**63, 2**40, 10**8])
+def test_a_record_that_claims_to_be_huge_is_not_read(tmp_path, length):
+    path = tmp_path / "bomb.mcap"
+    path.write_bytes(MAGIC + struct.pack("<BQ", 6, length) + bytes(100))
+    account = Account()
+    assert list(scan(path, account)) == []
+    assert account.lost_bytes == 109
+
+
+def test_a_compression_bomb_is_not_unpacked(tmp_path):
+    import zstandard
+
+    bomb = zstandard.compress(bytes(300_000_000))
+    for declared in (300_000_000, 1000):
+        body = (
+            struct.pack("<QQQI", 0, 0, declared, 0)
+            + struct.pack("<I", 4)
+            + b"zstd"
+            + struct.pack("<Q", len(bomb))
+            + bomb
+        )
+        path = tmp_path / f"{declared}.mcap"
+        path.write_bytes(MAGIC + struct.pack("<BQ", 6, len(body)) + body)
+        account = Account()
+        assert list(scan(path, account)) == []
+        assert account.damaged_chunks == 1
+
+
+def test_what_is_no_recording_is_told_in_one_line(tmp_path):
+    (tmp_path / "text").write_text("hello, I am no recording")
+    with pytest.raises(UsageError, match="not an MCAP file"):
+        open_recording(tmp_path / "text")
+    with pytest.raises(UsageError, match="No such file"):
+        open_recording(tmp_path / "absent.mcap")
+
+
+def test_a_changed_schema_is_refused_by_name(tmp_path, monkeypatch):
+    write_tape(tmp_path / "a.mcap")
+    monkeypatch.setattr("tailor.runtime.recordings.recording.type_hash", lambda _: "RIHS01_other")
+    with pytest.raises(UsageError, match=r"nav_msgs/msg/Odometry has changed since"):
+        list(open_recording(tmp_path / "a.mcap").messages())
+
+
+def test_a_full_disk_leaves_whole_blocks_and_the_rest_is_written_when_there_is_space(tmp_path, monkeypatch):
+    sink = Sink(tmp_path / "f")
+    sink.write(b"first")
+    sink.flush()
+    real, space = os.write, 3
+
+    def full(file, data):
+        nonlocal space
+        if space == 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        done = real(file, bytes(data[:space]))
+        space -= done
+        return done
+
+    monkeypatch.setattr(os, "write", full)
+    sink.write(b"second")
+    with pytest.raises(OSError, match="No space"):
+        sink.flush()
+    assert (tmp_path / "f").read_bytes() == b"first"
+    assert sink.tell() == 11
+    monkeypatch.setattr(os, "write", real)
+    sink.write(b"third")
+    sink.flush()
+    sink.close()
+    assert (tmp_path / "f").read_bytes() == b"firstsecondthird"
+
+
+def make_recorder(tmp_path, intake, wanted=EVERYTHING, **limits):
+    return Recorder(tmp_path / "r.mcap", intake, wanted, Limits(**limits), Facts("1", 0))
+
+
+def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
+    monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 2000)
+    intake = Intake()
+    recorder = make_recorder(tmp_path, intake)
+    real = os.write
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "write", full)
+    for sequence in range(1, 31):
+        intake.put(odometry(sequence))
+        recorder.turn(sequence * S)
+    assert recorder.health.trouble == "No space left on device"
+    lost = recorder.health.drops["agilo/odom"]
+    assert 0 < lost < 30
+    monkeypatch.setattr(os, "write", real)
+    recorder.turn(100 * S)
+    assert recorder.health.trouble == ""
+    intake.put(odometry(31))
+    assert recorder.close().messages == 31 - lost
+    recording = open_recording(tmp_path / "r.mcap")
+    assert [m.sequence for m in recording.messages()][-1] == 31
+    assert dict(recording.metadata())["drops"] == {"agilo/odom": str(lost)}
+
+
+def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
+    intake = Intake(most_bytes=2000)
+    for sequence in range(100):
+        intake.put(odometry(sequence))
+    kept = len(intake.take())
+    assert kept == 2000 // len(odometry(1).payload)
+    assert intake.drops == Counter({"agilo/odom": 100 - kept})
+
+
+def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
+    intake = Intake()
+    recorder = make_recorder(tmp_path, intake, most_bytes=1)
+    for sequence in range(1, 4):
+        intake.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
+        recorder.turn(sequence * S)
+    recorder.close()
+    parts = sorted(tmp_path.glob("r_*.mcap"))
+    assert len(parts) == 4
+    for number, part in enumerate(parts):
+        metadata = open_recording(part).metadata()
+        assert ("provenance", {"sender": SENDER, "json": '{"seed": 1}'}) in metadata
+        assert dict(metadata)["part"] == {"number": str(number)}
+
+
+def test_deletes_and_unwanted_topics_are_not_recorded(tmp_path):
+    intake = Intake()
+    recorder = make_recorder(tmp_path, intake, selection(["odom"], []))
+    intake.put(odometry(1, is_put=False))
+    intake.put(raw(EStop(True), 1, "estop"))
+    intake.put(odometry(2))
+    assert recorder.close().messages == 1
+
+
+@pytest.mark.parametrize(
+    ("include", "exclude", "key", "wanted"),
+    [
+        ([], [], "anything/at/all", True),
+        ([], [], "clock", False),
+        (["clock"], [], "clock", True),
+        (["odom"], [], "agilo/odom", True),
+        (["odom"], [], "agilo/pose", False),
+        (["agilo/*"], [], "agilo/sim/truth", True),
+        (["exec/**"], [], "exec/tick", True),
+        (["agilo/*"], ["odom"], "agilo/odom", False),
+        (["odom,pose"], [], "agilo/pose", True),
+        (["nav_msgs/msg/Odometry"], [], "x/y", True),
+        ([], ["nav_msgs/msg/Odometry"], "x/y", False),
+    ],
+)
+def test_topics_are_selected_by_name_pattern_or_type(include, exclude, key, wanted):
+    assert selection(include, exclude).wants(key, "nav_msgs/msg/Odometry") is wanted
+
+
+def test_a_misspelt_topic_is_told():
+    with pytest.raises(UsageError, match="topic 'odmo'"):
+        selection(["odmo"], [])
+
+
+def status(mode, sequence=1):
+
+    return raw(replace(example(ExecStatus), mode=mode, reason="why"), sequence, "exec/status")
+
+
+def driver(mode):
+
+    return raw(replace(example(DriverState), mode=mode, reason="why"), 1, "agilo/driver")
+
+
+def test_an_alarm_goes_off_once_when_something_goes_wrong():
+    alarm = Alarm()
+    said = [alarm.hears(r) for r in (status("READY"), status("FAULT"), status("FAULT"), status("READY"), odometry(1))]
+    assert said == ["", "exec/status: FAULT: why", "", "", ""]
+    assert [alarm.hears(r) for r in (driver("armed"), driver("stopped"), driver("armed"))] == [
+        "",
+        "agilo/driver: stopped: why",
+        "",
+    ]
+
+
+def test_a_driver_that_was_stopped_before_is_no_alarm():
+    assert Alarm().hears(driver("stopped")) == ""
+
+
+def test_a_ring_keeps_the_last_seconds_only(tmp_path):
+    ring = Ring(5 * S)
+    for k in range(1, 21):
+        ring.add(odometry(k), k * S)
+    assert ring.write(tmp_path / "ring.mcap", {}) == 6
+    assert [m.sequence for m in open_recording(tmp_path / "ring.mcap").messages()] == list(range(15, 21))
+
+
+def test_a_ring_is_bounded_in_bytes_too(tmp_path):
+    ring = Ring(1000 * S, most_bytes=10 * len(odometry(1).payload))
+    for k in range(1, 21):
+        ring.add(odometry(k), k * S)
+    assert ring.write(tmp_path / "ring.mcap", {}) == 10
+
+
+def test_a_snapshot_of_nothing_is_refused(tmp_path):
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    assert not recorder.ask("by hand", 0)
+    recorder.turn(0)
+    intake.put(odometry(1))
+    recorder.turn(1)
+    assert list(tmp_path.iterdir()) == []
+    assert recorder.ask("by hand", 2)
+    recorder.turn(2)
+    assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
+
+
+@pytest.fixture
+def full_disk(monkeypatch):
+    """Call with True and False: whether the disk is full."""
+    from tailor.runtime.recordings import sink
+
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    really = sink.os.write
+    return lambda full: monkeypatch.setattr(sink.os, "write", refuse if full else really)
+
+
+def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake.put(odometry(1))
+    recorder.turn(0)
+    full_disk(True)
+    recorder.ask("by hand", 1)
+    recorder.turn(1)
+    assert recorder.health.trouble == "No space left on device"
+    assert (recorder.health.files, list(tmp_path.iterdir())) == ([], [])
+    full_disk(False)
+    recorder.ask("again", 2)
+    recorder.turn(2)
+    assert [path.name for path in recorder.health.files] == ["s_000.mcap"]
+
+
+def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
+    (tmp_path / "s_000.mcap").write_text("of yesterday")
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake.put(odometry(1))
+    recorder.turn(0)
+    for k in (1, 2):
+        recorder.ask("by hand", k)
+        recorder.turn(k)
+    assert [path.name for path in recorder.health.files] == ["s_001.mcap", "s_002.mcap"]
+    assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
+
+
+def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_path, full_disk):
+    from tailor.tools.lockstep.run_writer import RunTape
+    from tests.support.toy_domain import line_context
+
+    tape = RunTape(tmp_path / "run.mcap", line_context(), {})
+    full_disk(True)
+    with pytest.raises(OSError, match="No space left on device"):
+        tape.close()
+
+
+def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
+    intake = Intake()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    for k, message in enumerate([odometry(1), status("READY", 2), status("FAULT", 3)]):
+        intake.put(message)
+        recorder.turn(k * S // 10)
+    assert list(tmp_path.iterdir()) == []
+    intake.put(odometry(4))
+    recorder.turn(2 * S)
+    recorder.ask("by hand", 3 * S)
+    recorder.turn(3 * S)
+    health = recorder.close()
+    assert [p.name for p in health.files] == ["s_000.mcap", "s_001.mcap"]
+    first = open_recording(health.files[0])
+    assert [m.sequence for m in first.messages()] == [1, 2, 3, 4]
+    assert dict(first.metadata())["snapshot"] == {"reason": "exec/status: FAULT: why"}
+    assert dict(open_recording(health.files[1]).metadata())["snapshot"] == {"reason": "by hand"}

@@ -1,0 +1,63 @@
+"""What decides whether two machines compute alike: a fingerprint of the functions that the core calls."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.platform_fingerprint import KIND, contrast, machine, same_kind
+
+ROOT = Path(__file__).resolve().parents[3]
+CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "features" / "intervals.py"]
+# numpy rounds these otherwise where the CPU has AVX-512, and the fingerprint does not look at them
+VARYING = {"arctan2", "arctan", "arcsin", "arccos", "tan", "exp", "expm1", "log", "log1p", "tanh", "power", "cbrt"}
+KNOWN = {
+    "executive/actions/cubic.py",  # powers of Python's floats: libm's, which do not vary
+    "executive/planning/plans/vhpop_reader.py",  # likewise
+    "executive/refinement/solvers/breakpoints.py",  # the analytic solver's line of sight
+    "executive/refinement/solvers/chain.py",  # solvers that only longer horizons or a setting ask for
+    "executive/refinement/solvers/genetic.py",
+    "models/features/intervals.py",  # proofs of the gap only: margins far wider than a last bit
+}
+
+
+def varying(path):
+    """Whether a file calls one of those functions, or raises something to a computed power."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            if node.value.id == "np" and node.attr in VARYING:
+                return True
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow) and not isinstance(node.right, ast.Constant):
+            return True
+    return False
+
+
+def test_core_calls_what_varies_with_avx_512_in_known_places_only():
+    assert {path.relative_to(ROOT).as_posix() for path in CORE if varying(path)} == KNOWN
+
+
+def test_a_machine_is_of_its_own_kind_and_describes_itself():
+    here = machine()
+    assert here == machine()
+    assert len(here["arithmetic"]) == 12
+    assert here["cpu"]
+    assert same_kind(here, here)
+    assert contrast(here, here) == ""
+
+
+@pytest.mark.parametrize("name", KIND)
+def test_another_arithmetic_or_version_is_another_kind(name):
+    here, there = machine(), {**machine(), name: "another"}
+    assert not same_kind(there, here)
+    assert contrast(there, here) == f"{name} another against {name} {here[name]}"
+
+
+def test_another_cpu_that_computes_alike_is_the_same_kind_but_is_told():
+    here, there = machine(), {**machine(), "cpu": "x86_64 fma"}
+    assert same_kind(there, here)
+    assert contrast(there, here) == f"cpu x86_64 fma against cpu {here['cpu']}"
+
+
+def test_a_recording_that_does_not_know_its_machine_is_compared_exactly():
+    assert same_kind({}, machine())
+    assert contrast({}, machine()) == ""

@@ -1,0 +1,150 @@
+"""Pacing, playing, cutting and recovering without a bus."""
+
+import pytest
+
+from tailor.runtime.recordings.copying import copy
+from tailor.runtime.recordings.playback_clock import Pace
+from tailor.runtime.recordings.player import Player
+from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.selection import selection
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import DriverState
+from tailor.schemas.own import example
+from tailor.tools.recordings.playback import Passage, remapping
+from tailor.tools.recordings.substitution import armed_for
+from tests.unit.runtime.test_loop import SteppedClock
+from tests.unit.runtime.test_mcap_writer import S, write_tape
+
+MS = 1_000_000
+
+
+def test_messages_are_due_at_absolute_times_at_any_rate():
+    assert [Pace(1000, 50).due_ns(1000 + k * 100) for k in range(3)] == [50, 150, 250]
+    assert [Pace(1000, 50, rate=4.0).due_ns(1000 + k * 100) for k in range(3)] == [50, 75, 100]
+
+
+def test_a_pause_stops_recorded_time_and_goes_on_from_there():
+    pace = Pace(0, 0)
+    pace.toggle(300)
+    assert (pace.due_ns(500), pace.recorded_ns(900)) == (None, 300)
+    pace.toggle(1000)
+    assert (pace.recorded_ns(1000), pace.due_ns(500)) == (300, 1200)
+
+
+def test_a_step_lets_one_message_pass_a_pause():
+    pace = Pace(0, 0, paused=True)
+    assert not pace.take_step(10)
+    pace.step()
+    assert pace.take_step(10)
+    assert not pace.take_step(20)
+    pace.toggle(100)
+    assert pace.due_ns(30) == 120, "time goes on from the message that was stepped to"
+    pace.step()
+    assert not pace.take_step(40), "steps count only while paused"
+
+
+def test_the_rate_changes_from_now_on_and_stays_in_its_bounds():
+    pace = Pace(0, 0)
+    pace.scale(2.0, 100)
+    assert pace.due_ns(300) == 200
+    for _ in range(100):
+        pace.scale(10.0, 100)
+    assert pace.rate == 100.0
+
+
+class Outlet:
+    def __init__(self, clock):
+        self.clock, self.sent = clock, []
+
+    def __call__(self, key, ros_type):
+        self.key = key
+        return self
+
+    def put_raw(self, data, origin):
+        self.sent.append((self.clock.now_ns(), self.key, data, origin))
+
+
+def play(tmp_path, watch=lambda pace: True, **passage):
+    recording = open_recording(write_tape(tmp_path / "a.mcap", count=10, chunks=1))
+    clock = SteppedClock(7)
+    outlet = Outlet(clock)
+    ticks = []
+    player = Player(outlet, clock, watch, ticks.append, tick_ns=S)
+    part = Passage(recording, selection([], []), **passage)
+    finished = player.play(part.messages(), Pace(part.bounds_ns()[0], clock.now_ns(), rate=2.0))
+    return outlet.sent, player.played, finished, ticks
+
+
+def test_a_replay_sends_the_same_bytes_at_the_recorded_distances(tmp_path):
+    sent, played, finished, ticks = play(tmp_path)
+    assert finished
+    assert [at for at, *_ in sent] == [7 + k * S // 2 for k in range(10)]
+    recorded = list(open_recording(tmp_path / "a.mcap").messages())
+    assert [(data, o.sequence, o.source_ns, o.sender) for _, _, data, o in sent] == [
+        (m.data, m.sequence, m.publish_ns, m.sender) for m in recorded
+    ]
+    assert played.messages == 10
+    assert max(played.lateness_ns) == 0
+    assert ticks[:3] == [S, 3 * S, 5 * S]
+
+
+def test_a_replay_can_start_later_end_earlier_and_use_another_key(tmp_path):
+    sent, *_ = play(tmp_path, start_s=2.0, duration_s=3.0, remap={"agilo/odom": "ghost/odom"})
+    assert [(key, origin.sequence) for _, key, _, origin in sent] == [("ghost/odom", k) for k in (3, 4, 5)]
+
+
+def test_the_one_who_watches_may_end_a_replay(tmp_path):
+    looks = iter([True] * 5 + [False])
+    sent, _, finished, _ = play(tmp_path, watch=lambda pace: next(looks))
+    assert not finished
+    assert len(sent) < 10
+
+
+def test_remap_words_are_checked():
+    assert remapping(["a/b=c/d"]) == {"a/b": "c/d"}
+    with pytest.raises(UsageError, match="--remap a/b"):
+        remapping(["a/b"])
+
+
+def test_a_recorded_driver_seems_to_obey_the_live_executive(tmp_path):
+    from dataclasses import replace
+
+    from tailor.runtime.recordings.recording import Recorded
+
+    state = replace(example(DriverState), mode="armed", armed_sender="a" * 32)
+    recorded = Recorded("agilo/driver", "tailor_msgs/msg/DriverState", "", 1, 0, 0, encode(state))
+    told = decode(DriverState, armed_for("b" * 32, recorded).data)
+    assert told == replace(state, armed_sender="b" * 32)
+    idle = replace(recorded, data=encode(replace(state, armed_sender="")))
+    assert armed_for("b" * 32, idle) == idle
+
+
+def test_a_cut_keeps_bytes_times_and_metadata(tmp_path):
+    source = write_tape(tmp_path / "a.mcap")
+    copied = copy(source, tmp_path / "b.mcap", lambda key, ros_type, log_ns: 10 * S <= log_ns < 13 * S, {"from_s": "9"})
+    assert (copied.kept, copied.left_out) == (3, 47)
+    whole, cut = open_recording(source), open_recording(tmp_path / "b.mcap")
+    assert list(cut.messages()) == list(whole.messages())[9:12]
+    metadata = dict(cut.metadata())
+    assert metadata["made"] == {"by": "test"}
+    assert metadata["copy"] == {"of": "a.mcap", "damage": "", "from_s": "9"}
+
+
+def test_recovering_a_torn_file_gives_a_whole_one_and_says_what_is_lost(tmp_path):
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(write_tape(tmp_path / "a.mcap").read_bytes()[:-2000])
+    copied = copy(torn, tmp_path / "whole.mcap", lambda *_: True, {})
+    assert copied.account.text().startswith("no footer; ")
+    recovered = open_recording(tmp_path / "whole.mcap")
+    assert [m.sequence for m in recovered.messages()] == list(range(1, copied.kept + 1))
+    assert copied.kept >= 40
+    assert recovered.account.text() == ""
+    assert dict(recovered.metadata())["copy"]["damage"] == copied.account.text()
+
+
+def test_a_copy_never_overwrites(tmp_path):
+    source = write_tape(tmp_path / "a.mcap")
+    with pytest.raises(UsageError, match="exists already"):
+        copy(source, source, lambda *_: True, {})
+    assert open_recording(source).metadata()

@@ -1,0 +1,71 @@
+"""What a real-time process asks for, in a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tests.support.bus_system import free_endpoint
+
+REPORT = """
+import gc, json, os
+from tailor.runtime.realtime import prepare
+before = {"policy": os.sched_getscheduler(0)}
+told = prepare()
+after = {"policy": os.sched_getscheduler(0), "gc": gc.isenabled(), "frozen": gc.get_freeze_count()}
+locked = next(line for line in open("/proc/self/status") if line.startswith("VmLck")).split()[1]
+print(json.dumps({"told": told, "after": after, "locked_kb": int(locked), "fifo": os.SCHED_FIFO}))
+"""
+
+
+def test_the_report_says_what_was_obtained_and_nothing_is_raised():
+    out = subprocess.run([sys.executable, "-c", REPORT], capture_output=True, text=True, check=True).stdout
+    found = json.loads(out)
+    told, after = found["told"], found["after"]
+    assert told["gc"] == "frozen"
+    assert not after["gc"]
+    assert after["frozen"] > 1000
+    assert (told["memory"] == "locked") == (found["locked_kb"] > 0)
+    got_fifo = after["policy"] & 0xFF == found["fifo"]
+    assert told["scheduler"] == "fifo 50" if got_fifo else told["scheduler"].startswith("default: ")
+
+
+def test_without_privileges_the_refusals_are_reported():
+    without = (
+        "import resource, os\n"
+        "resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
+        "resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))\n"
+        "if os.geteuid() == 0: os.setuid(65534)\n"
+    )
+    out = subprocess.run([sys.executable, "-c", without + REPORT], capture_output=True, text=True, check=False)
+    if out.returncode:  # nobody may not be allowed to read the interpreter's files
+        assert "Permission denied" in out.stderr or "ModuleNotFoundError" in out.stderr, out.stderr
+        return
+    told = json.loads(out.stdout)["told"]
+    assert told["memory"].startswith("not locked: limited to 65536")
+    assert told["scheduler"].startswith("default: ")
+
+
+ELEVATED = """
+import json, os, sys
+from tailor.runtime.bus.session import open_router
+with open_router(sys.argv[1]):
+    threads = {t: open(f"/proc/self/task/{t}/comm").read().strip() for t in os.listdir("/proc/self/task")}
+    print(json.dumps({name: os.sched_getscheduler(int(t)) for t, name in threads.items()}))
+"""
+
+
+def test_a_routers_threads_are_not_starved_by_ordinary_work():
+    out = subprocess.run(
+        [sys.executable, "-c", ELEVATED, free_endpoint()], capture_output=True, text=True, check=True
+    ).stdout
+    policies = json.loads(out)
+    assert {"rx-0", "tx-0", "net-0"} <= policies.keys()
+    allowed = subprocess.run(
+        [sys.executable, "-c", "import os; os.sched_setscheduler(0, 1, os.sched_param(1))"], capture_output=True
+    )
+    if allowed.returncode:
+        pytest.skip("SCHED_FIFO is not granted here")
+    assert {policy for name, policy in policies.items() if name != "python"} == {os.SCHED_FIFO}

@@ -1,0 +1,197 @@
+"""Restarting, and children that cannot outlive their parent."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+import pytest
+
+from tailor.runtime.processes.child import Child, stopped_in_order
+from tailor.runtime.processes.restart import Restart
+from tailor.runtime.processes.supervisor import STARTUP_NS, Charge, Supervisor
+from tailor.runtime.stopping import SIGNALS, stop_on_signals
+from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
+
+S = 1_000_000_000
+MS = 1_000_000
+
+
+def test_the_back_off_doubles_up_to_five_seconds_and_forgets_after_a_minute():
+    restart, delays = Restart(), []
+    for k in range(5):
+        restart.started(k * S)
+        delays.append(restart.delay_ns(k * S) / S)
+    assert delays == [0.2, 0.4, 0.8, 1.6, 3.2]
+    assert restart.delay_ns(100 * S) == 0.2 * S
+
+
+def test_five_starts_within_a_minute_are_a_crash_loop():
+    restart = Restart()
+    for k in range(4):
+        restart.started(k * S)
+    assert not restart.exhausted(5 * S)
+    restart.started(10 * S)
+    assert restart.exhausted(59 * S)
+    assert not restart.exhausted(60 * S)
+
+
+class FakeChild:
+    def __init__(self, name, argv):
+        self.name, self.code, self.killed = name, None, False
+        FakeChild.made.append(self)
+
+    made: list = []
+
+    def exit_code(self):
+        return self.code
+
+    def kill(self):
+        self.killed, self.code = True, -9
+
+    def stop(self):
+        self.code = 0
+
+
+@pytest.fixture
+def supervisor():
+    FakeChild.made, said = [], []
+    watcher = Supervisor(said.append, FakeChild)
+    watcher.said = said
+    return watcher
+
+
+def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
+    supervisor.begin(Charge("executive", ["x"]), 0)
+    FakeChild.made[0].code = -9
+    supervisor.look(1 * S)
+    supervisor.look(1 * S + 199 * MS)
+    assert len(FakeChild.made) == 1
+    supervisor.look(1 * S + 200 * MS)
+    assert len(FakeChild.made) == 2
+    assert supervisor.said == ["executive ended with -9; starting again in 0.2 s"]
+    assert supervisor.ended("executive") is None
+
+
+def test_a_crash_loop_is_given_up(supervisor):
+    supervisor.begin(Charge("executive", ["x"]), 0)
+    for k in range(1, 400):
+        FakeChild.made[-1].code = 1
+        supervisor.look(k * 100 * MS)
+    assert len(FakeChild.made) == 5
+    assert supervisor.ended("executive") == 1
+    assert supervisor.said[-1] == "executive ended with 1; gave up: too many starts within a minute"
+
+
+@pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
+def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, code):
+    supervisor.begin(Charge("sim", ["x"], restarts=restarts), 0)
+    FakeChild.made[0].code = code
+    supervisor.look(1)
+    supervisor.look(10 * S)
+    assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
+
+
+def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    for now_ns in range(0, 30 * S, 50 * MS):
+        if now_ns % S == 0:
+            supervisor.heard("executive", now_ns)
+        supervisor.look(now_ns)
+    supervisor.look(30 * S)
+    assert not FakeChild.made[0].killed
+    supervisor.look(30 * S + 1)
+    assert FakeChild.made[0].killed
+
+
+@pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
+def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervisor, paused_s):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.heard("executive", S)
+    supervisor.look(S + 100 * MS)
+    on_ns = S + 100 * MS + round(paused_s * S)
+    for now_ns in range(on_ns, on_ns + 900 * MS, 50 * MS):
+        supervisor.look(now_ns)
+    assert not FakeChild.made[0].killed
+    supervisor.look(on_ns + 900 * MS + 1)
+    assert FakeChild.made[0].killed
+
+
+def test_a_child_that_is_gone_for_good_is_told(supervisor):
+    supervisor.begin(Charge("record", ["x"], restarts=False), 0)
+    FakeChild.made[0].code = -9
+    supervisor.look(S)
+    supervisor.look(2 * S)
+    assert supervisor.said == ["record ended with -9; not started again"]
+
+
+def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
+    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.look(STARTUP_NS)
+    assert not FakeChild.made[0].killed
+    supervisor.look(STARTUP_NS + 1)
+    assert FakeChild.made[0].killed
+
+
+def test_a_child_ends_when_its_parent_is_killed():
+    parent = (
+        "from tailor.runtime.processes.child import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
+    )
+    process = subprocess.Popen([sys.executable, "-c", parent], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    child = int(first_line(process.stdout))
+    time.sleep(0.2)
+    assert is_alive(child)
+    process.kill()
+    process.communicate()
+    assert gone(child)
+
+
+def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path):
+    order = []
+
+    class Noted(Child):
+        def stop(self, timeout_s=PATIENCE_S):
+            order.append(self.name)
+            return super().stop(0.3 if self.name == "deaf" else timeout_s)
+
+    deaf = (
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('deaf', flush=True); time.sleep(60)"
+    )
+    with stopped_in_order([]) as children:
+        children.append(Noted("meek", ["sleep", "60"]))
+        with (tmp_path / "out").open("w") as out:
+            children.append(Noted("deaf", [sys.executable, "-c", deaf], out))
+        wait_until(lambda: "deaf" in (tmp_path / "out").read_text(), "deafness")
+    assert order == ["deaf", "meek"]
+    assert [child.exit_code() for child in children] == [-signal.SIGTERM, -signal.SIGKILL]
+
+
+def test_a_signal_is_a_question_first():
+    for number in SIGNALS:
+        with handlers_kept():
+            stop = stop_on_signals()
+            assert not stop.requested
+            os.kill(os.getpid(), number)
+            assert stop.requested
+            assert signal.getsignal(number) == signal.SIG_DFL
+
+
+def test_a_closing_terminal_asks_to_end_but_not_below_nohup():
+    with handlers_kept():
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        stop = stop_on_signals()
+        os.kill(os.getpid(), signal.SIGHUP)
+        assert not stop.requested
+    assert signal.SIGHUP in SIGNALS
+
+
+@contextmanager
+def handlers_kept():
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,62 @@
+"""Settings from tables: all mistakes at once, each with its key."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tailor.executive.composition import Order
+from tailor.schemas.errors import UsageError
+from tailor.schemas.settings import from_table
+from tailor.tools.cli.deployment import Deployment
+
+
+def test_nested_tables_become_nested_settings():
+    read = from_table(Deployment, {"executive": {"seed": 3, "refinement": {"horizon": 4, "k_std": 2}}}, "f.toml")
+    assert (read.executive.seed, read.executive.refinement.horizon, read.executive.refinement.k_std) == (3, 4, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        ({"bus": {"endpont": "x"}}, "f.toml: unknown key 'bus.endpont' (expected one of: endpoint)"),
+        ({"executive": {"seed": "x"}}, "f.toml: 'executive.seed' is 'x', expected int"),
+        ({"executive": {"seed": True}}, "f.toml: 'executive.seed' is True, expected int"),
+        ({"executive": {"refinement": {"horizon": 0}}}, "f.toml: refinement.horizon is 0, expected at least 1"),
+        ({"executive": {"seed": -1}}, "f.toml: executive.seed is -1, expected at least 0"),
+        ({"executive": {"adopt_gain_s": float("nan")}}, "f.toml: executive.adopt_gain_s is nan, expected at least 0"),
+        ({"executive": {"overruns_to_hold": 0}}, "f.toml: executive.overruns_to_hold is 0, expected at least 1"),
+        (
+            {"executive": {"refinement": {"batch": 10**9}}},
+            "f.toml: refinement.batch is 1000000000, expected at most 1000000",
+        ),
+        (
+            {"executive": {"refinement": {"arrival_spread": [["x"]]}}},
+            "f.toml: 'executive.refinement.arrival_spread' is ['x'], expected 2 values",
+        ),
+        (
+            {"executive": {"refinement": {"arrival_spread": [["x", -0.1]]}}},
+            "f.toml: refinement.arrival_spread of x is -0.1, expected a finite number >= 0",
+        ),
+    ],
+)
+def test_mistake_is_told_with_its_key_and_what_was_expected(table, expected):
+    with pytest.raises(UsageError) as caught:
+        from_table(Deployment, table, "f.toml")
+    assert str(caught.value) == expected
+
+
+def test_all_mistakes_are_told_at_once():
+    with pytest.raises(UsageError) as caught:
+        from_table(Deployment, {"colour": 1, "executive": {"seeds": 1, "coast_ticks": 1.5}}, "f.toml")
+    assert [key in str(caught.value) for key in ("'colour'", "'executive.seeds'", "'executive.coast_ticks'")] == [
+        True
+    ] * 3
+
+
+def test_an_order_survives_its_way_through_json():
+    import dataclasses
+
+    order = Order("soccer", "approach-dribble")
+    assert from_table(Order, json.loads(json.dumps(dataclasses.asdict(order))), "x") == order

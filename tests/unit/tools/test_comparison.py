@@ -1,0 +1,127 @@
+"""Surveys and comparisons of recordings that are made up here."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.session import encoding_of
+from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand
+from tailor.schemas.own import example
+from tailor.tools.main import main
+
+EXECUTIVE, DRIVER = "ab" * 16, "cd" * 16
+MS = 1_000_000
+START_NS = 1_700_000_000 * 10**9
+
+
+class Script:
+    """Writes a recording, message by message."""
+
+    def __init__(self, path):
+        self.tape, self.numbers, self.path = Tape(path, {}), {}, path
+
+    def say(self, at_ms, key, message, sender=EXECUTIVE, skip=0):
+        number = self.numbers[key] = self.numbers.get(key, 0) + 1 + skip
+        wall_ns = START_NS + at_ms * MS
+        raw = Raw(key, encode(message), pack(Origin(number, wall_ns, sender)), encoding_of(type(message)), True, None)
+        self.tape.write(raw, wall_ns)
+
+    def close(self):
+        self.tape.close()
+        return str(self.path)
+
+
+def a_run(path, speed=0.5, slower_ms=0):
+    script = Script(path)
+    status, finished = example(ExecStatus), example(ActionFinished)
+    for tick in range(1, 21):
+        at = tick * 100
+        script.say(at, "agilo/odom", Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0), DRIVER, skip=tick == 10)
+        script.say(
+            at, "agilo/driver", replace(example(DriverState), mode="stopped" if tick > 15 else "armed", reason="r")
+        )
+        script.say(at, "agilo/cmd_vel", VelocityCommand(0, 0.0 if tick < 3 else speed, 0.1 if tick == 12 else 0.0))
+        script.say(at, "exec/tick", replace(example(TickReport), tick=tick, lateness_ns=tick * MS, skipped=tick == 7))
+        mode = "FAULT" if tick == 20 else "EXECUTING"
+        result = "achieved" if tick >= 19 else ""
+        script.say(at, "exec/status", replace(status, tick=tick, mode=mode, reason="no", goal="(g)", result=result))
+    action = replace(finished, action="goToPose", outcome="done", predicted_s=4.0, actual_s=5.0 + slower_ms / 1000)
+    script.say(2100, "exec/finished", action)
+    return script.close()
+
+
+def told(capsys, *arguments):
+    code = main([*arguments, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_info_tells_what_a_recording_holds(tmp_path, capsys):
+    code, info = told(capsys, "info", a_run(tmp_path / "a.mcap"))
+    assert code == 0
+    assert (info["messages"], info["duration_s"], info["damage"], info["drops"]) == (101, 2.0, "", {})
+    odom = next(t for t in info["topics"] if t["key"] == "agilo/odom")
+    assert odom == {
+        "key": "agilo/odom",
+        "type": "nav_msgs/msg/Odometry",
+        "sender": DRIVER,
+        "count": 20,
+        "rate_hz": 10.0,
+        "longest_gap_s": 0.1,
+        "lost": 1,
+        "rejected": {},
+    }
+    assert info["episodes"] == [{"goal": "(g)", "result": "achieved"}]
+    assert info["actions"] == [{"action": "goToPose", "outcome": "done", "predicted_s": 4.0, "actual_s": 5.0}]
+    assert info["modes"] == {"EXECUTING": 19, "FAULT": 1}
+    assert (info["faults"], info["driver_stops"]) == (["no"], ["agilo: r"])
+    assert info["ticks"]["late_ms"] == {"p50": 10.5, "p99": 19.81, "max": 20.0}
+    assert info["ticks"]["skipped_periods"] == 1
+
+
+def test_info_in_words_names_the_actions(tmp_path, capsys):
+    assert main(["info", a_run(tmp_path / "a.mcap")]) == 0
+    said = capsys.readouterr().out
+    assert "goToPose done 4.00 5.00 +25%" in " ".join(said.split())
+    assert "driver stopped: agilo: r" in said
+
+
+def test_info_of_a_damaged_file_says_so_and_ends_with_1(tmp_path, capsys):
+    path = a_run(tmp_path / "a.mcap")
+    (tmp_path / "cut.mcap").write_bytes(Path(path).read_bytes()[:-100])
+    code, info = told(capsys, "info", str(tmp_path / "cut.mcap"))
+    assert code == 1
+    assert info["damage"].startswith("no footer")
+
+
+def test_a_run_compares_equal_to_itself(tmp_path, capsys):
+    path = a_run(tmp_path / "a.mcap")
+    code, comparison = told(capsys, "compare", path, path)
+    assert (code, comparison["equal"]) == (0, True)
+    assert comparison["commands"] == {"seconds": 1.7, "first_s": None, "rms": 0.0, "max": 0.0}
+
+
+def test_runs_that_differ_are_told_apart(tmp_path, capsys):
+    first, second = a_run(tmp_path / "a.mcap"), a_run(tmp_path / "b.mcap", speed=0.25, slower_ms=500)
+    code, comparison = told(capsys, "compare", first, second)
+    assert (code, comparison["equal"]) == (1, False)
+    assert comparison["commands"]["first_s"] == 0.0
+    assert comparison["commands"]["max"] == 0.25
+    assert (comparison["first"]["total_s"], comparison["second"]["total_s"]) == (5.0, 5.5)
+    assert main(["compare", first, second, "--plot", str(tmp_path / "c.png")]) == 1
+    assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
+    assert "durations: 5.00 s against 5.50 s (+10.0%)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["info", "compare", "cut", "recover", "replay"])
+def test_a_file_that_is_no_recording_ends_with_2_and_one_line(command, tmp_path, capsys):
+    path = tmp_path / "no.mcap"
+    path.write_text("not at all")
+    assert main([command, *[str(path)] * (2 if command == "compare" else 1)]) == 2
+    said = capsys.readouterr().err
+    assert said == f"tailor {command}: {path}: not an MCAP file\n"

@@ -1,0 +1,176 @@
+"""Gathering: same seed, same bits, however it is spread, interrupted or resumed."""
+
+import json
+import shutil
+from pathlib import Path
+
+import joblib
+import numpy as np
+import pytest
+
+from tailor.models.episodes.episodes import read_data_set
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, Work
+from tailor.tools.main import main
+from tests.support import far_backend
+
+COUNT = PART + 4
+
+
+def gather(folder: Path, *more: str, seed: int = 7) -> int:
+    settings = ["--episodes", str(COUNT), "--jobs", "1", "--seed", str(seed), "--json"]
+    return main(["gather", "agilo", "goToPose", "--out", str(folder), *settings, *more])
+
+
+@pytest.fixture(scope="module")
+def gathered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("gathered")
+    assert gather(folder) == 0
+    return folder / "goToPose"
+
+
+def parts(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted(folder.glob("part-*"))}
+
+
+def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    work = Work("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
+    gathering.prepare(work, resume=False)
+    gathering.run_part(work, PART)  # the second part first, and then the process dies in the midst of the first
+    (tmp_path / "goToPose" / "part-000000-000020.1234.tmp").write_bytes(b"half a part")
+    assert gather(tmp_path, "--resume") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+    assert not list((tmp_path / "goToPose").glob("*.tmp"))
+
+
+def test_episodes_of_evaluation_are_never_those_of_training(gathered: Path) -> None:
+    work = Work("soccer", "goToPose", 8, 7, gathered)
+    evaluation = Work("soccer", "goToPose", 8, 7, gathered, stream=EVALUATION_STREAM)
+    assert not np.isclose(work.rng(0).uniform(size=4), evaluation.rng(0).uniform(size=4)).any()
+
+
+def test_a_data_set_holds_what_happened(gathered: Path) -> None:
+    data = read_data_set(gathered)
+    assert [episode.number for episode in data.episodes] == list(range(COUNT))
+    for episode in data.episodes:
+        assert episode.success or episode.failure
+        assert abs(len(episode.ticks) * 0.1 - episode.duration_s) < 0.15
+        assert np.abs(episode.ticks[0, :2] - episode.arguments[:2]).max() < 0.2
+        assert (episode.ticks[:, 4:] == episode.arguments[4:]).all()
+
+
+def test_the_manifest_says_how_it_was_made(gathered: Path) -> None:
+    manifest = read_data_set(gathered).manifest
+    assert (manifest["robot"], manifest["action"], manifest["seed"]) == ("agilo", "goToPose", 7)
+    assert [argument["name"] for argument in manifest["arguments"]][:4] == ["x", "y", "phi", "v"]
+    assert len(manifest["source_sha256"]) == 64
+
+
+def test_gathering_over_other_episodes_is_refused(gathered: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert gather(gathered.parent) == 2
+    assert "--resume" in capsys.readouterr().err
+    assert gather(gathered.parent, "--resume", seed=8) == 2
+    assert "seed = 7, expected 8" in capsys.readouterr().err
+
+
+def test_going_on_with_fewer_episodes_throws_none_away(gathered: Path, tmp_path: Path, capsys) -> None:
+    """The default of --episodes is small, and easily left out."""
+    folder = shutil.copytree(gathered, tmp_path / "goToPose")
+    assert gather(tmp_path, "--resume", "--episodes", "3") == 2
+    assert f"--episodes is 3, expected at least {COUNT}" in capsys.readouterr().err
+    assert parts(folder) == parts(gathered)
+
+
+def test_whole_runs_do_not_overwrite_random_episodes(gathered: Path, capsys) -> None:
+    before = (gathered / "manifest.json").read_text()
+    into = ["--out", str(gathered.parent), "--episodes", "1", "--jobs", "1", "--json"]
+    assert main(["gather", "agilo", "--on-policy", "approach", *into]) == 2
+    assert "goToPose: holds episodes already" in capsys.readouterr().err
+    assert (gathered / "manifest.json").read_text() == before
+    assert not (gathered.parent / "approachBall").exists()
+
+
+def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Path, capsys) -> None:
+    def runs(*more: str) -> int:
+        words = ["gather", "agilo", "--on-policy", "approach", "--out", str(tmp_path), "--jobs", "1", "--json", *more]
+        return main(words)
+
+    assert runs("--episodes", "1") == 0
+    assert json.loads(capsys.readouterr().out) == {"folder": str(tmp_path), "runs": 1, "run_now": 1}
+    assert runs("--episodes", "2", "--resume") == 0  # a chunk that was shorter grows
+    assert len(read_data_set(tmp_path / "approachBall").episodes) == 2
+    capsys.readouterr()
+    assert runs("--episodes", "2", "--resume") == 0
+    assert json.loads(capsys.readouterr().out)["run_now"] == 0
+    assert runs("--episodes", "2", "--resume", "--seed", "8") == 2
+    assert "with seed = 7, expected 8" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["r2d2"], "no robot 'r2d2'"),
+        (["agilo", "fly"], "no action 'fly'"),
+        (["agilo", "--episodes", "0"], "--episodes is 0, expected at least 1"),
+        (["agilo", "--episodes", "many"], "--episodes is 'many', expected a whole number"),
+        (["agilo", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
+        (["agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
+        (["agilo", "--on-policy", "approach", "--zoo", "nowhere"], "no action models for robot 'agilo' in nowhere"),
+        (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
+    ],
+)
+def test_bad_input_is_told_before_anything_starts(wrong: list[str], said: str, tmp_path: Path, capsys) -> None:
+    assert main(["gather", *wrong, "--out", str(tmp_path / "x")]) == 2
+    assert said in capsys.readouterr().err.splitlines()[-1]
+    assert not (tmp_path / "x").exists()
+
+
+def test_what_is_not_a_data_set_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"no manifest\.json"):
+        read_data_set(tmp_path)
+    (tmp_path / "manifest.json").write_text('{"robot": 1}')
+    with pytest.raises(UsageError, match="not a manifest"):
+        read_data_set(tmp_path)
+
+
+def test_another_joblib_backend_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    far_backend.register()
+    sent = far_backend.FarBackend.sent
+    with joblib.parallel_config(far_backend.NAME):
+        assert gather(tmp_path, "--jobs", "2") == 0
+    assert far_backend.FarBackend.sent == sent + 2  # both parts were made elsewhere
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+
+
+def test_dask_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="pip install 'dask[distributed]' to test it")
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with cluster, distributed.Client(cluster), joblib.parallel_config("dask"):
+        assert gather(tmp_path, "--jobs", "2") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+
+
+@pytest.mark.slow
+def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> None:
+    assert gather(tmp_path, "--jobs", "2") == 0
+    assert parts(tmp_path / "goToPose") == parts(gathered)
+
+
+RECORDING = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach-dribble.mcap"
+
+
+def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_path: Path, capsys) -> None:
+    cut = ["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]
+    assert main(cut) == 0
+    counts = json.loads(capsys.readouterr().out)
+    assert counts["approachBall"] == 1
+    assert {path.name for path in tmp_path.iterdir()} == {action for action, count in counts.items() if count}
+    assert main(cut) == 2  # what is there is not overwritten
+    assert "holds episodes already" in capsys.readouterr().err
+
+
+def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:
+    assert main(["gather", "powercube", "--from", str(RECORDING), "--out", str(tmp_path / "x")]) == 2
+    assert "is recorded, expected those of powercube: reach" in capsys.readouterr().err
+    assert not (tmp_path / "x").exists()

@@ -1,0 +1,148 @@
+"""tailor models, train and evaluate: what they say, and that they refuse in one line."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tailor.models import runtime
+from tailor.models.features.features import projective
+from tailor.models.rules.rules import duration_rules
+from tailor.models.trees.linear_tree import LinearTree
+from tailor.tools.main import main
+
+
+def tree() -> LinearTree:
+    """Two leaves: near, and far with a slope in distance and angle."""
+    nodes = [(2, 1.5, 1, 2, -1), (-1, 0.0, 0, 0, 0), (-1, 0.0, 0, 0, 1)]
+    near = (np.zeros(5), 2.0, 1.0, 3.0, 0.1, 10)
+    far = (np.array([0, -0.5, 1.6, 0.573, 0]), 0.4, 2.0, 12.0, 0.25, 90)
+    return LinearTree.of(nodes, [near, far])
+
+
+def test_rules_read_like_the_paper_s_with_units_and_degrees() -> None:
+    assert duration_rules(tree(), projective.features) == [
+        "if dist <= 1.50 m\nthen time = 2 s   [1.0 .. 3.0 s, ± 0.10 s]",
+        "if dist > 1.50 m\nthen time = 0.4 s - 0.5 s/(m/s) · v_g + 1.6 s/m · dist + 0.01 s/° · angle_to"
+        "   [2.0 .. 12.0 s, ± 0.25 s]",
+    ]
+
+
+def test_every_model_that_ships_is_sound(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["models", "check", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert "agilo/goToPose/duration" in said["checked"]
+    assert said["failed"] == {}
+
+
+def test_a_model_that_is_not_sound_is_told_and_fails_the_check(tmp_path: Path, capsys) -> None:
+    folder = tmp_path / "agilo" / "goToPose"
+    folder.mkdir(parents=True)
+    for name in ("duration.onnx", "duration.card.json"):
+        (folder / name).write_bytes((runtime.ZOO / "agilo" / "goToPose" / name).read_bytes() + b" ")
+    assert main(["models", "check", "--zoo", str(tmp_path)]) == 1
+    assert "sha256" in capsys.readouterr().out
+
+
+def test_list_and_show_are_readable_by_scripts(capsys) -> None:
+    assert main(["models", "list", "--json"]) == 0
+    assert {"model", "learner", "episodes", "test"} <= json.loads(capsys.readouterr().out)[0].keys()
+    assert main(["models", "show", "agilo/goToPose", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["kind"] == "duration"
+
+
+def test_a_robot_s_name_stands_for_all_its_models(capsys) -> None:
+    assert main(["models", "list", "powercube", "--json"]) == 0
+    said = [row["model"] for row in json.loads(capsys.readouterr().out)]
+    assert "powercube/reach/duration" in said
+    assert all(name.startswith("powercube/") for name in said)
+    assert main(["models", "list", "r2d2"]) == 2
+    assert "'r2d2' has no models" in capsys.readouterr().err
+
+
+def test_tables_in_a_pipe_tell_names_whole(capsys) -> None:
+    assert main(["models", "list"]) == 0
+    assert "agilo/approachBall/duration" in capsys.readouterr().out
+
+
+def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
+    assert main(["models", "rules", "agilo/goToPose"]) == 0
+    first, _, rule, *_ = capsys.readouterr().out.splitlines()
+    assert "rules of a tree distilled from it, which differ from the model by" in first
+    assert "R² 0.9" in first
+    assert rule.startswith("if ")
+
+
+@pytest.mark.parametrize("name", ["agilo/goToPose", "agilo/approachBall/success"])
+def test_rules_of_any_single_tree_can_be_asked_for(name: str, capsys) -> None:
+    assert main(["models", "rules", name, "--of", "bag:3"]) == 0
+    first, _, rule, then, *_ = capsys.readouterr().out.splitlines()
+    assert "rules of its tree 3, which differ from the model by" in first
+    assert rule.startswith("if ")
+    assert then.startswith(("then time =", "then success in"))
+    assert main(["models", "rules", name, "--of", "bag:99"]) == 2
+    assert "there is no tree 99" in capsys.readouterr().err
+
+
+def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["gather", "agilo", "goToPose", "--episodes", "48", "--jobs", "1", "--json"]) == 0
+    settings = ["--learner", "linear", "--failure-learner", "tree", "--zoo", "zoo"]
+    assert main(["train", "agilo", "--data", "data/agilo", *settings, "--json"]) == 0
+    model = runtime.load_model("agilo/goToPose/duration", Path("zoo"))
+    assert model.card["command"].startswith("tailor gather agilo goToPose --episodes 48 --seed 7 --out data/agilo && ")
+    assert " tailor train agilo goToPose --data data/agilo --features projective " in model.card["command"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["models", "show", "agilo/fly"], "no such file"),
+        (["models", "list", "--zoo", "nowhere"], "no action models"),
+        (["train", "agilo", "--data", "nowhere"], "no data sets"),
+        (["train", "agilo", "--failure-learner", "magic"], "learner 'magic' is unknown for success"),
+        (["train", "agilo", "--energy-features", "magic"], "no feature space 'magic'"),
+        (["train", "agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
+        (
+            ["gather", "agilo", "goToPose", "--episodes", "1", "--out", "/dev/null"],
+            "/dev/null/goToPose: Not a directory",
+        ),
+        (["train-benefit", "agilo", "--learner", "magic"], "learner 'magic' is unknown for benefit"),
+        (["train-benefit", "agilo", "--episodes", "3"], "3 pairs of episodes, expected at least 100"),
+        (["evaluate", "table1", "--episodes", "0"], "--episodes is 0, expected at least 2"),
+        (["evaluate", "table3", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
+        (["evaluate", "energy", "--weights", "nan", "1"], "--weights is 'nan', expected a number, at least 0"),
+        (["evaluate", "feature-spaces", "--action", "fly"], "no action 'fly' in soccer"),
+        (
+            ["evaluate", "feature-spaces", "--robot", "powercube"],
+            "no action 'goToPose' in arm (expected one",
+        ),
+        (["evaluate", "table9"], "evaluation 'table9' is unknown"),
+        (["evaluate"], "no evaluation named"),
+        (["evaluate", "table1", "--robot", "r2d2"], "no action models for robot 'r2d2'"),
+        (["gather", "agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
+        (["gather", "agilo", "--on-policy", "chess"], "no scenario 'chess'"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, capsys, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) -> None:
+    """Both predict an amount, and both are loaded together."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(
+        "tailor.tools.evaluations.models.fresh.noise_floor", lambda *_: {"mae_s": 0.1}
+    )  # takes half a minute
+    main(["evaluate", "table1", "--episodes", "12", "--jobs", "1", "--json"])
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert sorted(row["action"] for row in rows) == ["approachBall", "dribbleBall", "goToPose"]
+    assert all(row["relative_pct"] < 25 for row in rows)
+    promised = {"robot", "action", "episodes", "mean_duration_s", "mae_s", "mae_ci95", "paper_mae_s"}
+    assert all(promised <= row.keys() for row in rows)  # null where the paper has none
+    assert [row["paper_mae_s"] for row in rows if row["action"] == "goToPose"] == [0.22]

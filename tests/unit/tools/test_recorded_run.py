@@ -1,0 +1,93 @@
+"""Anyone may write on exec/tick: what is no tick of an executive is counted and told, and costs nobody the rest."""
+
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
+from tailor.runtime.recordings.recording import open_recording
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import EStop, TickReport
+from tailor.schemas.typesystem import ros_type
+from tailor.tools.main import main
+from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
+
+GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
+STRANGER = "ab" * 16
+GARBAGE = b"\0\1\0\0garbage"
+TICK = ros_type(TickReport)
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return list(open_recording(GOLDEN).messages())
+
+
+@pytest.fixture(scope="module")
+def executive(whole):
+    return next(message.sender for message in whole if message.key == TICK_KEY)
+
+
+def written(path, messages, said=()):
+    """The messages, with what else was said on exec/tick: rows of sender, bytes and ROS type."""
+    tape = Tape(path, {}, compact=True)
+    rows = [(m.key, m.data, m.sender, m.sequence, m.ros_type) for m in messages]
+    rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(said)]
+    for n, (key, data, sender, sequence, kind) in enumerate(rows):
+        attachment = pack(Origin(sequence, 10 + n, sender)) if sender else None
+        tape.write(Raw(key, data, attachment, ENCODING + kind, True, None), 10 + n)
+    tape.close()
+    return path
+
+
+@pytest.mark.parametrize("sender", ["", STRANGER], ids=["unsigned", "a stranger"])
+def test_a_strangers_garbage_on_the_tick_topic_costs_nothing(tmp_path, capsys, whole, sender):
+    path = written(tmp_path / "a.mcap", whole, [(sender, GARBAGE, TICK)] * 3)
+    assert main(["verify", str(path)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith("equal: ")
+    assert said[1] == f"  left out of exec/tick: 3 said by {sender[:8] or 'nobody'}, not by an executive"
+
+
+def test_a_strangers_well_formed_ticks_are_no_run(tmp_path, whole, executive):
+    tick = next(m.data for m in whole if m.key == TICK_KEY)
+    runs = RecordedRuns(written(tmp_path / "a.mcap", whole, [(STRANGER, tick, TICK)]))
+    assert [run.sender for run in runs.runs] == [executive]
+    assert runs.left_out.total() == 1
+
+
+def test_garbage_under_the_executives_own_name_is_told_and_the_run_is_verified(tmp_path, capsys, whole, executive):
+    stop = encode(EStop(True))
+    said = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
+    assert main(["verify", str(written(tmp_path / "a.mcap", whole, said))]) == 0
+    assert "left out of exec/tick: 2 malformed, 1 std_msgs/msg/Bool" in capsys.readouterr().out
+
+
+def test_a_tick_that_is_damaged_itself_is_missed_by_its_number_and_the_damage_told(tmp_path, capsys, whole, executive):
+    kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
+    path = written(tmp_path / "a.mcap", kept, [(executive, GARBAGE, TICK)])
+    assert main(["verify", str(path)]) == 2
+    assert "tick 7 is missing (left out of exec/tick: 1 malformed)" in capsys.readouterr().err
+
+
+def test_a_file_with_nothing_but_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):
+    others = [m for m in whole if m.key not in (TICK_KEY, PROVENANCE_KEY)]
+    path = written(tmp_path / "a.mcap", others, [(STRANGER, GARBAGE, TICK)])
+    with pytest.raises(UsageError, match=r"no message of exec/tick to be used \(left out of exec/tick: 1 malformed\)"):
+        RecordedRuns(path)
+
+
+def test_where_no_sender_says_what_it_is_made_of_every_sender_of_ticks_has_a_run(tmp_path, whole, executive):
+    others = [m for m in whole if m.key != PROVENANCE_KEY]
+    tick = next(m.data for m in whole if m.key == TICK_KEY)
+    runs = RecordedRuns(written(tmp_path / "a.mcap", others, [(STRANGER, tick, TICK)]))
+    assert {run.sender for run in runs.runs} == {executive, STRANGER}
+
+
+def test_any_number_of_strangers_is_told_in_one_short_line(tmp_path, whole):
+    said = [(f"{n:08x}" * 4, GARBAGE, TICK) for n in range(40)]
+    runs = RecordedRuns(written(tmp_path / "a.mcap", whole, said))
+    assert runs.left_out_text().endswith(", 37 others")

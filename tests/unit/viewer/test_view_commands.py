@@ -1,0 +1,109 @@
+"""`tailor view` and `tailor why` on recordings: what they write, say, and refuse."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.typesystem import ros_type
+from tailor.tools.commands.look import view, why
+from tests.support import synthetic_run
+
+SENDERS = {"exec/": "ab" * 16}
+BEGIN_NS = 1_700_000_000_000_000_000
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory) -> Path:
+    """The soccer run on tape; its provenance names no scenario that could be composed."""
+    path = tmp_path_factory.mktemp("tape") / "run.mcap"
+    tape = Tape(path, {})
+    for number, t in enumerate(synthetic_run.soccer_run()):
+        kind = f"application/cdr;{ros_type(type(t.message))}"
+        origin = pack(Origin(number, BEGIN_NS, synthetic_run.SENDER))
+        tape.write(Raw(t.key, encode(t.message), origin, kind, True, None), BEGIN_NS + t.time_ns)
+    tape.close()
+    return path
+
+
+def run(command, *words) -> int:
+    parser = argparse.ArgumentParser()
+    command.configure(parser)
+    return command.run(parser.parse_args([str(word) for word in words]))
+
+
+def rows_in(html: Path) -> list:
+    return json.loads(re.search(r'id="data">(.*?)</script>', html.read_text(), re.DOTALL)[1])["rows"]
+
+
+def test_view_writes_the_whole_run_into_one_page(recording, tmp_path, capsys) -> None:
+    output = tmp_path / "folder" / "page.html"
+    assert run(view, recording, "--output", output, "--no-models") == 0
+    assert capsys.readouterr().out.strip() == str(output)
+    rows = rows_in(output)
+    told = list(synthetic_run.soccer_run())
+    assert rows[-1][0] == pytest.approx(told[-1].time_ns / 1e9)
+    assert sum(kind == "tick" for _, kind, _ in rows) == sum("tick" in t.key for t in told)
+
+
+def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -> None:
+    assert run(view, recording, "--no-models") == 0
+    assert recording.with_suffix(".html").exists()
+    capsys.readouterr()
+
+
+def test_view_shows_only_the_executive_that_is_asked_for(recording, tmp_path, capsys) -> None:
+    output = tmp_path / "page.html"
+    run(view, recording, "-o", output, "--no-models", "--sender", "cd")
+    kinds = {kind for _, kind, _ in rows_in(output)}
+    assert "tick" not in kinds
+    assert "truth" in kinds
+    capsys.readouterr()
+
+
+def test_view_is_the_same_page_every_time(recording, tmp_path, capsys) -> None:
+    pages = [tmp_path / "a.html", tmp_path / "b.html"]
+    for output in pages:
+        run(view, recording, "-o", output)
+    assert pages[0].read_bytes() == pages[1].read_bytes()
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize("words", [[], ["x.mcap", "--live"], ["--live", "--port", "70000"]])
+def test_view_refuses_what_makes_no_sense(words) -> None:
+    with pytest.raises(UsageError, match="expected"):
+        run(view, *words)
+
+
+@pytest.mark.parametrize("command", [view, why])
+def test_what_is_no_recording_is_refused_by_name(command, tmp_path) -> None:
+    nothing = tmp_path / "nothing.mcap"
+    with pytest.raises(UsageError, match=r"nothing\.mcap"):
+        run(command, nothing)
+    nothing.write_bytes(b"not a recording")
+    with pytest.raises(UsageError, match=r"nothing\.mcap"):
+        run(command, nothing)
+
+
+def test_why_refuses_a_moment_before_any_decision(recording) -> None:
+    with pytest.raises(UsageError, match=r"no decision before 0\.1 s"):
+        run(why, recording, "--at", 0.1)
+
+
+def test_why_says_which_part_cannot_be_loaded(recording) -> None:
+    with pytest.raises(UsageError, match="cannot load what it was made with"):
+        run(why, recording)
+
+
+def test_why_refuses_a_picture_of_another_kind_before_it_reads(recording, tmp_path) -> None:
+    with pytest.raises(UsageError, match=r"\.png or \.html"):
+        run(why, tmp_path / "missing.mcap", "-o", "why.gif")

@@ -1,0 +1,160 @@
+"""The live page's server: newcomers get everything, slow ones are let go, and only this machine is served."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import socket
+from contextlib import contextmanager
+
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import Intake
+from tailor.schemas import messages as m
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.typesystem import ros_type
+from tailor.tools.viewer import server
+from tailor.tools.viewer.feed import WAITING, Feed
+from tailor.tools.viewer.listening import Listener
+from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.timeline import Row, Story
+from tests.support.patience import PATIENCE_S
+
+
+def tick(at_s: float) -> Row:
+    return Row(at_s, "tick", {"work": 1.0})
+
+
+def raw(message: m.Message, key: str = "exec/status", sender: str = "ab" * 16, wall_ns: int = 10**18) -> Raw:
+    attachment = pack(Origin(1, 0, sender))
+    return Raw(key, encode(message), attachment, f"application/cdr;{ros_type(type(message))}", True, wall_ns)
+
+
+def status(mode: str = "READY") -> m.ExecStatus:
+    return m.ExecStatus(0, 1, mode, "", "", "", "", "", 0, 0.0, 0.0)
+
+
+@contextmanager
+def events(port: int):
+    """The lines of the event stream."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
+    connection.request("GET", "/events")
+    answer = connection.getresponse()
+    assert answer.getheader("Content-Type") == "text/event-stream"
+    yield iter(answer.readline, b"")
+    answer.close()
+    connection.close()
+
+
+def next_rows(lines) -> list:
+    for line in lines:
+        if line.startswith(b"data: ["):
+            return json.loads(line[6:])
+    raise AssertionError("the stream has ended")
+
+
+def get(port: int, path: str, host: str = "127.0.0.1") -> int:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
+    connection.request("GET", path, headers={"Host": host})
+    return connection.getresponse().status
+
+
+def test_a_newcomer_gets_what_was_and_what_comes() -> None:
+    feed = Feed()
+    feed.publish([tick(0.0)])
+    with feed.subscribe() as page:
+        feed.publish([tick(0.1)])
+        assert json.loads(page.next(0)) == [[0.0, "tick", {"work": 1.0}]]
+        assert json.loads(page.next(0)) == [[0.1, "tick", {"work": 1.0}]]
+        assert page.next(0) is None
+    assert feed.pages == 0
+
+
+def test_old_ticks_are_forgotten_and_old_events_are_not() -> None:
+    feed = Feed(keep_s=10)
+    feed.publish([Row(0.0, "plan", {}), tick(0.0)])
+    for k in range(200):
+        feed.publish([tick(k)])
+    with feed.subscribe() as page:
+        kept = json.loads(page.next(0))
+    assert kept[0][1] == "plan"
+    assert 10 <= len(kept) <= 80
+    assert kept[-1][0] == 199
+
+
+def test_a_page_that_does_not_read_is_let_go_and_holds_up_nobody() -> None:
+    feed = Feed()
+    with feed.subscribe() as page:
+        for k in range(2 * WAITING):
+            feed.publish([tick(k)])
+        assert page.lost
+
+
+def test_the_server_serves_the_page_and_its_events_and_nothing_else() -> None:
+    feed = Feed()
+    with serving("<p>page</p>", feed, 0) as port:
+        assert get(port, "/") == 200
+        assert get(port, "/etc/passwd") == 404
+        feed.publish([tick(0.0)])
+        with events(port) as lines:
+            assert (next(lines), next(lines)) == (b"retry: 1000\n", b"event: reset\n")
+            assert next_rows(lines) == [[0.0, "tick", {"work": 1.0}]]
+            feed.publish([tick(0.5)])
+            assert next_rows(lines) == [[0.5, "tick", {"work": 1.0}]]
+
+
+def test_a_page_elsewhere_that_had_its_name_point_here_gets_nothing() -> None:
+    with serving("page", Feed(), 0) as port:
+        assert get(port, "/", host="evil.example:80") == 403
+        assert get(port, "/events", host="evil.example") == 403
+        assert get(port, "/", host=f"localhost:{port}") == 200
+
+
+def test_the_server_listens_on_this_machine_alone() -> None:
+    with serving("page", Feed(), 0) as port, socket.socket() as other:
+        other.bind(("127.0.0.2", port))  # free: nobody listens at every address
+
+
+def test_too_many_pages_are_refused(monkeypatch) -> None:
+    monkeypatch.setattr(server, "MOST_PAGES", 1)
+    with serving("page", Feed(), 0) as port, events(port) as lines:
+        next(lines)
+        next_rows(lines)
+        assert get(port, "/events") == 503
+
+
+def test_a_port_in_use_is_told_in_one_line() -> None:
+    with (
+        serving("page", Feed(), 0) as port,
+        pytest.raises(UsageError, match=f"--port {port}"),
+        serving("", Feed(), port),
+    ):
+        pass
+
+
+def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
+    intake, feed = Intake(), Feed()
+    listener = Listener(intake, Story(), feed)
+    intake.put(raw(status()))
+    intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
+    listener.look()
+    with feed.subscribe() as page:
+        told = json.loads(page.next(0))
+    assert [kind for _, kind, _ in told] == ["state", "action", "belief", "odom"]
+    assert told[-1][0] == 0.25
+    assert told[-1][2]["x"] == 1.5
+
+
+def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
+    intake, feed = Intake(), Feed()
+    good = raw(status())
+    intake.put(Raw(good.key, good.payload[:-9], good.attachment, good.encoding, True, 1))
+    intake.put(Raw("exec/status", b"hello", None, "text/plain", True, 1))
+    intake.put(Raw(good.key, good.payload, good.attachment, good.encoding, False, 1))
+    intake.put(raw(status(), sender="cd" * 16))
+    Listener(intake, Story(), feed, sender="ab").look()
+    with feed.subscribe() as page:
+        assert json.loads(page.next(0)) == []

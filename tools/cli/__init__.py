@@ -1,0 +1,1 @@
+"""Pieces of a command line: endpoints, deployment files, checked numbers, terminal output."""

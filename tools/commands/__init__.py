@@ -1,0 +1,1 @@
+"""The commands of `tailor`, one module each, with `configure(parser)` and `run(arguments)`."""

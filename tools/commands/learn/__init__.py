@@ -1,0 +1,1 @@
+"""Commands that gather episodes and train models."""

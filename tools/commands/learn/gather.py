@@ -1,0 +1,146 @@
+"""Run actions with random arguments in simulation, faster than real time, and keep the episodes to learn from."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least, processes
+from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import Work
+
+if TYPE_CHECKING:
+    from tailor.tools.learning.run_gathering import Policy
+
+EPILOG = """\
+examples:
+  tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
+  tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
+  tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
+  tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
+
+Each action's episodes go to OUT/ACTION: Parquet parts, and manifest.json that says how they were made. The same seed
+gives the same bits for any number of jobs."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    parser.add_argument("robot", help="whose actions, e.g. agilo")
+    parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all that have a model)")
+    count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
+    parser.add_argument("--episodes", type=count, default=1000, help="how many of each (default: %(default)s)")
+    parser.add_argument("--jobs", type=processes, default=2, help="processes (default: %(default)s)")
+    parser.add_argument("--seed", type=seed, default=7, help="draws arguments and noise (default: %(default)s)")
+    parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
+    other = parser.add_mutually_exclusive_group()
+    other.add_argument("--on-policy", nargs="+", metavar="SCENARIO", help="whole runs that refine with current models")
+    other.add_argument("--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="cut recorded runs")
+    parser.add_argument("--zoo", default="", help="models for --on-policy (default: those that ship)")
+    parser.add_argument("--resume", action="store_true", help="go on where an interrupted run stopped")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON, no progress bar")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Gather; exit code 0, or 130 if interrupted."""
+    name = gathering.domain_of(arguments.robot)
+    out = arguments.out or Path("data") / arguments.robot
+    if arguments.recordings or arguments.on_policy:
+        return _from_runs(arguments, name, out)
+    works = [
+        Work(name, action, arguments.episodes, arguments.seed, out / action)
+        for action in actions_of(name, arguments.actions)
+    ]
+    for work in works:
+        gathering.prepare(work, arguments.resume)
+    figures = []
+    for work in works:
+        try:
+            figures.append(_gather(work, arguments.jobs, quiet=arguments.json))
+        except KeyboardInterrupt:
+            left = sum(min(gathering.PART, work.episodes - first) for first in gathering.missing_parts(work))
+            Console(stderr=True).print(
+                f"{work.folder}: kept {work.episodes - left} of {work.episodes}; --resume goes on"
+            )
+            return 130
+    if arguments.json:
+        print(json.dumps(figures))
+    return 0
+
+
+def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
+    """Episodes out of recordings, or out of whole runs with the current models."""
+    from tailor.tools.learning import run_gathering
+
+    if arguments.actions:
+        raise UsageError("whole runs take no ACTION, expected none with --from and --on-policy")
+    if arguments.recordings:
+        counts = run_gathering.cut_recordings(domain, out, arguments.recordings)
+        print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
+        return 0
+    for scenario in arguments.on_policy:
+        domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
+    scenarios = tuple(dict.fromkeys(arguments.on_policy))
+    policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
+    return _run_policy(policy, arguments)
+
+
+def _run_policy(policy: Policy, arguments: argparse.Namespace) -> int:
+    from tailor.tools.learning.run_gathering import run_policy
+
+    done, console = 0, Console(stderr=True)
+    try:
+        with Progress(console=console, disable=arguments.json) as progress:
+            task = progress.add_task("runs", total=len(policy.jobs))
+            for count in run_policy(policy, arguments.jobs, arguments.resume):
+                done += count
+                progress.update(task, advance=count)
+    except KeyboardInterrupt:
+        console.print(f"{policy.folder}: kept {done} runs more; --resume goes on")
+        return 130
+    if arguments.json:
+        print(json.dumps({"folder": str(policy.folder), "runs": len(policy.jobs), "run_now": done}))
+    return 0
+
+
+def actions_of(domain: str, asked: list[str]) -> list[str]:
+    """Actions to gather: those asked for, or one for each duration model that the domain's actions name.
+
+    Raises:
+      UsageError: An action that the domain does not have.
+    """
+    known = domains.load(domain).actions
+    for action in asked:
+        gathering.check_action(domain, action)
+    return list(dict.fromkeys(asked)) or sorted({action.duration_model.split("/")[0] for action in known.values()})
+
+
+def _gather(work: Work, jobs: int, quiet: bool) -> dict[str, object]:
+    parts, started = gathering.missing_parts(work), time.perf_counter()
+    left = sum(min(gathering.PART, work.episodes - first) for first in parts)
+    simulated = busy = 0.0
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
+        task = progress.add_task(work.action, total=work.episodes, completed=work.episodes - left, rate="")
+        for count, sim_s, wall_s in gathering.gather(work, parts, jobs):
+            simulated, busy = simulated + sim_s, busy + wall_s
+            speed = simulated / busy if busy else 0.0
+            progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")
+    return {
+        "action": work.action,
+        "folder": str(work.folder),
+        "episodes": left,
+        "simulated_s": simulated,
+        "wall_s": time.perf_counter() - started,
+        "times_real_per_core": simulated / busy if busy else None,
+    }

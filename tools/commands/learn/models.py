@@ -1,0 +1,188 @@
+"""List, show, explain, draw and check action models."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Column, Table
+
+from tailor.executive.composition import asked_ranges, load_models
+from tailor.models.cards.card import Card
+from tailor.models.cards.checks import check_ranges
+from tailor.models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.terminal import table_console
+
+EPILOG = """\
+examples:
+  tailor models list
+  tailor models show agilo/goToPose/duration
+  tailor models rules agilo/goToPose
+  tailor models rules agilo/goToPose --of bag:3
+  tailor models plot agilo/goToPose --data data/agilo --out out/models
+  tailor models check
+
+MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration; ROBOT alone means all of
+its models, nothing all that there are."""
+VERBS = ("list", "show", "rules", "plot", "check")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    said = "one line each; the card; rules in words; pictures; whether they can be trusted (exit code 1 if not)"
+    parser.add_argument("verb", choices=VERBS, help=said)
+    parser.add_argument("models", nargs="*", metavar="MODEL", help="which models (default: all)")
+    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
+    parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--of", metavar="TREE", help="rules: one of the model's own trees, as bag:3 or forest:1")
+    which.add_argument("--distilled", action="store_true", help="rules: a tree that stands for all (default if many)")
+    parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
+    parser.add_argument("--json", action="store_true", help="list, show, check: print JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it; exit code 0, or 1 when a check fails."""
+    names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
+    if arguments.verb == "check":
+        return _check(names, arguments)
+    loaded = [load_model(name, arguments.zoo) for name in names]
+    if arguments.verb == "list":
+        _list([model.card for model in loaded], arguments.json)
+    elif arguments.verb == "show":
+        for model in loaded:
+            _show(model.card, arguments.json)
+    elif arguments.verb == "rules":
+        for name, model in zip(names, loaded, strict=True):
+            print(_rules(model, name, arguments))
+    else:
+        from tailor.tools.figures import learned
+
+        for model in loaded:
+            if isinstance(model, OnnxBenefit):  # it has no surface that a plane could show; `rules` tells it
+                continue
+            for path in learned.draw(model, arguments.data, arguments.out):
+                print(path)
+    return 0
+
+
+def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
+    from tailor.tools.learning.model_rules import DISTILLED, rules, tree_number
+
+    if isinstance(model, OnnxBenefit):
+        return _benefit_rules(model.card)
+    tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
+    return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
+
+
+def _benefit_rules(card: Card) -> str:
+    head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that say nearly the same"
+    kept = f"above {100 * card['threshold']:.0f} % the greedy choice is kept"
+    return "\n\n".join([f"{head}; {kept}", *card["rules"]])
+
+
+def _full(name: str, zoo: Path) -> list[str]:
+    """What a name stands for: a robot for all its models, an action for how long it takes."""
+    if "/" not in name:
+        mine = [each for each in _all(zoo) if each.startswith(f"{name}/")]
+        if not mine:
+            robots = ", ".join(sorted({each.split("/")[0] for each in _all(zoo)}))
+            raise UsageError(f"'{name}' has no models in {zoo} (expected ROBOT/ACTION/KIND, or one of: {robots})")
+        return mine
+    if name.endswith("/refinement"):
+        return [f"{name}/benefit"]
+    return [name if name.count("/") != 1 else f"{name}/duration"]
+
+
+def _all(zoo: Path) -> list[str]:
+    found = sorted("/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in zoo.glob("*/*/*.card.json"))
+    if not found:
+        raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` makes them)")
+    return found
+
+
+def _quality(card: Card) -> str:
+    test = card["test"]
+    match card["kind"]:
+        case "duration":
+            return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
+        case "energy":
+            return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
+        case "benefit":
+            plain = test["ungated"]
+            return f"{test['right_pct']:.1f} % right; slower {plain['slower_pct']:.1f} -> {test['slower_pct']:.1f} %"
+        case _:
+            return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
+
+
+def _list(cards: list[Card], as_json: bool) -> None:
+    rows = [
+        {
+            "model": f"{card['robot']}/{card['action']}/{card['kind']}",
+            "learner": card["learner"]["name"],
+            "features": card["features"],
+            "episodes": card["episodes"]["count"],
+            "test": _quality(card),
+            "sha256": card["sha256"][:12],
+        }
+        for card in cards
+    ]
+    if as_json:
+        print(json.dumps(rows))
+        return
+    table = Table(Column("model", no_wrap=True), *list(rows[0])[1:])
+    for row in rows:
+        table.add_row(*map(str, row.values()))
+    table_console().print(table)
+
+
+def _show(card: Card, as_json: bool) -> None:
+    if as_json:
+        print(json.dumps(card))
+        return
+    console = Console(highlight=False)
+    console.rule(f"{card['robot']}/{card['action']}/{card['kind']}")
+    for key, value in card.items():
+        if key == "golden":
+            console.print(f"[bold]golden[/bold]: {len(value['arguments'])} inputs and outputs")
+        elif key == "arguments":
+            said = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
+            console.print(f"[bold]arguments[/bold]: {said}")
+        elif key == "rules":
+            console.print(f"[bold]rules[/bold]: {len(value)}, which `tailor models rules` prints")
+        else:
+            console.print(f"[bold]{key}[/bold]: {escape(_brief(value))}")
+
+
+def _brief(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_brief(item)}" for key, item in value.items())
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_brief, value)) + "]"
+    return str(value)
+
+
+def _check(names: list[str], arguments: argparse.Namespace) -> int:
+    failed = {}
+    for name in names:
+        try:
+            if name.endswith(f"/{BENEFIT}"):  # sound only with the action models that it was learned with
+                load_models(name.removesuffix(f"/{BENEFIT}"), str(arguments.zoo), gated=True)
+            model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
+            check_ranges(model.card, asked_ranges(robot).get(action, {}), arguments.zoo / name)
+        except UsageError as error:
+            failed[name] = str(error)
+        if not arguments.json:
+            print(f"{name}: {failed.get(name, 'sound')}")
+    if arguments.json:
+        print(json.dumps({"checked": names, "failed": failed}))
+    return 1 if failed else 0

@@ -1,0 +1,120 @@
+"""Show two recorded runs side by side: commands, plans, subgoals and durations, as tables and on request as plots."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import re
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import ActionFinished, PlanReport
+from tailor.tools.cli.terminal import table_console
+from tailor.tools.recordings.comparison import Run, chosen, commands_apart, compared_run
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor compare`."""
+    parser.add_argument("first", type=Path, help="recording (MCAP) of an executive's run")
+    parser.add_argument("second", type=Path, help="another one, e.g. of the same sensors with other models")
+    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw commands and durations")
+    parser.add_argument("--json", action="store_true", help="tell it as JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 when both ended alike and commanded the same, 1 when not."""
+    if arguments.plot and arguments.plot.suffix != ".png":
+        raise UsageError(f"--plot {arguments.plot}: expected a name that ends in .png")
+    a, b = compared_run(arguments.first), compared_run(arguments.second)
+    told = _told(a, b)
+    if arguments.json:
+        print(json.dumps(told))
+    else:
+        _show(a, b, told)
+    if arguments.plot:
+        from tailor.tools.figures.comparison import draw_comparison
+
+        draw_comparison(a, b, arguments.plot)
+    return 0 if told["equal"] else 1
+
+
+def _told(a: Run, b: Run) -> dict[str, Any]:
+    apart = {name: None if math.isnan(value) else round(value, 6) for name, value in commands_apart(a, b).items()}
+    same_commands = apart["first_s"] is None and len(a.commands) == len(b.commands)
+    return {
+        "equal": same_commands and a.result == b.result,
+        "commands": apart,
+        **{
+            side: {
+                "file": run.name,
+                "result": run.result,
+                "total_s": round(run.total_s, 3),
+                "actions": [_action(action) for action in run.actions],
+                "plans": [plan.plan for plan in run.plans],
+                "subgoals": [chosen(subgoals) for subgoals in run.subgoals],
+            }
+            for side, run in (("first", a), ("second", b))
+        },
+    }
+
+
+def _action(action: ActionFinished) -> dict[str, Any]:
+    return {
+        "action": action.action,
+        "outcome": action.outcome,
+        "predicted_s": round(action.predicted_s, 3),
+        "actual_s": round(action.actual_s, 3),
+    }
+
+
+def _show(a: Run, b: Run, told: dict[str, Any]) -> None:
+    console = table_console()
+    actions = [[_brief(action) for action in run.actions] for run in (a, b)]
+    console.print(_side_by_side("action, predicted → actual s", a, b, *actions))
+    console.print(_side_by_side("subgoals, free parameters", a, b, *[_changes(run) for run in (a, b)]))
+    console.print(_side_by_side("plans", a, b, *[_distinct([_steps(plan) for plan in run.plans]) for run in (a, b)]))
+    total = f"{a.total_s:.2f} s against {b.total_s:.2f} s"
+    if a.total_s > 0:
+        total += f" ({b.total_s / a.total_s - 1:+.1%})"
+    console.print(f"durations: {total}; results: {a.result or 'none'}, {b.result or 'none'}")
+    apart = told["commands"]
+    if apart["first_s"] is None:
+        console.print(f"commands: equal over {apart['seconds']:.1f} s")
+    else:
+        first, rms, most = (apart[name] for name in ("first_s", "rms", "max"))
+        console.print(f"commands: first differ {first:.1f} s after setting off; RMS {rms:.3f}, largest {most:.3f}")
+
+
+def _brief(action: ActionFinished) -> str:
+    outcome = "" if action.outcome == "done" else f" ({action.outcome})"
+    return f"{action.action}{outcome} {action.predicted_s:.2f} → {action.actual_s:.2f}"
+
+
+def _changes(run: Run) -> list[str]:
+    """The chosen subgoals, without repetitions."""
+    return _distinct([", ".join(f"{name} {value:.2f}" for name, value in chosen(s).items()) for s in run.subgoals])
+
+
+def _steps(plan: PlanReport) -> str:
+    """The steps of a plan in VHPOP's form, in its order, or why there is none."""
+    steps = re.findall(r"^Step \d+\s*: (\(.*\))", plan.plan, flags=re.MULTILINE)
+    return " ".join(steps) or (f"{plan.status}: {plan.reason}" if plan.reason else "nothing left to do")
+
+
+def _distinct(texts: list[str]) -> list[str]:
+    """Without empty ones and without repetitions in a row."""
+    return [text for text, before in zip(texts, ["", *texts], strict=False) if text and text != before]
+
+
+def _side_by_side(what: str, a: Run, b: Run, left: list[str], right: list[str]) -> Table:
+    table = Table(title=what, title_justify="left", box=None, show_lines=False)
+    table.add_column(a.name, ratio=1)
+    table.add_column(b.name, ratio=1)
+    for row in zip_longest(left, right, fillvalue=""):
+        table.add_row(*row)
+    return table

@@ -1,0 +1,57 @@
+"""Cut a piece out of a recording: a span of time, some topics; bytes and metadata stay as they are."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from tailor.runtime.recordings.copying import copy
+from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.selection import selection
+from tailor.schemas.errors import UsageError
+
+LONGEST_S = 1e10  # what the file's clock can tell
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor cut`."""
+    add = parser.add_argument
+    add("file", help="recording (MCAP)")
+    add("-o", "--output", metavar="FILE", help="file to make (default: NAME-cut.mcap)")
+    add(
+        "--from", dest="start", type=float, default=0.0, metavar="S", help="seconds after the first message (default 0)"
+    )
+    add(
+        "--to",
+        dest="end",
+        type=float,
+        metavar="S",
+        help="seconds after the first message, exclusive (default: the end)",
+    )
+    add("--topics", action="append", default=[], metavar="WORDS", help="only these: odom, 'agilo/*', a ROS type; a,b,c")
+    add("--exclude", action="append", default=[], metavar="WORDS", help="all but these")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 when something is left, 1 when nothing is."""
+    if not 0 <= arguments.start < LONGEST_S:
+        raise UsageError(f"--from is {arguments.start:g}, expected seconds from 0 on")
+    if arguments.end is not None and not arguments.start < arguments.end < LONGEST_S:
+        raise UsageError(f"--to is {arguments.end:g}, expected more than --from {arguments.start:g}")
+    recording = open_recording(arguments.file)
+    wanted = selection(arguments.topics, arguments.exclude)
+    first = next(recording.messages(), None)
+    zero_ns = 0 if first is None else first.log_ns
+    start_ns = zero_ns + round(arguments.start * 1e9) if arguments.start else 0  # what comes first need not be earliest
+    end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
+    target = Path(arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap"))
+
+    def keep(key: str, ros_type: str, log_ns: int) -> bool:
+        return start_ns <= log_ns < end_ns and wanted.wants(key, ros_type)
+
+    note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
+    copied = copy(recording.path, target, keep, note)
+    if copied.account.text():
+        print(f"{recording.path}: {copied.account.text()}")
+    print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
+    return 0 if copied.kept else 1

@@ -1,0 +1,84 @@
+"""Show a run as a page: field, subgoals and their alternatives, plan, actions and ticks; of a recording, or live."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from rich.console import Console
+
+from tailor.runtime.bus.session import open_client
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.feed import Feed
+from tailor.tools.viewer.listening import Listener
+from tailor.tools.viewer.page import page
+from tailor.tools.viewer.recorded import recorded_rows
+from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.timeline import Story
+
+PORT = 7450
+NICENESS = 10  # whoever watches gives way to whoever acts
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor view`."""
+    parser.add_argument(
+        "recording", type=Path, nargs="?", help="MCAP file; its page is written once and needs no server"
+    )
+    parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="the page (default: beside the recording)")
+    parser.add_argument("--live", action="store_true", help="serve the page of a running system on this machine")
+    parser.add_argument(
+        "--port", type=int, default=PORT, help="of the live page; 0 finds a free one (default %(default)s)"
+    )
+    parser.add_argument("--robot", default="", help="show only this robot (default: the one that the executive names)")
+    parser.add_argument("--sender", default="", metavar="ID", help="show only executives whose id begins so")
+    parser.add_argument("--no-models", action="store_true", help="do not load models to predict the alternatives")
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page of a recording, or serve the live one until told to stop."""
+    if arguments.live == (arguments.recording is not None):
+        raise UsageError("expected either a recording or --live")
+    if not 0 <= arguments.port < 65536:
+        raise UsageError(f"--port is {arguments.port}, expected 0 to 65535")
+    explainer = None if arguments.no_models else Explainer()
+    return _live(arguments, explainer) if arguments.live else _write(arguments, explainer)
+
+
+def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
+    recording: Path = arguments.recording
+    output: Path = arguments.output or recording.with_suffix(".html")
+    console = Console(stderr=True)
+    with console.status(f"reading {recording}"):
+        rows = recorded_rows(recording, Story(explainer, arguments.robot), arguments.sender)
+    if explainer is not None and explainer.missing:
+        console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(page(recording.name, rows), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{output}: {error.strerror}, expected a file that can be written") from error
+    print(output)
+    return 0
+
+
+def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
+    endpoint = endpoint_of(arguments)
+    os.nice(NICENESS)
+    stop = stop_on_signals()
+    feed = Feed()
+    with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
+        codec.prime()
+        intake, tap = session.tap("**")
+        listener = Listener(intake, Story(explainer, arguments.robot), feed, arguments.sender)
+        print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
+        listener.run(MonotonicClock(), lambda: stop.requested)
+        tap.undeclare()
+    return 0

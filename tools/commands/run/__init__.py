@@ -1,0 +1,1 @@
+"""Commands that run robots: launch, drive, arm, stop, record, plan."""

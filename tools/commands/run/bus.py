@@ -1,0 +1,26 @@
+"""Run the bus router alone; every other process of a deployment connects to it."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from tailor.runtime.bus.session import open_router
+from tailor.runtime.stopping import stop_on_signals
+from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor bus`; the endpoint that the others connect to is the one to listen at."""
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Route until told to stop."""
+    endpoint = endpoint_of(arguments)
+    stop = stop_on_signals()
+    with open_router(endpoint):
+        print(f"routing at {endpoint}; Ctrl-C ends it", flush=True)
+        while not stop.requested:
+            time.sleep(0.1)
+    return 0

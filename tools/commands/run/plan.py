@@ -1,0 +1,263 @@
+"""Plans with PDDL files, in VHPOP's manner: a partial-order plan with causal links.
+
+Prints the plan's plain form, START:(action args)[duration]. Options have the letters and names of VHPOP. Exit codes:
+0 a plan, 1 no plan (unsolvable or a limit), 2 bad input.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+import time
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from tailor.executive.planning import (
+    Domain,
+    FlawOrder,
+    Problem,
+    Result,
+    Search,
+    Settings,
+    Unsupported,
+    completed,
+    format_links,
+    format_plan,
+    parse_domain,
+    parse_plan,
+    parse_problem,
+    validate,
+)
+from tailor.executive.planning.flaws.flaw_orders import NAMED
+from tailor.executive.planning.flaws.ranking import NAMES
+from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
+from tailor.runtime.processes.planner_process import PlannerProcess
+from tailor.schemas.errors import UsageError
+from tailor.tools.figures.plan_drawing import to_dot, to_svg
+
+MAX_BYTES = 4 * MAX_CHARACTERS
+MAX_PLANS = 1_000_000  # a search that gets there has used about 1 GB
+_POLL_S = 0.002  # how often a child planner is looked at
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the arguments; -h is VHPOP's ranking here, help is --help only."""
+    parser.conflict_handler = "resolve"
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
+    parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file, - for standard input")
+    parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file, - for standard input")
+    _configure_search(parser.add_argument_group("search, as in VHPOP"))
+    parser.set_defaults(node_limit=MAX_PLANS)
+    _configure_output(parser.add_argument_group("output"))
+
+
+def _configure_search(group: argparse._ArgumentGroup) -> None:
+    add = group.add_argument
+    add("-g", "--ground-actions", dest="ground", action="store_true", default=True, help="ground actions (default)")
+    add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
+    add("-h", "--heuristic", metavar="RANKING", default="",
+        help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
+    add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
+        help="flaw order: a name or {n,s}LR/{l}MW_add; several take turns (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
+    add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
+        help="plans that the flaw order before it may generate, or 'unlimited'; without one: all")  # fmt: skip
+    add(
+        "-s",
+        "--search-algorithm",
+        dest="search",
+        choices=("A", "IDA"),
+        default="A",
+        type=lambda name: name.upper().removesuffix("*"),
+        help="A* (default) or IDA*",
+    )
+    add("-w", "--weight", type=float, default=1.0, help="weight of the heuristic (default 1)")
+    add("-a", "--action-cost", choices=("UNIT", "DURATION", "RELATIVE"), default="UNIT", type=str.upper,
+        help="what a step costs (default UNIT)")  # fmt: skip
+    add("-t", "--tolerance", type=float, default=0.01, metavar="S", help="one tick of a durative plan (default 0.01)")
+    add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
+    add("-S", "--seed", type=int, default=0, help="seed of everything random (default 0)")
+    add("-T", "--time-limit", type=_minutes, default=None, metavar="MINUTES", help="give up after that many minutes")
+    add("--planner", metavar="COMMAND", help="let a real vhpop plan instead, e.g. 'vhpop -g -f MW-Loc'")
+
+
+def _configure_output(group: argparse._ArgumentGroup) -> None:
+    forms = group.add_mutually_exclusive_group()
+    forms.add_argument("--links", action="store_true", help="the causal-link form (the paper's Figure 10)")
+    forms.add_argument("--json", action="store_true", help="one JSON object, also when there is no plan")
+    forms.add_argument("--dot", action="store_true", help="the partial order as a Graphviz graph")
+    forms.add_argument("--svg", action="store_true", help="the partial order as an SVG picture")
+    group.add_argument("-v", "--verbose", action="store_true", help="say on stderr what the search cost (also -v1 ...)")
+    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(10)]  # VHPOP's: all say the same
+    group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)
+
+
+class _AppendOrder(argparse.Action):
+    """-f ORDER: one more flaw order."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        namespace.orders = [*namespace.orders, FlawOrder(str(values))]
+
+
+class _LimitOrder(argparse.Action):
+    """-l N: the limit of the flaw order before it, or of the whole search when there is none."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        limit = None if values == "unlimited" else _positive(values)
+        if namespace.orders:
+            *before, last = namespace.orders
+            namespace.orders = [*before, dataclasses.replace(last, limit=limit)]
+        else:
+            namespace.node_limit = limit if limit is not None else sys.maxsize
+
+
+def _minutes(text: str) -> float:
+    """A time limit."""
+    try:
+        minutes = float(text)
+    except ValueError:
+        minutes = -1.0
+    if not minutes >= 0:
+        raise UsageError(f"--time-limit: expected minutes from 0 on, found '{text}'")
+    return minutes
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise UsageError(f"--limit: expected a number of plans of at least 1 or 'unlimited', found '{text}'")
+    return int(text)
+
+
+# --- running -------------------------------------------------------------------------------------
+@dataclasses.dataclass(slots=True)
+class _TimeBudget:
+    """Grants work until a deadline of CPU-independent time."""
+
+    deadline: float
+    granted: int = 0
+
+    def spent(self) -> bool:
+        """See `Budget`."""
+        self.granted += 1
+        return time.monotonic() >= self.deadline
+
+
+def run(args: argparse.Namespace) -> int:
+    """Plans and prints; 0 with a plan, 1 without."""
+    started = time.process_time()
+    try:
+        texts = _read(args.domain), _read(args.problem)  # once: a pipe has nothing more to give
+        domain = parse_domain(texts[0], str(args.domain))
+        problem = parse_problem(texts[1], domain, str(args.problem))
+    except Unsupported as feature:
+        if args.json:
+            print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
+        raise
+    result = _ask(args, texts, domain, problem) if args.planner else _search(args, domain, problem)
+    cpu_ms = (time.process_time() - started) * 1e3
+    if result.plan is not None:
+        fault = validate(result.plan, domain, problem)
+        if fault:
+            result = dataclasses.replace(result, status="limit", plan=None, reason=f"the plan is unsound: {fault}")
+    if args.verbose:
+        print(f"generated {result.generated}, visited {result.visited}, {cpu_ms:.1f} ms CPU", file=sys.stderr)
+    _print(args, result, problem, cpu_ms)
+    return 0 if result.plan is not None else 1
+
+
+def _read(path: Path) -> str:
+    try:
+        with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size to look at
+        if len(content) > MAX_BYTES:
+            raise UsageError(f"{path}: more than the {MAX_BYTES} bytes that a PDDL file may have")
+        return content.decode("utf-8-sig")  # some editors begin a file with a byte order mark
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
+
+
+def settings_of(args: argparse.Namespace) -> Settings:
+    """The search settings that the options name."""
+    chosen: dict[str, Any] = {"flaw_orders": tuple(args.orders)} if args.orders else {}
+    return Settings(
+        rankings=tuple(args.heuristic.split("/")) if args.heuristic else (),
+        search=args.search,
+        ground=args.ground,
+        weight=args.weight,
+        action_cost=args.action_cost.lower(),
+        node_limit=args.node_limit,
+        tolerance_s=args.tolerance,
+        seed=args.seed,
+        random_open_conditions=args.random_open_conditions,
+        **chosen,
+    )
+
+
+def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
+    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
+    search = Search(domain, problem, settings_of(args))
+    result = search.advance(_TimeBudget(time.monotonic() + limit_s))
+    if result is None:
+        return Result("limit", None, f"no plan within {limit_s:g} s", *search.counts)
+    return result
+
+
+def _ask(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
+    """Lets the external planner answer; its plan is parsed, and the causal links that it lacks are added."""
+    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
+    child = PlannerProcess(args.planner, *texts, limit_s)
+    try:
+        while (answer := child.poll()) is None:
+            time.sleep(_POLL_S)
+    finally:
+        child.kill()
+    try:
+        plan = completed(parse_plan(answer.output), domain, problem)
+    except UsageError as error:
+        return Result("limit", None, f"{answer.reason}; {error}", 0, 0)
+    if isinstance(plan, str):
+        return Result("limit", None, f"the planner's plan is unsound: {plan}", 0, 0)
+    return Result("solved", plan, "", 0, 0)
+
+
+# --- printing ------------------------------------------------------------------------------------
+def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
+    plan = result.plan
+    if args.json:
+        print(json.dumps(_as_json(result, problem.name, cpu_ms)))
+    elif plan is None:
+        told = "no plan exists" if result.status == "unsolvable" else "no plan found"
+        print(f"{problem.name}: {told}: {result.reason}", file=sys.stderr)
+    elif args.links:
+        print(format_links(plan), end="")
+    elif args.dot:
+        print(to_dot(plan), end="")
+    elif args.svg:
+        print(to_svg(plan), end="")
+    else:
+        print(format_plan(plan), end="")
+
+
+def _as_json(result: Result, problem: str, cpu_ms: float) -> dict[str, Any]:
+    plan = result.plan
+    return {
+        "problem": problem,
+        "status": result.status,
+        "reason": result.reason,
+        "steps": [
+            {"id": s.id, "start": s.start, "action": list(s.action), "duration": s.duration}
+            for s in (plan.steps if plan else ())
+        ],
+        "links": [
+            {"producer": x.producer, "literal": str(x.literal), "consumer": "goal" if x.consumer < 0 else x.consumer}
+            for x in (plan.links if plan else ())
+        ],
+        "orderings": [list(pair) for pair in (plan.orderings if plan else ())],
+        "makespan": plan.makespan if plan else None,
+        "generated": result.generated,
+        "visited": result.visited,
+        "cpu_ms": round(cpu_ms, 3),
+    }

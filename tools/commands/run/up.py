@@ -1,0 +1,35 @@
+"""Start a whole system and watch it: bus router, simulator, recorder, executive. Ctrl-C stops it in order."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from tailor.runtime.stopping import stop_on_signals
+from tailor.tools.cli.deployment import configure_system, deployment, order_of
+from tailor.tools.cli.live_status import screen
+from tailor.tools.launch.system import Plan, run_system
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor up`."""
+    configure_system(parser)
+    parser.add_argument("--record", metavar="FILE", type=Path, help="record everything into an MCAP file")
+    parser.add_argument("--letters", metavar="TEXT", help="what the arm is to write: short for --scenario word-TEXT")
+    parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run until Ctrl-C (0), or with --once until the goal is achieved (0) or has failed; 1 too if it ends by itself."""
+    stop = stop_on_signals()
+    if arguments.letters:
+        arguments.scenario = f"word-{arguments.letters.upper()}"
+    read = deployment(arguments)
+    plan = Plan(
+        order_of(arguments.domain, read), read.bus.endpoint, arguments.record, arguments.once, arguments.config or ""
+    )
+    with screen() as shown:
+        result = run_system(plan, shown, stop)
+    print(result or "stopped")
+    done = result == "achieved" if arguments.once else stop.requested
+    return 0 if done else 1

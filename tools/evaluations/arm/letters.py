@@ -1,0 +1,205 @@
+"""The arm's row of Table 3: every letter by several hands over the same starts, and what a perfect model would gain."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from joblib import Parallel, delayed
+from rich.progress import track
+
+from tailor.executive.domains.arm.letters import font
+from tailor.executive.library import Models
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.models.runtime import load_robot
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.figures.letters import draw_letters
+from tailor.tools.writing.lockstep import Hand, ListenedBody, write
+from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
+from tailor.tools.writing.track import Written
+
+DOMAINS = ("arm",)
+ALL_AHEAD = 9  # more actions than a letter has
+BASE = RefinementSettings()
+GREEDY = replace(BASE, horizon=1)
+HANDS = (Hand("stopping", BASE, stops=True), Hand("greedy", GREEDY), Hand("refined", BASE))
+ORACLES = (
+    Hand("oracle, greedy", GREEDY),
+    Hand("oracle, refined", BASE),
+    Hand("oracle, all ahead", replace(BASE, horizon=ALL_AHEAD)),
+)
+PAPER = "paper: 4-5 actions, n = 4: 10.6 s greedy, 10.0 s refined, 5.7 %, p = 0.08"
+SHOWN = "FTAS"  # in the picture
+Key = tuple[str, int]  # letter, seed
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """What is kept of one letter by one hand."""
+
+    achieved: bool
+    duration_s: float
+    waypoint_mrad: float  # the largest of the letter
+    peak_current_a: float
+    rms_jerk: float
+    roughness: float
+    bias_s: float  # predicted minus actual, a reach
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate letters`."""
+    parser.add_argument(
+        "--seeds", type=at_least(1, "--seeds"), default=5, help="starts and sizes of each letter (default %(default)s)"
+    )
+    parser.add_argument("--no-oracle", action="store_true", help="leave the perfect model out")
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; 0 when refinement gains significantly."""
+    rows, plots = evaluate(arguments)
+    remarks = [PAPER, "an oracle chooses by the controller's own duration instead of a learned model"]
+    tell(Report("letters", "Table 3, arm: letters", rows, remarks, plots), arguments.json, arguments.report)
+    refined = next(row for row in rows if row["hand"] == "refined")
+    return 0 if refined["p_value"] < 0.01 and refined["improvement_pct"] > 0 else 1
+
+
+Found = Mapping[str, Mapping[Key, Figures]]  # by hand
+
+
+def evaluate(arguments: argparse.Namespace) -> tuple[list[dict[str, Any]], dict[str, Path]]:
+    """One row for each hand, and the picture if a report is asked for."""
+    found = _write_all(arguments)
+    rows = _rows(found)
+    return rows, {} if arguments.report is None else _picture(arguments.report, arguments.zoo)
+
+
+def _write_all(arguments: argparse.Namespace) -> Found:
+    """Every letter at every seed by every hand."""
+    hands = HANDS if arguments.no_oracle else (*HANDS, *ORACLES)
+    keys = [(letter, FIRST_SEED + k) for k in range(arguments.seeds) for letter in sorted(font())]
+    wanted = [(hand, key) for key in keys for hand in hands]
+    done = Parallel(n_jobs=arguments.jobs, return_as="generator")(
+        delayed(_measured)(hand, key, arguments.zoo) for hand, key in wanted
+    )
+    found: dict[str, dict[Key, Figures]] = {hand.name: {} for hand in hands}
+    for (hand, key), figures in zip(wanted, track(done, "letters", total=len(wanted), transient=True), strict=True):
+        found[hand.name][key] = figures
+    return found
+
+
+def _rows(found: Found) -> list[dict[str, Any]]:
+    rows = [_row(name, found) for name in found]
+    if ORACLES[-1].name in found:
+        _add_share(rows)
+    return rows
+
+
+def table3_row(arguments: argparse.Namespace) -> tuple[dict[str, Any], tuple[list[float], list[float]]]:
+    """The arm's row of Table 3 in that table's columns, over about as many letters as it has `episodes`.
+
+    With it the durations of greedy and refined letters.
+    """
+    seeds = max(1, arguments.episodes // len(font()))
+    asked = argparse.Namespace(
+        seeds=seeds, no_oracle=not arguments.oracle, jobs=arguments.jobs, zoo=arguments.zoo, report=None
+    )
+    found = _write_all(asked)
+    rows = {row["hand"]: row for row in _rows(found)}
+    greedy, refined = rows["greedy"], rows["refined"]
+    row = {
+        "scenario": "arm",
+        "horizon": BASE.horizon,
+        "n": refined["n"],
+        "mean_greedy_s": greedy["mean_s"],
+        "mean_refined_s": refined["mean_s"],
+        **{name: refined[name] for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")},
+        "failed_greedy": greedy["failed"],
+        "failed_refined": refined["failed"],
+        "bias_greedy_s": greedy["bias_s"],
+        "bias_refined_s": refined["bias_s"],
+    }
+    if arguments.oracle:
+        best = rows["oracle, all ahead"]
+        row |= {"oracle_n": best["n"], "oracle_pct": best["improvement_pct"], "oracle_s": best["mean_s"]}
+    greedy_s, refined_s = (
+        [found[hand][key].duration_s for key in _both_achieved("refined", found)] for hand in ("greedy", "refined")
+    )
+    return row, (greedy_s, refined_s)
+
+
+def _both_achieved(name: str, found: Found) -> list[Key]:
+    return [key for key, figures in found[name].items() if figures.achieved and found["greedy"][key].achieved]
+
+
+def _row(name: str, found: Found) -> dict[str, Any]:
+    """One hand against the greedy one, over the letters that both finished."""
+    keys = _both_achieved(name, found)
+    mine, greedy = [found[name][key] for key in keys], [found["greedy"][key] for key in keys]
+    said = compare([figures.duration_s for figures in greedy], [figures.duration_s for figures in mine])
+    stopping = [found["stopping"][key].duration_s for key in keys]
+    return {
+        "hand": name,
+        "n": said.n,
+        "failed": len(found[name]) - sum(figures.achieved for figures in found[name].values()),
+        "mean_s": said.mean_s,
+        **said.verdict,
+        "against_stopping_pct": compare(stopping, [figures.duration_s for figures in mine]).improvement_pct,
+        "waypoint_mrad": _mean(mine, "waypoint_mrad"),
+        "peak_current_a": _mean(mine, "peak_current_a"),
+        "rms_jerk": _mean(mine, "rms_jerk"),
+        "roughness": _mean(mine, "roughness"),
+        "bias_s": _mean(mine, "bias_s"),
+    }
+
+
+def _add_share(rows: Sequence[dict[str, Any]]) -> None:
+    """How much of what could be gained over the model's greedy choice is gained, by mean durations."""
+    mean = {row["hand"]: row["mean_s"] for row in rows}
+    ceiling_s = min(mean["oracle, all ahead"], mean["oracle, refined"])
+    for row in rows:
+        row["share_of_gain_pct"] = 100 * (mean["greedy"] - row["mean_s"]) / (mean["greedy"] - ceiling_s)
+
+
+def _mean(some: Sequence[Figures], field: str) -> float:
+    return float(np.mean([getattr(figures, field) for figures in some]))
+
+
+def _measured(hand: Hand, key: Key, zoo: str) -> Figures:
+    said = _write(hand, *key, zoo)
+    actual_s = np.diff(said.arrivals_s, prepend=0.0)
+    return Figures(
+        said.result == "achieved",
+        said.duration_s,
+        1e3 * float(waypoint_errors_rad(said).max()),
+        said.peak_current_a,
+        rms_jerk(said),
+        roughness(said),
+        float((said.predicted_s - actual_s).mean() + 0.1),  # an action ends one period before its waypoint
+    )
+
+
+def _write(hand: Hand, letter: str, seed: int, zoo: str) -> Written:
+    models = Models({"reach/duration": PerfectReach()}, {}) if hand in ORACLES else _models(zoo)
+    return write(letter, hand, models, seed, ListenedBody())
+
+
+@lru_cache(maxsize=2)
+def _models(zoo: str) -> Models:
+    """Loaded once a process."""
+    return Models(*load_robot(ListenedBody.robot, Path(zoo) if zoo else None))
+
+
+def _picture(folder: Path, zoo: str) -> dict[str, Path]:
+    path = folder / "letters.png"
+    draw_letters([[_write(hand, letter, FIRST_SEED, zoo) for letter in SHOWN] for hand in HANDS], path)
+    return {"letters as in Figure 13 (b), joint space": path}

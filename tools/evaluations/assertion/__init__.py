@@ -1,0 +1,1 @@
+"""Evaluations of subgoal assertion: which failures does it prevent?"""

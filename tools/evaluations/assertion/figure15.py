@@ -1,0 +1,124 @@
+"""The paper's Figure 15: where an asserted subgoal may lie and what it costs there, with the runs without and with it.
+
+The starts are Figure 16's: approaches of the ball to a random heading. Those that get a subgoal are looked at here.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_task, succeeded, variants
+from tailor.tools.evaluations.assertion.subgoal_map import Ground, ground_of
+from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_ground
+from tailor.tools.evaluations.comparison import share_interval
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.watched import watch
+
+REMARKS = (
+    "Above: predicted seconds by the subgoal's place, heading and speed there being the best of all; blank places are "
+    "INVALID, because the approach from there is not sure enough to succeed. Below: that prediction (black line: the "
+    "limit), and both runs. Square: start; grey cross and arrow: the subgoal as chosen; black arrow: the goal.",
+    "Drawn: the first starts of the evaluation at which a subgoal was asserted, not picked.",
+)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate figure15`."""
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=40, help="starts to look through (default %(default)s)"
+    )
+    parser.add_argument(
+        "--drawn", type=at_least(0, "--drawn"), default=2, help="so many with a subgoal are drawn (default %(default)s)"
+    )
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run, draw and tell; 0 when more approaches succeed with their subgoals than without."""
+    task = assertion_task(arguments.zoo)
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    found = run_all(task, variants(), seeds, arguments.jobs, arguments.store, "figure 15")
+    asserted = [seed for seed in seeds if found["asserted"][seed].asserted]
+    if not asserted:
+        raise UsageError(f"--episodes {arguments.episodes}: no subgoal was asserted, expected more starts")
+    rows = [_summary(found, asserted)]
+    plots = {}
+    for seed in asserted[: arguments.drawn]:
+        row, ground = _looked_at(task, seed, found)
+        rows.append(row)
+        if ground is not None and arguments.report is not None:
+            path = arguments.report / f"figure15-{seed}.png"
+            plots[f"search space of the subgoal and both runs, start {seed}"] = _draw(task, seed, ground, path)
+    title = "Figure 15: the search space of an asserted subgoal"
+    tell(Report("figure15", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    return 0 if rows[0]["success_after_pct"] > rows[0]["success_before_pct"] else 1
+
+
+def _summary(found: Mapping[str, Mapping[int, Outcome]], seeds: Sequence[int]) -> dict[str, Any]:
+    """All starts at which a subgoal was asserted."""
+    before, after = (sum(succeeded(found[name][seed]) for seed in seeds) for name in ("blind", "asserted"))
+    n = len(seeds)
+    reached = [found["asserted"][seed] for seed in seeds if succeeded(found["asserted"][seed])]
+    off = [sum(s for *_, s in outcome.foreseen) - approached_s(outcome) for outcome in reached]
+    return {
+        "start": "all asserted",
+        "n": n,
+        "success_before_pct": 100 * before / n,
+        "success_after_pct": 100 * after / n,
+        "ci95_after": share_interval(after, n),
+        "predicted_s": float(np.mean([sum(s for *_, s in outcome.foreseen) for outcome in reached])),
+        "took_s": float(np.mean([approached_s(outcome) for outcome in reached])),
+        "bias_s": float(np.mean(off)),
+    }
+
+
+def _looked_at(
+    task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
+) -> tuple[dict[str, Any], Ground | None]:
+    """One start with a subgoal; the ground is None where two detours were made in a row."""
+    watched, context = watch(task, _asserting(), seed)
+    ground = ground_of(watched.subgoals[0], context)
+    before, after = found["blind"][seed], found["asserted"][seed]
+    row = {
+        "start": str(seed),
+        "n": 1,
+        "success_before_pct": 100.0 * succeeded(before),
+        "success_after_pct": 100.0 * succeeded(after),
+        "predicted_s": sum(s for *_, s in after.foreseen),
+        "took_s": approached_s(after) if succeeded(after) else float("nan"),
+        "ball_moved_before_m": before.ball_moved_m,
+        "ball_moved_after_m": after.ball_moved_m,
+    }
+    if ground is not None:
+        row |= {
+            "valid_ground_pct": ground.valid_pct,
+            "limit_of_failure_pct": 100 * ground.limit,
+            "predicted_chosen_s": sum(ground.chosen_s),
+            "predicted_least_s": ground.least_s,
+        }
+    return row, ground
+
+
+def _draw(task: Task, seed: int, ground: Ground, path: Path) -> Path:
+    tracks = []
+    for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
+        watched, _ = watch(task, variant, seed)
+        said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.ball_moved_m:.2f} m"
+        tracks.append(replace(watched.track, title=f"{title} ({said})"))
+    first = tracks[0].points[0]
+    draw_ground(ground, (first.ball_x, first.ball_y), tracks, f"start {seed}", path)
+    return path
+
+
+def _asserting() -> Variant:
+    return next(variant for variant in variants() if variant.name == "asserted")

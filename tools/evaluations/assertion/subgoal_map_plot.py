@@ -1,0 +1,73 @@
+"""The paper's Figures 15 and 16 a: durations over the place of an asserted subgoal, where it may lie, and both runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from tailor.tools.evaluations.assertion.subgoal_map import Array, Ground
+from tailor.tools.figures.paths import BALL_RADIUS_M, draw_side_by_side
+from tailor.tools.figures.track import Track
+
+ARROW_M = 0.3
+
+
+def draw_ground(ground: Ground, ball: tuple[float, float], tracks: Sequence[Track], title: str, path: Path) -> None:
+    """Draw into a PNG: seconds to the subgoal, from it, and their sum; below, predicted success and two runs.
+
+    Args:
+      ground: The search space.
+      ball: Where the ball lies, metres.
+      tracks: The run without and the run with assertion.
+      title: Above all.
+      path: Where to; its folder is made.
+    """
+    figure = Figure(figsize=(15, 9.6), layout="constrained")
+    figure.suptitle(f"{title}; blank: approachBall from there fails in more than {100 * ground.limit:.0f} %")
+    axes = figure.subplots(2, 3)
+    tables = (
+        ("goToPose to the subgoal (s)", ground.first_s),
+        ("approachBall from there (s)", ground.second_s),
+        ("sum (s)", ground.total_s),
+    )
+    for axis, (name, table) in zip(axes[0], tables, strict=True):
+        _map(figure, axis, ground, ball, table, name)
+    _mark_least(axes[0, 2], ground)
+    _map(figure, axes[1, 0], ground, ball, ground.success, "predicted success of approachBall from there", "RdYlGn")
+    axes[1, 0].contour(ground.x, ground.y, ground.success, levels=[1 - ground.limit], colors="black", linewidths=1)
+    draw_side_by_side(axes[1, 1:], tracks)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=100)
+
+
+def _mark_least(axis: Any, ground: Ground) -> None:
+    if np.isfinite(ground.total_s).any():
+        row, column = np.unravel_index(int(np.nanargmin(ground.total_s)), ground.total_s.shape)
+        where = (ground.x[column], ground.y[row])
+        axis.plot(*where, "o", color="white", markeredgecolor="black", label="least on this grid")
+        axis.legend(loc="best", fontsize="small")
+
+
+def _map(
+    figure: Figure, axis: Any, ground: Ground, ball: tuple[float, float], table: Array, name: str, cmap: str = "viridis"
+) -> None:
+    """One table over the ground, with start, ball, goal and the subgoal as chosen."""
+    from matplotlib.patches import Circle
+
+    limits = (0.0, 1.0) if cmap != "viridis" else (None, None)
+    shown = axis.pcolormesh(ground.x, ground.y, table, cmap=cmap, shading="nearest", vmin=limits[0], vmax=limits[1])
+    figure.colorbar(shown, ax=axis, shrink=0.85)
+    axis.add_patch(Circle(ball, BALL_RADIUS_M, color="orangered", zorder=3))
+    axis.plot(*ground.start, "s", color="black", markersize=7, zorder=4)
+    axis.annotate("start", ground.start, xytext=(6, 6), textcoords="offset points", fontsize="small")
+    for (x, y, phi), colour in ((ground.goal, "black"), (ground.subgoal, "dimgrey")):
+        dx, dy = ARROW_M * math.cos(phi), ARROW_M * math.sin(phi)
+        axis.arrow(x, y, dx, dy, color=colour, width=0.014, head_width=0.1, length_includes_head=True, zorder=4)
+    axis.plot(ground.subgoal[0], ground.subgoal[1], "+", color="dimgrey", markersize=11, markeredgewidth=2, zorder=5)
+    axis.set(aspect="equal", xlabel="x (m)", ylabel="y (m)")
+    axis.set_title(name, fontsize="medium")

@@ -1,0 +1,1 @@
+"""Evaluations of live runs: do they agree with lock-step?"""

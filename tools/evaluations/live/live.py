@@ -1,0 +1,156 @@
+"""Whether episodes in lock-step are like live ones: the same starts over the bus, in real processes and real time.
+
+Evaluations run in lock-step, because that is faster than time. A sample of live runs shows that nothing hangs on it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.progress import track
+
+from tailor.executive import domains
+from tailor.executive.composition import Order
+from tailor.executive.core.context import Settings
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.journal import Journal
+from tailor.tools.evaluations.live.agreement import agreement, starts_of
+from tailor.tools.evaluations.live.bus_run import Unseen, episode_of
+from tailor.tools.evaluations.live.live_plot import draw_agreement
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import made_of, run_all
+from tailor.tools.launch.system import Plan, free_endpoint, run_system
+
+OTHER_NOISE = 500_000  # from one lock-step run of a start to the next
+MARGIN_PCT = 5.0  # fixed before the first run: half of what refinement gains
+LIVE, LUCK = "live", "lock-step, once more"
+Runs = Mapping[int, Outcome]  # by seed
+Repeats = Mapping[int, Sequence[Outcome]]
+REMARKS = (
+    "Each run against the lock-step runs of the same start, which differ by their noise alone. The second row is one "
+    "more lock-step run of each start, treated alike: what perfect agreement looks like with so few starts.",
+    "difference_pct, ci95_pct, p_value: of the geometric means, paired; p_rank: whether a run's rank among its start's "
+    "lock-step runs is as often high as low; within_range_pct: runs between the shortest and longest of their start's.",
+    f"equivalent: both one-sided t-tests (TOST) say at 5 % that the means are less than {MARGIN_PCT:g} % apart.",
+)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate live`."""
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=20, help="starts (default %(default)s, about 20 s each)"
+    )
+    parser.add_argument("--scenario", default="approach-dribble", help="of soccer's (default %(default)s)")
+    parser.add_argument(
+        "--horizon",
+        type=at_least(1, "--horizon"),
+        default=2,
+        help="actions looked ahead; 1 is greedy (default %(default)s)",
+    )
+    parser.add_argument(
+        "--repeats", type=at_least(2, "--repeats"), default=15, help="lock-step runs a start (default %(default)s)"
+    )
+    parser.add_argument("--recordings", type=Path, metavar="DIR", help="keep the recordings of the runs there")
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run, compare and tell; 0 when live runs end as lock-step's and neither test finds a difference; 130: stopped."""
+    task = Task("soccer", arguments.scenario, "", arguments.zoo)
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    repeats = _lockstep(task, arguments, seeds)
+    once_more = {seed: some.pop() for seed, some in repeats.items()}
+    stop = stop_on_signals()
+    found = {LIVE: _live(task, arguments, seeds, stop), LUCK: once_more}
+    if stop.requested:
+        return 130
+    rows = [_row(name, arguments.horizon, runs, repeats) for name, runs in found.items()]
+    plots = {}
+    if arguments.report is not None:
+        starts = {name: starts_of(runs, repeats) for name, runs in found.items()}
+        plots["durations and differences"] = draw_agreement(starts, MARGIN_PCT, arguments.report / "live.png")
+    title = f"Live over the bus against lock-step: {arguments.scenario}"
+    tell(Report("live", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    live = rows[0]
+    alike = min(live["p_value"], live["p_rank"]) > 0.05
+    return 0 if alike and live["achieved_pct"] >= live["achieved_lockstep_pct"] - 5 else 1
+
+
+def _lockstep(task: Task, arguments: argparse.Namespace, seeds: Sequence[int]) -> dict[int, list[Outcome]]:
+    """Every start's lock-step runs, one more than asked for."""
+    refinement = replace(RefinementSettings(), horizon=arguments.horizon)
+    variants = [Variant(f"noise-{k}", refinement, noise=k * OTHER_NOISE) for k in range(arguments.repeats + 1)]
+    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "lock-step")
+    return {seed: [found[variant.name][seed] for variant in variants] for seed in seeds}
+
+
+def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop: Stop) -> dict[int, Outcome]:
+    """The live outcomes by seed; those of earlier runs are taken from the store."""
+    refinement = replace(RefinementSettings(), horizon=arguments.horizon)
+    journal = Journal(arguments.store, task, Variant(LIVE, refinement), made_of(task))
+    missing = [seed for seed in seeds if seed not in journal.known]
+    for seed in track(missing, "live", transient=True):
+        order = Order(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
+        outcome = run_live(order, stop, arguments.recordings)
+        if stop.requested:
+            break
+        journal.note(outcome)
+        journal.known[seed] = outcome
+    return {seed: journal.known[seed] for seed in seeds if seed in journal.known}
+
+
+def run_live(order: Order, stop: Stop, keep: Path | None = None) -> Outcome:
+    """One whole system from start to goal over a bus of its own, and what came of it, from its recording alone.
+
+    Args:
+      order: What the executive runs; its seed is that of the world too.
+      stop: Ends the run early when requested.
+      keep: Folder for the recording; None throws it away.
+    """
+    seed = order.settings.seed
+    with tempfile.TemporaryDirectory() as folder:
+        kept = Path(folder) if keep is None else keep
+        kept.mkdir(parents=True, exist_ok=True)
+        recording = kept / f"{order.scenario}-h{order.settings.refinement.horizon}-{seed}.mcap"
+        recording.unlink(missing_ok=True)
+        unseen = Unseen()
+        result = run_system(Plan(order, free_endpoint(), recording, once=True), unseen, stop)
+        episode = episode_of(_messages(recording), result or "failed: stopped")
+    return outcome_of(episode, domains.load(order.domain), LIVE, seed)
+
+
+def _messages(recording: Path) -> list[Message]:
+    if not recording.exists():
+        return []
+    return [message for _, message in open_recording(recording).decoded() if not isinstance(message, Rejected)]
+
+
+def _row(name: str, horizon: int, runs: Runs, repeats: Repeats) -> dict[str, Any]:
+    seeds = sorted(runs)
+    failures = sorted({runs[seed].result for seed in seeds if not runs[seed].achieved})
+    usual = [{outcome.actions for outcome in repeats[seed]} for seed in seeds]
+    return {
+        "run": name,
+        "horizon": horizon,
+        **agreement(starts_of(runs, repeats), MARGIN_PCT),
+        "achieved_pct": _share([runs[seed].achieved for seed in seeds]),
+        "achieved_lockstep_pct": _share([outcome.achieved for seed in seeds for outcome in repeats[seed]]),
+        "same_actions_pct": _share([runs[seed].actions in some for seed, some in zip(seeds, usual, strict=True)]),
+        "failures": "; ".join(failures),
+    }
+
+
+def _share(flags: Sequence[bool]) -> float:
+    return 100 * float(np.mean(flags))

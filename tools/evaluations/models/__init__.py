@@ -1,0 +1,1 @@
+"""Evaluations of action models: how good are predictions?"""

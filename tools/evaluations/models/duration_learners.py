@@ -1,0 +1,70 @@
+"""Duration models by several learners on the same episodes: ours, scikit-learn's, and WEKA's M5P if installed."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import Any
+
+import numpy as np
+
+from tailor.models.episodes.examples import duration_examples
+from tailor.models.export.publishing import leaves
+from tailor.models.features.features import SPACES
+from tailor.models.training import learners, scores
+from tailor.models.training.training import fit
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.models import fresh, weka
+from tailor.tools.evaluations.models.learned import configure_learned, configure_train
+from tailor.tools.evaluations.report import Report, tell
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate duration-learners`."""
+    configure_learned(parser, 1000)
+    parser.add_argument("--actions", nargs="+", default=["goToPose", "dribbleBall"], help="(default %(default)s)")
+    configure_train(parser)
+    parser.add_argument(
+        "--ticks", type=at_least(1, "--ticks"), default=5, help="first ticks of each (n_i, default %(default)s)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; exit code 0."""
+    rows = [row for action in arguments.actions for row in _rows(action, arguments)]
+    remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
+    tell(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)
+    return 0
+
+
+def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
+    more = arguments.seed, arguments.jobs, arguments.store
+    gathered = fresh.training(arguments.robot, action, arguments.train, *more).episodes
+    train = duration_examples([episode for episode in gathered if episode.finished], arguments.ticks)
+    unseen = fresh.evaluation(arguments.robot, action, arguments.episodes, *more).episodes
+    test = duration_examples([episode for episode in unseen if episode.finished], 1)
+    space = SPACES["projective"]
+    rows = []
+    for name in learners.DURATION:
+        started = time.perf_counter()
+        model = fit("duration", name, train, space, arguments.seed)
+        seconds = time.perf_counter() - started
+        off = model.predict(space(test.arguments)) - test.targets
+        rows.append(_row(action, name, off, sum(leaves(model)), seconds, arguments.seed))
+    if weka.installed():
+        predicted, count, seconds = weka.m5p(space(train.arguments), train.targets, space(test.arguments))
+        rows.append(_row(action, "WEKA M5P", predicted - test.targets, count, seconds, arguments.seed))
+    return rows
+
+
+def _row(action: str, name: str, off: Any, count: int, seconds: float, seed: int) -> dict[str, Any]:
+    mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
+    return {
+        "action": action,
+        "learner": name,
+        "mae_s": mae,
+        "mae_ci95": ci,
+        "bias_s": float(off.mean()),
+        "leaves": count or "",
+        "fit_s": seconds,
+    }

@@ -1,0 +1,64 @@
+"""The paper's Figure 6 b: the same learner in three feature spaces; the fewer dimensions, the smaller the error."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.models.episodes.examples import Examples, duration_examples
+from tailor.models.features.features import SPACES
+from tailor.models.training import scores
+from tailor.models.training.training import fit
+from tailor.tools.evaluations.models import fresh
+from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned
+from tailor.tools.evaluations.report import Report, tell
+
+ORDER = ("direct", "relative", "projective", "projective-turn")
+N_I = 5
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate feature-spaces`."""
+    configure_learned(parser, 1000)
+    parser.add_argument("--action", default="goToPose", help="which action (default %(default)s)")
+    parser.add_argument("--learner", default="linear", help="see `tailor train` (default %(default)s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; 0 when the order is the paper's: direct, relative, projective."""
+    common = arguments.robot, arguments.action
+    more = arguments.seed, arguments.jobs, arguments.store
+    train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)
+    test = duration_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
+    rows: list[dict[str, Any]] = []
+    for name in ORDER:
+        space = SPACES[name]
+        learner = fit("duration", arguments.learner, train, space, arguments.seed)
+        off = np.abs(learner.predict(space(test.arguments)) - test.targets)
+        mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))
+        rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
+    remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
+    plots = _plots(rows, test, arguments.report) if arguments.report else {}
+    tell(Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots), arguments.json, arguments.report)
+    errors = [row["mae_s"] for row in rows[:3]]
+    return 0 if errors == sorted(errors, reverse=True) else 1
+
+
+def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str, Path]:
+    from tailor.tools.figures import learned_reports
+
+    columns = {
+        "direct: x [m]": test.arguments[:, 0],
+        "relative: dx [m]": SPACES["relative"](test.arguments)[:, 0],
+        "projective: dist [m]": SPACES["projective"](test.arguments)[:, 2],
+    }
+    names, errors, intervals = ([row[key] for row in rows] for key in ("space", "mae_s", "mae_ci95"))
+    return {
+        "error by feature space": learned_reports.bars(folder / "feature-spaces.png", names, errors, intervals),
+        "time against a feature of each": learned_reports.against_features(
+            folder / "figure6b.png", columns, test.targets
+        ),
+    }

@@ -1,0 +1,121 @@
+"""What episodes of the optimiser's own choices change: error and coverage where it goes, before and after a round."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.models.episodes.episodes import Episode, merge, read_data_set
+from tailor.models.episodes.examples import duration_examples, split
+from tailor.models.features.features import SPACES
+from tailor.models.training import scores
+from tailor.models.training.calibration import LEAST_POLICY
+from tailor.models.training.training import fit
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.models.learned import configure_learned
+from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.learning import gathering
+from tailor.tools.learning.run_gathering import Policy, actions, models_hash, run_policy
+
+LEVEL = 0.9
+SCENARIOS = ["approach-dribble", "waypoints"]
+ROUND_SEED, FRESH_SEED = 1, 2  # of the runs to learn from, and of those to judge by
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate on-policy`."""
+    configure_learned(parser, 80)
+    parser.add_argument("--data", type=Path, help="random episodes (default: data/ROBOT)")
+    parser.add_argument("--scenarios", nargs="+", default=SCENARIOS, help="(default %(default)s)")
+    parser.add_argument(
+        "--ticks", type=at_least(1, "--ticks"), default=2, help="first ticks of each episode (default %(default)s)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Gather both rounds, compare, tell; exit code 0."""
+    domain = gathering.domain_of(arguments.robot)
+    folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
+    rows = [row for action in actions(domain) for row in _rows(action, folders, arguments)]
+    remarks = [
+        "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
+        "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
+    ]
+    tell(Report("on-policy", "One on-policy round", rows, remarks), arguments.json, arguments.report)
+    return 0
+
+
+def _gathered(domain: str, seed: int, arguments: argparse.Namespace) -> Path:
+    chooses = models_hash(arguments.robot, arguments.zoo)[:12]
+    made_by = gathering.source_hash(arguments.robot, domain)[:12]
+    folder = (
+        arguments.store
+        / "policy"
+        / "-".join([made_by, chooses, *arguments.scenarios, str(arguments.episodes), str(seed)])
+    )
+    policy = Policy(domain, tuple(arguments.scenarios), arguments.episodes, seed, arguments.zoo, folder)
+    for _ in run_policy(policy, arguments.jobs):
+        pass
+    return Path(folder)
+
+
+def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
+    random = read_data_set((arguments.data or Path("data") / arguments.robot) / action)
+    chosen, fresh = (read_data_set(folder / action) for folder in folders)
+    kept, apart = split(np.arange(len(random.episodes)), 0.25, np.random.default_rng(arguments.seed))
+    known = [random.episodes[k] for k in kept]
+    unseen = [random.episodes[k] for k in apart]
+    more = [e for e in merge([random, chosen]).episodes if e.number >= len(random.episodes)]
+    taught, held = split(np.arange(len(more)), 0.25, np.random.default_rng(arguments.seed))
+    both = [*known, *(more[k] for k in taught)]
+    kinds = (("random", known, more), ("random and on-policy", both, [more[k] for k in held]))
+    rows = []
+    for name, episodes, apart_chosen in kinds:
+        judges = _Judges(unseen, apart_chosen, fresh.episodes)
+        figures = _judged([e for e in episodes if e.finished], judges, arguments)
+        rows.append({"action": action, "learned from": name, "episodes": len(episodes), **figures})
+    return rows
+
+
+@dataclass(frozen=True, slots=True)
+class _Judges:
+    """Episodes that no model has learned from."""
+
+    random: Sequence[Episode]
+    held: Sequence[Episode]  # of the round that was learned from: those that the model has not seen
+    fresh: Sequence[Episode]  # of a round of its own
+
+
+def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Namespace) -> dict[str, Any]:
+    """Errors on random episodes and on those of the optimiser's choices, and what intervals hold before and after."""
+    space = SPACES["projective"]
+    model = fit("duration", "bag", duration_examples(episodes, arguments.ticks), space, arguments.seed)
+    figures: dict[str, Any] = {}
+    before = scores.interval_factor(*_errors(model, judges.random), LEVEL)
+    for name, some in (("random", judges.random), ("policy", judges.fresh)):
+        off, spread = _errors(model, some)
+        mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(arguments.seed))
+        figures |= {f"{name}_mae_s": mae, f"{name}_ci95": ci, f"{name}_bias_s": float(off.mean())}
+        figures[f"{name}_coverage_pct"] = scores.coverage(off, spread, before)
+    enough = len(judges.held) >= LEAST_POLICY  # as in `tailor train`: fewer say little about a tenth of them
+    after = scores.interval_factor(*_errors(model, judges.held), LEVEL) if enough else before
+    figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh), after)
+    return {
+        **figures,
+        "factor": before,
+        "factor_recalibrated": after,
+        "calibrated_on": len(judges.held) if enough else 0,
+    }
+
+
+def _errors(model: Any, episodes: Sequence[Episode]) -> tuple[Any, Any]:
+    """Predicted minus observed seconds, and the model's spread, at the first ticks."""
+    space = SPACES["projective"]
+    rows = duration_examples([e for e in episodes if e.finished], 1)
+    mean, spread = model.predict_spread(space(rows.arguments))
+    return mean - rows.targets, spread

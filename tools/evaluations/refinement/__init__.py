@@ -1,0 +1,1 @@
+"""Evaluations of refinement: what does it gain?"""

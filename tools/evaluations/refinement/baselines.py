@@ -1,0 +1,57 @@
+"""What a gain is to be judged by: greedy by the oracle, all zeros, the ceiling, and how far predictions are off.
+
+A learned gain looks large where the learned greedy choice is bad; beside the ceiling it does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.refinement.oracle import Oracle
+
+Outcomes = Mapping[int, Outcome]  # by seed
+
+
+def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes) -> dict[str, float | int]:
+    """The baselines over the starts that the oracle simulated: mean durations, and gains over the greedy model.
+
+    `oracle_pct` is of the best of all simulated runs, the ceiling, which owes something to luck; `oracle_again_pct` of
+    the same choices executed again with other noise.
+    """
+    usable = [o for o in judged if np.isfinite(o.ceiling_s) and greedy[o.seed].achieved and refined[o.seed].achieved]
+    greedy_s = np.array([greedy[o.seed].duration_s for o in usable])
+    refined_s = np.array([refined[o.seed].duration_s for o in usable])
+    ceiling_s = np.minimum([o.ceiling_s for o in usable], np.minimum(greedy_s, refined_s))
+    again_s = np.array([o.again_s for o in usable])
+    return {
+        "oracle_n": len(usable),
+        "oracle_pct": 100 * float(np.mean(1 - ceiling_s / greedy_s)),
+        "oracle_again_pct": 100 * float(np.nanmean(1 - again_s / greedy_s)) if np.isfinite(again_s).any() else np.nan,
+        "refined_same_starts_pct": 100 * float(np.mean(1 - refined_s / greedy_s)),
+        "share_of_oracle_pct": 100 * float((greedy_s - refined_s).sum() / (greedy_s - ceiling_s).sum()),
+        "oracle_s": float(ceiling_s.mean()),
+        "oracle_again_s": _mean(again_s),
+        "refined_same_starts_s": float(refined_s.mean()),
+        "greedy_same_starts_s": float(greedy_s.mean()),
+        "oracle_greedy_s": float(np.mean([o.greedy_s for o in usable])),
+        "zero_s": _mean(np.array([o.zero_s for o in usable])),
+    }
+
+
+def bias_s(outcomes: Outcomes) -> float:
+    """Mean of predicted minus actual duration over all actions that were done."""
+    errors = [
+        predicted - actual
+        for outcome in outcomes.values()
+        for predicted, actual, how in zip(outcome.predicted_s, outcome.actual_s, outcome.outcomes, strict=True)
+        if how == "done"
+    ]
+    return float(np.mean(errors)) if errors else float("nan")
+
+
+def _mean(seconds: np.ndarray) -> float:
+    """Of those that are known."""
+    return float(np.nanmean(seconds)) if np.isfinite(seconds).any() else float("nan")

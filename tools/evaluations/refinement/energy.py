@@ -1,0 +1,94 @@
+"""Time against energy (paper 8): the same runs with a growing worth of a joule; work is measured, not predicted."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from tailor.executive import domains
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least, finite
+from tailor.tools.evaluations.comparison import compare
+from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.lockstep.action_run import trials_of
+from tailor.tools.lockstep.run import Episode
+
+WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What an episode took."""
+
+    achieved: bool
+    duration_s: float
+    energy_j: float
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate energy`."""
+    parser.add_argument("--scenario", default="approach-dribble", help="soccer scenario (default %(default)s)")
+    parser.add_argument(
+        "--weights", type=finite("--weights"), nargs="+", default=list(WEIGHTS), help="s/J (default %(default)s)"
+    )
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=60, help="episodes a weight (default %(default)s)"
+    )
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and tell; 0 when the largest weight saves energy significantly."""
+    if len(arguments.weights) < 2:
+        raise UsageError(f"--weights {arguments.weights}: expected at least two, the first to compare with")
+    task = Task("soccer", arguments.scenario, "", arguments.zoo)
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    jobs = [(weight, seed) for seed in seeds for weight in arguments.weights]
+    costs = Parallel(n_jobs=arguments.jobs)(delayed(cost_of)(task, weight, seed) for weight, seed in jobs)
+    found = dict(zip(jobs, costs, strict=True))
+    rows = [_row(weight, arguments.weights[0], seeds, found) for weight in arguments.weights]
+    remarks = [f"{arguments.scenario}: paired with weight {arguments.weights[0]:g}; energy is the work of the wheels"]
+    tell(Report("energy", "Time against energy", rows, remarks), arguments.json, arguments.report)
+    return 0 if rows[-1]["energy_saved_pct"] > 0 and rows[-1]["energy_p"] < 0.05 else 1
+
+
+def cost_of(task: Task, weight: float, seed: int) -> Cost:
+    """Run one episode with a joule worth so many seconds."""
+    variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
+    episode, _ = run_episode_of(task, variant, seed)
+    return Cost(episode.achieved, episode.duration_s, energy_j(episode, task.domain))
+
+
+def energy_j(episode: Episode, domain: str) -> float:
+    """Work of the drives over an episode's actions."""
+    work = trials_of(domains.load(domain)).work_j
+    during = [t for t in episode.truth if episode.started_s <= t.stamp_ns * 1e-9 <= episode.ended_s]
+    return float(sum(work(before, after) for before, after in itertools.pairwise(during)))
+
+
+def _row(weight: float, first: float, seeds: Sequence[int], found: dict[tuple[float, int], Cost]) -> dict[str, Any]:
+    both = [(found[first, seed], found[weight, seed]) for seed in seeds]
+    both = [(a, b) for a, b in both if a.achieved and b.achieved]
+    times = compare([a.duration_s for a, _ in both], [b.duration_s for _, b in both])
+    work = compare([a.energy_j for a, _ in both], [b.energy_j for _, b in both])
+    return {
+        "joule_worth_s": weight,
+        "n": len(both),
+        "mean_s": times.mean_s,
+        "mean_j": work.mean_s,
+        "longer_pct": -times.improvement_pct,
+        "longer_ci95": tuple(np.sort([-times.ci95[0], -times.ci95[1]]).tolist()),
+        "energy_saved_pct": work.improvement_pct,
+        "energy_ci95": work.ci95,
+        "energy_p": work.p_value,
+        "failed": sum(not found[weight, seed].achieved for seed in seeds),
+    }

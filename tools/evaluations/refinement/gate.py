@@ -1,0 +1,120 @@
+"""When not to refine (paper 6.3.2): the same fresh starts greedy, refined, and refined only where the tree says so.
+
+The paper's tree was right in 87 % of the episodes and raised the improvement from 6.6 to 8.6 %.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.executive.composition import load_models
+from tailor.executive.library import BenefitModel
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.comparison import compare, share_interval
+from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.refinement.gate_ceiling import foreknown
+from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.trials import run_all
+from tailor.tools.learning import gathering
+
+PAPER = "paper: 87 % right, improvement 6.6 % without and 8.6 % with the tree"
+ROBOT, SCENARIO = "agilo", "approach-dribble"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate benefit`."""
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=300, help="fresh starts, each run three ways"
+    )
+    parser.add_argument(
+        "--luck", type=at_least(0, "--luck"), default=0, metavar="N",
+        help="run N starts five times with other noise, to tell what no gate can beat (default: %(default)s)",
+    )  # fmt: skip
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge and tell; 0 when the tree loses no time and leaves fewer episodes slower."""
+    row = evaluate(arguments)
+    remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
+    if arguments.luck:
+        remarks.append("foreknown: by one who knows how the same start went four times with other noise")
+    tell(Report("benefit", "When not to refine", [row], remarks), arguments.json, arguments.report)
+    better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
+    return 0 if better else 1
+
+
+def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
+    """The row of figures over fresh seeds.
+
+    Raises:
+      UsageError: No benefit tree in the zoo.
+    """
+    base = settings or RefinementSettings()
+    tree = load_models(ROBOT, arguments.zoo, gated=True).benefit
+    if tree is None:
+        raise UsageError(f"no benefit tree for {ROBOT}, expected one: `tailor train-benefit {ROBOT}` makes it")
+    plain = replace(base, benefit_gate=False)
+    variants = [
+        Variant("h1", replace(plain, horizon=1)),
+        Variant("h2", replace(plain, horizon=2)),
+        Variant("gated", replace(base, horizon=2, benefit_gate=True)),
+    ]
+    task = Task(gathering.domain_of(ROBOT), SCENARIO, "", arguments.zoo)
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "benefit")
+    starts = [(found["h1"][seed], found["h2"][seed], found["gated"][seed]) for seed in seeds]
+    ceiling = {}
+    if arguments.luck:
+        ceiling = foreknown(task, plain, seeds[: arguments.luck], arguments.jobs, arguments.store)
+    return summary(starts, tree) | ceiling
+
+
+def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: BenefitModel) -> dict[str, Any]:
+    """Figures of starts that were run greedy, refined, and with the tree; those that failed in any way are left out."""
+    achieved = [start for start in starts if all(outcome.achieved for outcome in start)]
+    greedy_s, refined_s, gated_s = (np.array([start[way].duration_s for start in achieved]) for way in range(3))
+    kept = advised([refined for _, refined, _ in achieved], tree)
+    slower = refined_s > greedy_s
+    n, right = len(kept), int(np.sum(kept == slower))
+    plain, gated = compare(greedy_s, refined_s), compare(greedy_s, gated_s)
+    return {
+        "n": n,
+        "right_pct": 100 * right / n,
+        "right_ci95": share_interval(right, n),
+        "always_refining_right_pct": 100 * float(np.mean(~slower)),
+        "kept_pct": 100 * float(kept.mean()),
+        "improvement_pct": plain.improvement_pct,
+        "ci95": plain.ci95,
+        "gated_pct": gated.improvement_pct,
+        "gated_ci95": gated.ci95,
+        "perfect_pct": compare(greedy_s, np.minimum(greedy_s, refined_s)).improvement_pct,
+        "p_gate": compare(refined_s, gated_s).p_value,
+        "slower_pct": plain.slower_pct,
+        "gated_slower_pct": gated.slower_pct,
+        "lost_s": _lost_s(greedy_s, refined_s),
+        "gated_lost_s": _lost_s(greedy_s, gated_s),
+        "failed_refined": sum(not refined.achieved for _, refined, _ in starts),
+        "failed_gated": sum(not outcome.achieved for _, _, outcome in starts),
+    }
+
+
+def advised(refined: list[Outcome], tree: BenefitModel) -> NDArray[np.bool_]:
+    """Where the tree says to keep the greedy choice, shape (n,), from what it saw in runs without it."""
+    kept = np.zeros(len(refined), np.bool_)
+    asked = [place for place, outcome in enumerate(refined) if outcome.situation]
+    if asked:
+        kept[asked] = tree.slower(np.array([refined[place].situation for place in asked])) > tree.threshold
+    return kept
+
+
+def _lost_s(greedy_s: NDArray[np.float64], other_s: NDArray[np.float64]) -> float:
+    """Seconds an episode, on average over all, that are lost where greedy would have been faster."""
+    return float(np.maximum(other_s - greedy_s, 0.0).mean())

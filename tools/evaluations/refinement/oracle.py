@@ -1,0 +1,101 @@
+"""The oracle: every choice of the first subgoal is simulated, so that a learned choice can be judged by the best one.
+
+It knows what the models are to predict. "Ceiling" is its best whole episode, "again" its choice with other noise,
+"greedy" the episode whose first action ends soonest, "zero" the choice of all zeros.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.trials import run_all
+
+Free = tuple[str, str, float, float]  # label, quantity, lower, upper
+AGAIN = 3  # times that the oracle's choice is executed again
+OTHER_NOISE = 500_000
+
+
+@dataclass(frozen=True, slots=True)
+class Oracle:
+    """Durations of one start in seconds; NaN where no choice reached the goal."""
+
+    seed: int
+    ceiling_s: float
+    greedy_s: float
+    zero_s: float
+    again_s: float = float("nan")  # mean of the ceiling's choice, executed again with other noise
+
+
+def subgoal_parameters(outcome: Outcome) -> list[Free]:
+    """The free parameters that the first choice of an episode had, those of detours left out."""
+    return [(label, quantity, lo, hi) for label, quantity, lo, hi, _ in outcome.free if not label.startswith("subgoal")]
+
+
+def consult(
+    task: Task,
+    free: Sequence[Free],
+    seeds: Sequence[int],
+    settings: RefinementSettings,
+    points: int,
+    jobs: int,
+    store: Path | None,
+) -> list[Oracle]:
+    """Simulate a grid over the free parameters at every seed.
+
+    Args:
+      free: What is to be chosen; `points` values of an angle that wraps, a third of that (at least 3) of the rest.
+      settings: Of the executive; its horizon is set to one, because nothing is left to look ahead for.
+    """
+    alone = replace(settings, horizon=1)
+    grid = list(product(*(_values(parameter, points) for parameter in free)))
+    pins = [tuple((f[0], f[1], float(v)) for f, v in zip(free, choice, strict=True)) for choice in grid]
+    zeros = tuple((f[0], f[1], float(np.clip(0.0, f[2], f[3]))) for f in free)
+    variants = [Variant(_name(one), alone, one) for one in dict.fromkeys([*pins, zeros])]
+    found = run_all(task, variants, seeds, jobs, store, f"{task.scenario}: oracle")
+    judged = []
+    for seed in seeds:
+        one = _judged(seed, [found[v.name][seed] for v in variants], found[_name(zeros)][seed])
+        best = [v for v in variants if found[v.name][seed].achieved and found[v.name][seed].duration_s == one.ceiling_s]
+        judged.append(replace(one, again_s=_again_s(task, best[0], seed, jobs, store)) if best else one)
+    return judged
+
+
+def _again_s(task: Task, best: Variant, seed: int, jobs: int, store: Path | None) -> float:
+    """The best of many noisy runs owes something to its luck; the choice itself is worth this."""
+    again = [replace(best, name=f"again-{k}-{best.name}", noise=k * OTHER_NOISE) for k in range(1, AGAIN + 1)]
+    found = run_all(task, again, [seed], jobs, store, f"{task.scenario}: oracle again")
+    reached = [found[v.name][seed].duration_s for v in again if found[v.name][seed].achieved]
+    return float(np.mean(reached)) if reached else float("nan")
+
+
+def _judged(seed: int, outcomes: Sequence[Outcome], zero: Outcome) -> Oracle:
+    achieved = [outcome for outcome in outcomes if outcome.achieved]
+    zero_s = zero.duration_s if zero.achieved else float("nan")
+    if not achieved:
+        return Oracle(seed, float("nan"), float("nan"), zero_s)
+    soonest = min(achieved, key=_first_action_s)
+    return Oracle(seed, min(outcome.duration_s for outcome in achieved), soonest.duration_s, zero_s)
+
+
+def _first_action_s(outcome: Outcome) -> float:
+    """Until the first action that belongs to the plan is done, detours included; never, where it failed at first."""
+    end = next((i for i, name in enumerate(outcome.actions) if name != "goToPose" or not outcome.asserted), 0)
+    return sum(outcome.actual_s[: end + 1]) if outcome.outcomes[end] == "done" else float("inf")
+
+
+def _values(parameter: Free, points: int) -> list[float]:
+    _, quantity, lower, upper = parameter
+    if quantity == "phi":
+        return list(np.linspace(lower, upper, points, endpoint=False))
+    return list(np.linspace(lower, upper, max(3, points // 6)))
+
+
+def _name(pins: Sequence[tuple[str, str, float]]) -> str:
+    return "pin-" + "-".join(f"{label}.{quantity}={value:.3f}" for label, quantity, value in pins)

@@ -1,0 +1,115 @@
+"""Models trained anew, each from episodes of its own: how much of a result hangs on the one training that ships."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.progress import Progress
+from scipy import stats
+
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.commands.learn import train
+from tailor.tools.learning import gathering, run_gathering
+
+FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
+SCENARIOS = {"soccer": ("approach-dribble", "waypoints")}  # of the on-policy round, where it helps
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """How a replica is made. `runs` is the on-policy round's, a scenario; 0: none."""
+
+    domain: str
+    robot: str
+    episodes: int  # of each action
+    runs: int
+
+
+def configure_replicas(parser: argparse.ArgumentParser) -> None:
+    """The flags of evaluations that train models of their own."""
+    parser.add_argument("--models", type=at_least(0, "--models"), default=0, metavar="K",
+                        help="judge K models more, each gathered for and trained anew, and their mean")  # fmt: skip
+    parser.add_argument("--model-episodes", type=at_least(40, "--model-episodes"), default=3000, metavar="N",
+                        help="random episodes an action for each of them (default %(default)s)")  # fmt: skip
+    parser.add_argument("--model-runs", type=at_least(0, "--model-runs"), default=200, metavar="N",
+                        help="runs a scenario of its on-policy round (default %(default)s; 0: none)")  # fmt: skip
+
+
+def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
+    """A zoo with models trained on episodes that no other replica has seen; made at the first call, found at the next.
+
+    A call that was broken off goes on where it stopped.
+
+    Args:
+      recipe: What goes into it.
+      number: Which one, from 1.
+      store: Folder for all replicas; other controllers or bodies, other replicas.
+      jobs: Processes.
+    """
+    made_by = gathering.source_hash(recipe.robot, recipe.domain)[:12]
+    folder = store / "replicas" / f"{recipe.robot}-{recipe.episodes}-{recipe.runs}-{made_by}" / str(number)
+    seed = FIRST_SEED + number
+    _gather(recipe, seed, folder / "random", jobs)
+    zoo = _trained(recipe, seed, folder / "zoo-random", [folder / "random"])
+    scenarios = SCENARIOS.get(recipe.domain, ())
+    if not recipe.runs or not scenarios:
+        return zoo
+    policy = run_gathering.Policy(recipe.domain, scenarios, recipe.runs, seed, str(zoo), folder / "policy")
+    _finish(run_gathering.run_policy(policy, jobs), f"model {number}: on-policy")
+    return _trained(recipe, seed, folder / "zoo", [folder / "random", folder / "policy"])
+
+
+def _gather(recipe: Recipe, seed: int, folder: Path, jobs: int) -> None:
+    for action in run_gathering.actions(recipe.domain):
+        work = gathering.Work(recipe.domain, action, recipe.episodes, seed, folder / action)
+        gathering.prepare(work, resume=True)
+        _finish(gathering.gather(work, gathering.missing_parts(work), jobs), f"{action}, seed {seed}")
+
+
+def _finish(running: Any, title: str) -> None:
+    with Progress(transient=True, console=Console(stderr=True)) as progress:
+        for _ in progress.track(running, total=None, description=title):
+            pass
+
+
+def _trained(recipe: Recipe, seed: int, zoo: Path, data: list[Path]) -> Path:
+    """Train as `tailor train` does, unless that has been done."""
+    whole = zoo / "whole"  # written last
+    if not whole.exists():
+        parser = argparse.ArgumentParser()
+        train.configure(parser)
+        flags = [recipe.robot, "--data", *map(str, data), "--zoo", str(zoo), "--seed", str(seed)]
+        with contextlib.redirect_stdout(sys.stderr):  # stdout is the evaluation's
+            train.run(parser.parse_args(flags))
+        whole.touch()
+    return zoo
+
+
+def over_models(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The row over several models: the mean of theirs, with a 95 % interval between models.
+
+    The interval says what another training would give; each model's own says what other starts would give.
+    """
+    gains = np.array([row["improvement_pct"] for row in rows])
+    half = float(stats.t.ppf(0.975, len(gains) - 1) * stats.sem(gains)) if len(gains) > 1 else float("nan")
+    mean = float(gains.mean())
+    means = ("mean_greedy_s", "mean_refined_s", "slower_pct", "bias_greedy_s", "bias_refined_s")
+    return {
+        "scenario": rows[0]["scenario"],
+        "model": f"{len(rows)} models",
+        "horizon": rows[0]["horizon"],
+        "n": sum(row["n"] for row in rows),
+        "improvement_pct": mean,
+        "ci95": (mean - half, mean + half),
+        "p_value": float(stats.ttest_1samp(gains, 0.0).pvalue) if len(gains) > 1 else float("nan"),
+        "least_pct": float(gains.min()),
+        "most_pct": float(gains.max()),
+        **{key: float(np.mean([row[key] for row in rows])) for key in means},
+    }

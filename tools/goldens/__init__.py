@@ -1,0 +1,1 @@
+"""Golden recordings: made anew, compared with the old ones."""

@@ -1,0 +1,124 @@
+"""Make the golden recordings of the tests anew: one run in lock-step of every scenario, and what has changed in it.
+
+`make goldens` prints the changes and then overwrites. `python -m tailor.tools.goldens.renew --check` only prints them;
+its exit code is 1 if there are any.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tailor.executive import domains
+from tailor.executive.composition import Order, compose, provenance
+from tailor.executive.core.context import Settings
+from tailor.runtime.platform_fingerprint import machine
+from tailor.schemas.errors import UsageError
+from tailor.tools.commands.run.sim import make_world
+from tailor.tools.goldens.changes import changes, outcome
+from tailor.tools.lockstep.run import SENDER, run_episode
+from tailor.tools.lockstep.run_recording import LockstepRecording
+from tailor.tools.lockstep.run_writer import RunTape
+from tailor.tools.recordings.comparison import compared_run
+
+FOLDER = Path(__file__).resolve().parents[2] / "tests" / "data" / "golden"
+LETTERS = ("word-I",)  # the arm's scenarios are without number
+CHECKS = 40  # a tick: so few that a deliberation takes several ticks and is resumed, as on a slow machine
+
+
+@dataclass(frozen=True, slots=True)
+class Golden:
+    """One golden recording, and the run that it is of."""
+
+    domain: str
+    scenario: str
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        """Of its file, without the ending."""
+        return f"{self.domain}-{self.scenario}"
+
+
+def goldens() -> list[Golden]:
+    """All golden recordings: every scenario that soccer declares, and a letter of the arm."""
+    soccer = [Golden("soccer", scenario) for scenario in domains.scenarios("soccer")]
+    return [*soccer, *(Golden("arm", letter) for letter in LETTERS)]
+
+
+def record(golden: Golden, path: Path) -> None:
+    """Run it in lock-step and write it down; the same bytes every time on the same kind of machine."""
+    order = Order(golden.domain, golden.scenario, Settings(seed=golden.seed))
+    context = compose(order, SENDER)
+    _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
+    world = make_world(context.domain.robot, golden.scenario, golden.seed)
+    tape = RunTape(path, context, {**provenance(order, context), "machine": machine()}, compact=True)
+    recording = LockstepRecording(tape)
+    run_episode(
+        context,
+        world.body,
+        start,
+        golden.seed,
+        world.events,
+        checks=CHECKS,
+        witness=recording.witness,
+        wire=recording.wire,
+    )
+    tape.close()
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Compare and overwrite; 0, or with --check 1 if something has changed."""
+    parser = argparse.ArgumentParser(prog="python -m tailor.tools.goldens.renew", description=__doc__)
+    parser.add_argument("names", nargs="*", help="only these, e.g. soccer-waypoints (default: all)")
+    parser.add_argument("--check", action="store_true", help="only print what has changed")
+    arguments = parser.parse_args(argv)
+    known = {golden.name: golden for golden in goldens()}
+    unknown = [name for name in arguments.names if name not in known]
+    if unknown:
+        print(f"no golden recording {unknown[0]!r}, expected one of: {', '.join(known)}", file=sys.stderr)
+        return 2
+    changed = [name for name in arguments.names or known if _renewed(known[name], write=not arguments.check)]
+    for path in [] if arguments.names else _left_over(set(known)):
+        print(f"{path.stem}: there is no such scenario any more{'' if arguments.check else ', removed'}")
+        changed.append(path.stem)
+        if not arguments.check:
+            path.unlink()
+    return int(bool(changed) and arguments.check)
+
+
+def _renewed(golden: Golden, write: bool) -> bool:
+    """Run a golden's scenario again, print what has changed, and only then put the new recording in its place."""
+    kept = FOLDER / f"{golden.name}.mcap"
+    with tempfile.TemporaryDirectory() as folder:
+        new = Path(folder) / kept.name
+        record(golden, new)
+        lines = _told(kept, new)
+        print(f"{golden.name}: {('changed' if kept.exists() else 'new') if lines else 'as before'}")
+        for line in lines:
+            print(f"  {line}")
+        if lines and write:
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.write_bytes(new.read_bytes())
+    return bool(lines)
+
+
+def _told(kept: Path, new: Path) -> list[str]:
+    if not kept.exists():
+        return [f"now       {outcome(compared_run(new))}"]
+    try:
+        return changes(kept, new)
+    except UsageError as error:
+        return [f"the old one cannot be read: {error}", f"now       {outcome(compared_run(new))}"]
+
+
+def _left_over(names: set[str]) -> list[Path]:
+    return sorted(path for path in FOLDER.glob("*.mcap") if path.stem not in names)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

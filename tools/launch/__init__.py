@@ -1,0 +1,1 @@
+"""Starting and checking whole systems."""

@@ -1,0 +1,1 @@
+"""Gathering of episodes and the inputs of training."""

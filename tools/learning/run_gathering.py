@@ -1,0 +1,191 @@
+"""Episodes out of whole runs: the executive's own choices in lock-step (on-policy), or recordings of real robots.
+
+A model is wrong where it has not looked, and refinement goes exactly there; these episodes are from there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from tailor.executive import domains
+from tailor.executive.composition import load_models
+from tailor.executive.core.context import Settings, make_context
+from tailor.executive.library import Models
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.models.episodes.episodes import Episode, write_part
+from tailor.models.episodes.manifest import write_manifest
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
+from tailor.tools.learning import gathering
+from tailor.tools.lockstep import action_run
+from tailor.tools.lockstep.episode_extraction import Cutter
+
+FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
+CHUNK = 10  # runs whose episodes are kept together
+READ = (Subgoals, ExecStatus, SimTruth, JointState, Odometry, ActionFinished)
+MOST_ACTIONS = 100  # of one run; spaces the numbers of its episodes
+UNPROVEN = RefinementSettings(certify_checks=0)  # a proof of how good a choice is takes time and changes nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """Scenarios to run with the current models, and where their episodes go: a data set per action."""
+
+    domain: str
+    scenarios: tuple[str, ...]
+    runs: int  # of each scenario
+    seed: int
+    zoo: str
+    folder: Path
+
+    @property
+    def jobs(self) -> list[tuple[str, int]]:
+        """Every run: scenario and seed."""
+        first = FIRST_SEED + 100_000 * self.seed
+        return [(scenario, first + k) for k in range(self.runs) for scenario in self.scenarios]
+
+
+def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
+    """Run what has not been run yet, in parallel; yields runs finished.
+
+    Raises:
+      UsageError: The folder holds other episodes, or the same ones without `resume`; models that cannot be trusted.
+    """
+    from joblib import Parallel, delayed
+
+    about: dict[str, Any] = {
+        "source": "lock-step, refined choices",
+        "seed": policy.seed,
+        "scenarios": list(policy.scenarios),
+        "models_sha256": models_hash(domains.load(policy.domain).robot, policy.zoo),
+    }
+    about["episodes"] = policy.runs
+    prepare(policy.domain, policy.folder, actions(policy.domain), about, policy.jobs, resume)
+    missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
+    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
+
+
+def models_hash(robot: str, zoo: str) -> str:
+    """SHA-256 over the models whose choices are run: other models, other episodes."""
+    loaded: Any = _models(robot, zoo)
+    models = {**loaded.durations, **loaded.successes}
+    said = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
+    return hashlib.sha256("\n".join(said).encode()).hexdigest()
+
+
+def prepare(
+    domain: str, folder: Path, names: Sequence[str], about: dict[str, Any], runs: Sequence[Any], resume: bool
+) -> None:
+    """Make a data set folder, with its manifest, for each of some actions.
+
+    Raises:
+      UsageError: One of them holds other episodes, or the same ones without `resume`; nothing is written then.
+    """
+    loaded = domains.load(domain)
+    manifests = {
+        folder / action: {
+            "robot": loaded.robot,
+            "domain": domain,
+            "action": action,
+            "arguments": gathering.argument_ranges(loaded, action),
+            "runs": len(runs),
+            "source_sha256": gathering.source_hash(loaded.robot, domain),
+            "on_policy": True,
+            **about,
+        }
+        for action in names
+    }
+    for place, manifest in manifests.items():
+        gathering.check_resumable(place, manifest, resume)
+    for place, manifest in manifests.items():
+        place.mkdir(parents=True, exist_ok=True)
+        write_manifest(place, manifest)
+
+
+def actions(domain: str) -> list[str]:
+    """Names of the data sets: the actions whose duration models the domain's actions name."""
+    return sorted({action.duration_model.split("/")[0] for action in domains.load(domain).actions.values()})
+
+
+def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode]]) -> None:
+    """Write the episodes of some runs, each to its action's data set."""
+    loaded = domains.load(domain)
+    for action in actions(domain):
+        mine = [episode for name, episode in cut if name == action]
+        if mine:
+            names = gathering.argument_names(loaded, action)
+            write_part(folder / action / f"part-{part}.parquet", mine, names)
+
+
+def cut_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dict[str, int]:
+    """Cut recordings into data sets; returns the number of episodes by action.
+
+    Raises:
+      UsageError: A file is no recording of an executive's run, none holds a finished action, or the folder holds
+        episodes already; nothing is written then.
+    """
+    cut = [Cutter(domains.load(domain)).read(_messages(path)) for path in recordings]
+    if not any(cut):
+        raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
+    about = {"source": "recordings", "recordings": [path.name for path in recordings]}
+    found = Counter(action for one in cut for action, _ in one)
+    prepare(domain, folder, sorted(found), about, recordings, resume=False)
+    number = 0
+    for one in cut:
+        numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
+        write(domain, folder, f"{number:06d}", numbered)
+        number += len(one)
+    return {action: found[action] for action in actions(domain)}
+
+
+def _messages(path: Path) -> Iterator[Message]:
+    """What the cutter reads, in the order in which it was said."""
+    from tailor.runtime.recordings.recording import open_recording
+    from tailor.schemas.codec import decode
+    from tailor.schemas.typesystem import type_of
+
+    for recorded in sorted(open_recording(path).messages(), key=lambda m: m.publish_ns):
+        kind = type_of(recorded.ros_type)
+        if kind in READ:
+            message = decode(kind, recorded.data)
+            if isinstance(message, Rejected):
+                raise UsageError(f"{path}: {recorded.key} number {recorded.sequence}: {message.reason}")
+            yield message
+
+
+def _mark(policy: Policy, first: int) -> Path:
+    """Says that some runs are done; its name says how many, for a last chunk that was shorter may grow."""
+    return policy.folder / f"runs-{first:06d}-{min(first + CHUNK, len(policy.jobs)):06d}.done"
+
+
+def _chunk(policy: Policy, first: int) -> int:
+    some = policy.jobs[first : first + CHUNK]
+    cut = []
+    for k, (scenario, seed) in enumerate(some):
+        base = MOST_ACTIONS * (first + k)
+        cut += [(a, replace(e, number=base + i)) for i, (a, e) in enumerate(_run(policy, scenario, seed))]
+    write(policy.domain, policy.folder, f"{first:06d}", cut)
+    _mark(policy, first).touch()
+    return len(some)
+
+
+def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
+    from tailor.tools.lockstep.run import SENDER, run_episode
+
+    domain = domains.load(policy.domain)
+    drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
+    settings = Settings(seed=seed, refinement=UNPROVEN)
+    context = make_context(domain, drawn, _models(domain.robot, policy.zoo), settings, SENDER)
+    return Cutter(domain).read(run_episode(context, action_run.new_body(domain), start, seed).messages)
+
+
+@lru_cache(maxsize=2)
+def _models(robot: str, zoo: str) -> Models:
+    """Loaded once a process."""
+    return load_models(robot, zoo)

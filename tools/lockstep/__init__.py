@@ -1,0 +1,1 @@
+"""Executive and simulated body joined in one process, as fast as the CPU allows."""

@@ -1,0 +1,1 @@
+"""Recordings as runs of an executive: read, compared, replayed in part."""

@@ -1,0 +1,102 @@
+"""Puts two recorded runs side by side: what each commanded, planned, chose, and how long its actions took."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.schemas.messages import ActionFinished, ExecStatus, PlanReport, Subgoals
+from tailor.schemas.topics import TOPICS
+from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
+
+COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One executive's run, reduced to what gets compared."""
+
+    name: str
+    actions: tuple[ActionFinished, ...]
+    plans: tuple[PlanReport, ...]
+    subgoals: tuple[Subgoals, ...]
+    commands: NDArray[np.float64]  # shape (n, 1 + axes): seconds since the first command that is not zero, values
+    result: str
+
+    @property
+    def total_s(self) -> float:
+        """Sum of all actions' durations."""
+        return sum(action.actual_s for action in self.actions)
+
+
+def compared_run(path: Path) -> Run:
+    """The first executive's run in a recording.
+
+    Raises:
+      UsageError: The file is no recording or holds no run.
+    """
+    run = RecordedRuns(path).runs[0]
+    status = _said(run, "status", ExecStatus)
+    results = [message.result for message in status if message.result]
+    return Run(
+        name=path.stem,
+        actions=tuple(_said(run, "finished", ActionFinished)),
+        plans=tuple(_said(run, "plan", PlanReport)),
+        subgoals=tuple(_said(run, "subgoals", Subgoals)),
+        commands=_commands(run),
+        result=results[-1] if results else "",
+    )
+
+
+def chosen(subgoals: Subgoals) -> dict[str, float]:
+    """The free variables of an action sequence, each under its first name: "action.parameter" -> chosen value."""
+    named: dict[int, tuple[str, float]] = {}
+    for action in subgoals.actions:
+        for parameter in action.parameters:
+            if not parameter.bound:  # equal ids are one variable (paper 6.2.2)
+                named.setdefault(parameter.id, (f"{action.action}.{parameter.name}", parameter.value))
+    return dict(named.values())
+
+
+def commands_apart(a: Run, b: Run) -> dict[str, float]:
+    """How far the commands of two runs are apart over the time that both drove, matched by time since setting off.
+
+    Returns:
+      seconds: How long both drove; first_s: when they first differ (nan: never); rms, max: of the difference, over all
+      axes, in the axes' own units.
+    """
+    count = min(len(a.commands), len(b.commands))
+    width = min(a.commands.shape[1], b.commands.shape[1])
+    difference = np.abs(a.commands[:count, 1:width] - b.commands[:count, 1:width])
+    different = np.flatnonzero(difference.any(axis=1))
+    return {
+        "seconds": float(a.commands[count - 1, 0]) if count else 0.0,
+        "first_s": float(a.commands[different[0], 0]) if different.size else float("nan"),
+        "rms": float(np.sqrt(np.mean(difference**2))) if count else 0.0,
+        "max": float(difference.max()) if count else 0.0,
+    }
+
+
+def _said(run: RecordedRun, topic: str, kind: type) -> list[Any]:
+    messages = (decoded(recorded) for recorded in run.said.get(TOPICS[topic].key, ()))
+    return [message for message in messages if isinstance(message, kind)]
+
+
+def _commands(run: RecordedRun) -> NDArray[np.float64]:
+    """The commands from the first that is not zero on."""
+    keys = [key for key in run.said if key.endswith(COMMANDS)]
+    rows = [(r.log_ns / 1e9, *_values(decoded(r))) for key in keys for r in run.said[key]]
+    table = np.array(rows, dtype=np.float64).reshape(len(rows), -1) if rows else np.zeros((0, 1))
+    moving = np.flatnonzero(table[:, 1:].any(axis=1))
+    table = table[moving[0] :] if moving.size else table[:0]
+    if len(table):
+        table[:, 0] -= table[0, 0]
+    return table
+
+
+def _values(message: Any) -> tuple[float, ...]:
+    return tuple(message.velocities) if hasattr(message, "velocities") else (message.v, message.omega)

@@ -1,0 +1,78 @@
+"""What one executive said in a recording, sorted: its ticks, what it is made of, and all the rest by key."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from tailor.runtime.recordings.recording import Recorded
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.json_text import table_of
+from tailor.schemas.messages import Message, Provenance, TickReport
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import type_of
+
+TICK_KEY = TOPICS["tick"].key
+PROVENANCE_KEY = TOPICS["provenance"].key
+
+
+@dataclass(slots=True)
+class RecordedRun:
+    """One executive's run. `said` holds its messages by key, in the order of their sequence numbers."""
+
+    sender: str
+    provenance: dict[str, Any] = field(default_factory=dict)
+    ticks: list[TickReport] = field(default_factory=list)
+    said: dict[str, list[Recorded]] = field(default_factory=lambda: defaultdict(list))
+
+
+def decoded(recorded: Recorded) -> Message:
+    """The value of a recorded message of our own types; raises UsageError if it is damaged."""
+    kind = type_of(recorded.ros_type)
+    message = decode(kind, recorded.data) if kind is not None else Rejected(f"unknown type {recorded.ros_type}")
+    if isinstance(message, Rejected):
+        raise UsageError(f"{recorded.key} number {recorded.sequence}: {message.reason}")
+    return message
+
+
+def executives(messages: Iterable[Recorded]) -> list[str]:
+    """Who said ticks and what it is made of; where nobody said the latter, who said ticks. In order of appearance."""
+    keys: dict[str, set[str]] = defaultdict(set)
+    for message in messages:
+        keys[message.sender].add(message.key)
+    ticking = [sender for sender, said in keys.items() if TICK_KEY in said]
+    return [sender for sender in ticking if PROVENANCE_KEY in keys[sender]] or ticking
+
+
+def take(run: RecordedRun, message: Recorded) -> str:
+    """Put a message into its run; returns why it was left out, or ""."""
+    if message.key == PROVENANCE_KEY:
+        said = decoded(message)
+        if isinstance(said, Provenance):
+            run.provenance = _table(said)
+    elif message.key == TICK_KEY:
+        kind = type_of(message.ros_type)
+        report = decode(kind, message.data) if kind is not None else None
+        if not isinstance(report, TickReport):
+            return report.reason if isinstance(report, Rejected) else message.ros_type
+        run.ticks.append(report)
+    else:
+        run.said[message.key].append(message)
+    return ""
+
+
+def _table(said: Provenance) -> dict[str, Any]:
+    table = table_of(said.json)
+    if isinstance(table, Rejected):
+        raise UsageError(f"{PROVENANCE_KEY}: {table.reason}, expected what an executive says of itself")
+    return table
+
+
+def in_order(run: RecordedRun) -> None:
+    """Sort what a run holds by its numbers."""
+    run.ticks.sort(key=lambda report: report.tick)
+    for messages in run.said.values():
+        messages.sort(key=lambda message: message.sequence)

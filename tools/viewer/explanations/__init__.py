@@ -1,0 +1,1 @@
+"""Why a subgoal was chosen, as values."""

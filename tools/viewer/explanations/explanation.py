@@ -1,0 +1,159 @@
+"""Why a subgoal was chosen: what the models predict for its alternatives, and what greedy would have done (Figure 11).
+
+Made from a recorded `Subgoals` message and the action models alone; nothing is executed again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tailor.executive.library import Action, Array, Models
+from tailor.executive.refinement.alternatives import Alternatives, alternatives
+from tailor.executive.refinement.greedy import greedy
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas import messages as m
+from tailor.tools.viewer.explanations.situation import Situation, situations_of
+
+
+@dataclass(frozen=True, slots=True)
+class FreeParameter:
+    """A free parameter: what was chosen, what greedy chooses, and the predictions over its range, the others as chosen.
+
+    `touched` are the places of the actions that depend on it, among those within the horizon.
+    """
+
+    variable: Variable
+    chosen: float
+    greedy: float
+    alternatives: Alternatives
+    touched: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A choice against its alternatives. Durations are predicted means; `cost` is the objective, +inf is INVALID."""
+
+    actions: tuple[str, ...]  # within the horizon, in order
+    chosen_s: tuple[float, ...]
+    greedy_s: tuple[float, ...]
+    chosen_cost: float
+    greedy_cost: float
+    parameters: tuple[FreeParameter, ...]  # the free ones
+    situations: tuple[Situation, ...] = ()  # one for each action, where its model says what it sees
+    chosen_j: tuple[float, ...] = ()  # predicted energies, where energy is weighed
+    greedy_j: tuple[float, ...] = ()
+
+
+def explain(
+    message: m.Subgoals,
+    library: Mapping[str, Action],
+    models: Models,
+    settings: RefinementSettings,
+    rng: np.random.Generator,
+) -> Explanation | None:
+    """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
+
+    The greedy choice is searched anew with the executive's own solver, from `rng`.
+    """
+    sequence = sequence_of(message, library)
+    if sequence is None:
+        return None
+    settings = replace(settings, horizon=message.horizon)
+    chosen = chosen_values(message)
+    sequence = accepted(sequence, chosen, models, settings)
+    objective = _objective(sequence, models, settings)
+    if not objective.ids:
+        return None
+    alone = greedy(sequence, models, settings, rng).values
+    picked, lone = objective.vector(chosen), objective.vector(alone)
+    return Explanation(
+        tuple(a.action.name for a in sequence.within(settings.horizon)),
+        _durations(objective, picked),
+        _durations(objective, lone),
+        float(objective(picked[None])[0]),
+        float(objective(lone[None])[0]),
+        tuple(_parameter(sequence, objective, place, picked, lone, models, settings) for place in range(len(picked))),
+        situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
+        _energies(objective, picked, settings),
+        _energies(objective, lone, settings),
+    )
+
+
+def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSequence | None:
+    """The instantiated sequence that the message reports; None if it names an action that the library lacks."""
+    if not message.actions or any(a.action not in library for a in message.actions):
+        return None
+    table: dict[int, Variable] = {}
+    for told in message.actions:
+        for declared, parameter in zip(library[told.action].parameters, told.parameters, strict=True):
+            wide = parameter.upper - parameter.lower >= declared.upper - declared.lower
+            table[parameter.id] = Variable(
+                parameter.id,
+                parameter.label,
+                declared.quantity,
+                declared.unit,
+                parameter.lower,
+                parameter.upper,
+                declared.periodic and wide,
+                parameter.value if parameter.bound else None,
+            )
+    unused = Variable(0, "", "", "", 0.0, 0.0, False, 0.0)  # ids have gaps where a detour replaced a variable
+    variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
+    actions = tuple(
+        InstantiatedAction(library[a.action], a.step, tuple(p.id for p in a.parameters), a.asserted)
+        for a in message.actions
+    )
+    return ActionSequence(actions, variables, library)
+
+
+def _objective(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:
+    return SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
+
+
+def chosen_values(message: m.Subgoals) -> dict[int, float]:
+    """The values that were chosen for the free parameters, by variable id."""
+    return {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
+
+
+def accepted(
+    sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
+) -> ActionSequence:
+    """The sequence with every risk allowed if the choice needs it: risks that were accepted are not in the message."""
+    objective = _objective(sequence, models, settings)
+    if np.isfinite(objective(objective.vector(chosen)[None]))[0]:
+        return sequence
+    return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
+
+
+def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, ...]:
+    return tuple(float(said.duration_s[0]) for said in objective.predict(candidate))
+
+
+def _energies(objective: SequenceObjective, candidate: Array, settings: RefinementSettings) -> tuple[float, ...]:
+    if settings.energy_weight == 0:
+        return ()
+    return tuple(float(said.energy_j[0]) for said in objective.predict(candidate))
+
+
+def _parameter(
+    sequence: ActionSequence,
+    objective: SequenceObjective,
+    place: int,
+    picked: Array,
+    lone: Array,
+    models: Models,
+    settings: RefinementSettings,
+) -> FreeParameter:
+    identifier = objective.ids[place]
+    return FreeParameter(
+        sequence.variables[identifier],
+        float(picked[place]),
+        float(lone[place]),
+        alternatives(sequence, objective.values(picked), models, settings, identifier),
+        tuple(i for i, stage in enumerate(objective.stages) if place in stage.columns),
+    )

@@ -1,0 +1,41 @@
+"""How near a choice is to the best that the models know: the same search again, many times as long."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.library import Action, Models
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.refinement import Refinement
+from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.explanations.explanation import accepted, chosen_values, sequence_of
+
+CHECKS = 1500  # live, a decision has some 100 to 300
+
+
+def best_cost(
+    message: Subgoals,
+    library: Mapping[str, Action],
+    models: Models,
+    settings: RefinementSettings,
+    rng: np.random.Generator,
+    checks: int = CHECKS,
+) -> float:
+    """The least objective that a long search finds, the choice itself included; no proof of the optimum.
+
+    Raises:
+      ValueError: The library lacks an action of the message.
+    """
+    sequence = sequence_of(message, library)
+    if sequence is None:
+        raise ValueError("the library lacks an action of the sequence")
+    settings = replace(settings, horizon=message.horizon, patience=checks, checks_max=checks)
+    chosen = chosen_values(message)
+    search = Refinement(accepted(sequence, chosen, models, settings), models, settings, rng, start=chosen)
+    search.advance(CheckBudget(checks))
+    assert search.choice is not None, "the first check yields a choice"
+    return search.choice.total_s
