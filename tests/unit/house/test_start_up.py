@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from tailor.tools.main import COMMANDS
 from tests.support.bus_system import ROOT
 
 HEAVY = {"scipy", "sklearn", "pandas", "matplotlib", "mujoco", "plotly", "onnx", "skl2onnx", "pytest"}
@@ -26,16 +27,18 @@ WITHOUT = {
 
 @pytest.mark.parametrize("name", WITHOUT)
 def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
-    asked = f"import sys, tools.{name}; print(*{{module.split('.')[0] for module in sys.modules}})"
-    loaded = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True, cwd=ROOT).stdout
-    assert set(loaded.split()) & WITHOUT[name] == set()
+    module = "tailor.tools.main" if name == "main" else COMMANDS[name][0]
+    code = f"import sys, {module}; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert module in loaded.split()
+    assert {name.removeprefix("tailor.").split(".")[0] for name in loaded.split()} & WITHOUT[name] == set()
 
 
 RUN = """
 import sys
 from pathlib import Path
 from tailor.executive.replay import replay
-from tools import verify
+from tailor.tools.commands.look import verify
 runs = verify.RecordedRuns(Path(sys.argv[1]))
 context = verify.recompose(runs.runs[0].provenance)
 before = set(sys.modules)

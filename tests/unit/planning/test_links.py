@@ -5,8 +5,7 @@ import dataclasses
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.planning import GOAL, Settings, parse_plan, relink, validate
-from tailor.executive.planning.plans import suffix
+from tailor.executive.planning import GOAL, Settings, parse_plan, relink, suffix, validate
 from tests.property.test_planning_soundness import LITERALS, VARIABLE_LITERALS, conjunction, problems
 from tests.support.planning_problems import read, solve
 from tests.unit.planning.test_language import LAMPS, SWITCHES, TIMED, WORKSHOP

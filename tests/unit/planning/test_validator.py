@@ -4,8 +4,7 @@ import dataclasses
 
 import pytest
 
-from tailor.executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, validate
-from tailor.executive.planning.plans import suffix
+from tailor.executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, suffix, validate
 from tests.support.planning_problems import OWN, own, read, solve
 
 
