@@ -11,8 +11,8 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.library import Models
-from tailor.executive.refinement.gate import check_benefit
-from tailor.models.runtime import BENEFIT, load_benefit, load_robot
+from tailor.executive.refinement.gate import check_gate
+from tailor.models.runtime import BENEFIT, load_gate, load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 
@@ -20,7 +20,7 @@ PLACE_UNIT = "m"
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class ExecutiveConfig:
     """What to run: a domain, one of its scenarios, and the settings of the executive."""
 
     domain: str
@@ -29,7 +29,7 @@ class Order:
     zoo: str = ""  # folder of action models; empty: those that ship
 
 
-def compose(order: Order, sender: str, stamp_offset_ns: int = 0) -> Context:
+def build_context(order: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0) -> Context:
     """The context of an order.
 
     Raises:
@@ -49,12 +49,12 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
         was learned with others.
     """
     folder = Path(zoo) if zoo else None
-    durations, successes = load_robot(robot, folder, asked_ranges(robot))
-    benefit = load_benefit(robot, folder, {**durations, **successes}) if gated else None
-    return Models(durations, successes, None if benefit is None else check_benefit(benefit))
+    durations, successes = load_robot(robot, folder, required_ranges(robot))
+    benefit = load_gate(robot, folder, {**durations, **successes}) if gated else None
+    return Models(durations, successes, None if benefit is None else check_gate(benefit))
 
 
-def asked_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
+def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
     """Ranges that a robot's actions declare, by the folder of their models and argument.
 
     Places are left out: models know them by distance and direction, and how far apart two may be the arguments do not
@@ -70,7 +70,7 @@ def asked_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
     return ranges
 
 
-def provenance(order: Order, context: Context) -> dict[str, Any]:
+def provenance(order: ExecutiveConfig, context: Context) -> dict[str, Any]:
     """All that it takes to compose the same context again, and the cards of the models it used."""
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
     if context.models.benefit is not None:
@@ -83,19 +83,19 @@ def provenance(order: Order, context: Context) -> dict[str, Any]:
     }
 
 
-def without_gate(order: Order) -> Order:
+def without_gate(order: ExecutiveConfig) -> ExecutiveConfig:
     """The order of a run that always refines."""
     refinement = dataclasses.replace(order.settings.refinement, benefit_gate=False)
     return dataclasses.replace(order, settings=dataclasses.replace(order.settings, refinement=refinement))
 
 
-def recompose(recorded: Mapping[str, Any]) -> Context:
+def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     _check(recorded)
-    order = from_table(Order, recorded["order"], "recording's provenance")
+    order = from_table(ExecutiveConfig, recorded["order"], "recording's provenance")
     if BENEFIT not in recorded["models"]:  # the run had no benefit tree, whatever there is here
         order = without_gate(order)
-    context = compose(order, recorded["sender"], recorded["stamp_offset_ns"])
+    context = build_context(order, recorded["sender"], recorded["stamp_offset_ns"])
     here = provenance(order, context)["models"]
     for name, sha256 in recorded["models"].items():
         if here.get(name) != sha256:
@@ -105,7 +105,7 @@ def recompose(recorded: Mapping[str, Any]) -> Context:
 
 
 def _check(recorded: Mapping[str, Any]) -> None:
-    """Whether a provenance has what `recompose` needs: it comes from a file."""
+    """Whether a provenance has what `rebuild_context` needs: it comes from a file."""
     if not recorded:
         raise UsageError("the recording does not say what the executive was made of, expected exec/provenance in it")
     kinds = {"order": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}

@@ -202,7 +202,7 @@ class SuccessModel(Protocol):
         ...
 
 
-class BenefitModel(Protocol):
+class RefinementGate(Protocol):
     """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
 
     @property
@@ -258,4 +258,4 @@ class Models:
 
     durations: Mapping[str, DurationModel]
     successes: Mapping[str, SuccessModel]
-    benefit: BenefitModel | None = None
+    benefit: RefinementGate | None = None

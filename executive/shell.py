@@ -14,7 +14,7 @@ from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock
-from tailor.runtime.loop import Loop, Turn
+from tailor.runtime.loop import Loop, Period
 from tailor.runtime.processes.external_planner import ExternalPlanner
 from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
@@ -54,7 +54,7 @@ class Shell:
         loop = Loop(PERIOD_NS, self._clock)
         try:
             while True:
-                turn = loop.next_turn()
+                turn = loop.wait_for_next_period()
                 stopping = until(self._state)
                 self._tick(turn, goal, stopping)
                 goal = ""
@@ -64,7 +64,7 @@ class Shell:
         finally:
             self._planner.close()
 
-    def _tick(self, turn: Turn, goal: str, stopping: bool) -> None:
+    def _tick(self, turn: Period, goal: str, stopping: bool) -> None:
         samples = (*self._inbox.drain(turn.now_ns), *self._planner_answer(turn))
         inputs = Inputs(samples, self._asked_goal() or goal, turn.skipped, stopping)
         self._state, outputs = control(self._context, self._state, turn.now_ns, inputs)
@@ -89,7 +89,7 @@ class Shell:
         question.accept()
         return goal
 
-    def _planner_answer(self, turn: Turn) -> tuple[Sample, ...]:
+    def _planner_answer(self, turn: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""
         request, stamp_ns = awaited(self._state), self._context.stamp(turn.now_ns)
         answer = self._planner.poll(request.id if request is not None else 0, stamp_ns)
@@ -105,7 +105,7 @@ class Shell:
             if isinstance(output.message, PlanRequest):
                 self._planner.ask(output.message)
 
-    def _report(self, turn: Turn, inputs: Inputs, control_ns: int, checks: int) -> None:
+    def _report(self, turn: Period, inputs: Inputs, control_ns: int, checks: int) -> None:
         tick = self._state.tick
         stamp_ns = self._context.stamp(turn.now_ns)
         if tick % PROVENANCE_TICKS == 1:
@@ -114,7 +114,7 @@ class Shell:
         self._publishers["tick"].publish(tick_report(stamp_ns, tick, turn, inputs, (control_ns, work_ns, checks)))
 
 
-def tick_report(stamp_ns: int, tick: int, turn: Turn, inputs: Inputs, spent: tuple[int, int, int]) -> TickReport:
+def tick_report(stamp_ns: int, tick: int, turn: Period, inputs: Inputs, spent: tuple[int, int, int]) -> TickReport:
     """Timing of a tick and what it was given; `spent` is control time, work time (ns) and checks granted."""
     control_ns, work_ns, checks = spent
     samples: tuple[Sample, ...] = inputs.samples

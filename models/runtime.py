@@ -60,7 +60,7 @@ class OnnxSuccess:
 
 
 @dataclass(frozen=True, slots=True)
-class OnnxBenefit:
+class OnnxGate:
     """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
 
     session: Any
@@ -82,7 +82,7 @@ class OnnxBenefit:
         return _probability(self.session, situations)
 
 
-OnnxModel = OnnxDuration | OnnxSuccess | OnnxBenefit
+OnnxModel = OnnxDuration | OnnxSuccess | OnnxGate
 
 
 def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
@@ -135,7 +135,7 @@ def load_robot(
     return durations, successes
 
 
-def load_benefit(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxBenefit | None:
+def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxGate | None:
     """Load a robot's benefit tree; None where none has been trained.
 
     Args:
@@ -152,7 +152,7 @@ def load_benefit(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) 
     model = load_model(path)
     check_place(model.card, f"{robot}/{BENEFIT}", path.parent)
     check_made_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
-    assert isinstance(model, OnnxBenefit)
+    assert isinstance(model, OnnxGate)
     return model
 
 
@@ -192,7 +192,7 @@ def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -
         shortest, longest = card["output_range"]
         return OnnxDuration(session, card, float(shortest), float(longest), bounds)
     if card["kind"] == "benefit":
-        return OnnxBenefit(session, card, float(card["threshold"]))
+        return OnnxGate(session, card, float(card["threshold"]))
     if card["kind"] == "success":
         return OnnxSuccess(session, card, float(card["threshold"]), bounds)
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
@@ -214,7 +214,7 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
             found: tuple[Array, ...] = model.predict(arguments)
         case OnnxSuccess():
             found = (model.probability(arguments),)
-        case OnnxBenefit():
+        case OnnxGate():
             found = (model.slower(arguments),)
     for name, values in zip(card["outputs"], found, strict=True):
         expected = np.array(golden[name], np.float64)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def heap_set_aside() -> Iterator[None]:
+def gc_frozen() -> Iterator[None]:
     """Collections within look at what was made within alone; not to be nested."""
     gc.freeze()
     try:

@@ -8,7 +8,7 @@ from tailor.runtime.clock import Clock
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class Period:
     """The start of one period."""
 
     deadline_ns: int  # when it should have started
@@ -33,16 +33,16 @@ class Loop:
         self._clock = clock
         self._deadline_ns: int | None = None
 
-    def next_turn(self) -> Turn:
+    def wait_for_next_period(self) -> Period:
         """Wait for the next deadline; the first turn starts at once and sets the phase."""
         now_ns = self._clock.now_ns()
         if self._deadline_ns is None:
             self._deadline_ns = now_ns
-            return Turn(now_ns, now_ns, 0)
+            return Period(now_ns, now_ns, 0)
         due_ns = self._deadline_ns + self.period_ns
         lost = max(0, (now_ns - due_ns) // self.period_ns)
         self._deadline_ns = due_ns + lost * self.period_ns
         self.skipped += lost
         self.overruns += lost > 0
         self._clock.sleep_until(self._deadline_ns)
-        return Turn(self._deadline_ns, self._clock.now_ns(), lost)
+        return Period(self._deadline_ns, self._clock.now_ns(), lost)

@@ -21,7 +21,7 @@ TELLING = ("fma", "avx2", "avx512f")  # CPU features by which libraries choose t
 FLAGS = Path("/proc/cpuinfo")
 
 
-def machine() -> dict[str, str]:
+def platform_fingerprint() -> dict[str, str]:
     """A description of this machine, to go into a recording's provenance; takes a few ms."""
     return {
         "arithmetic": arithmetic(),

@@ -11,11 +11,11 @@ from typing import Any
 
 from tailor.simnodes.guard import Limit
 
-LONGEST_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is none
+MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is none
 
 
 @dataclass(frozen=True, slots=True)
-class Declaration:
+class DriverSpec:
     """A driver's command: its topic, and its axes with their limits, in one order."""
 
     command_topic: str  # name in tailor.schemas.topics
@@ -24,20 +24,20 @@ class Declaration:
     timeout_ns: int = 300_000_000
 
 
-def declaration(robot: str) -> Declaration:
+def declaration(robot: str) -> DriverSpec:
     """The declaration of a robot that ships with us."""
-    return read_declaration(
+    return read_driver_spec(
         resources.files("tailor.simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
     )
 
 
-def read_declaration(text: str) -> Declaration:
+def read_driver_spec(text: str) -> DriverSpec:
     """A declaration from its TOML text; raises KeyError, TypeError or ValueError where it is none, or no safe one."""
     command = tomllib.loads(text)["command"]
     timeout_s = _number(command, "timeout_s")
-    if not 0.0 < timeout_s <= LONGEST_TIMEOUT_S:
-        raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {LONGEST_TIMEOUT_S:g}")
-    return Declaration(
+    if not 0.0 < timeout_s <= MAX_TIMEOUT_S:
+        raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {MAX_TIMEOUT_S:g}")
+    return DriverSpec(
         command_topic=command["topic"],
         axes=tuple(axis["name"] for axis in command["axes"]),
         limits=tuple(_limit(axis) for axis in command["axes"]),

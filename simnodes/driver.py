@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
-from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.declaration import DriverSpec
 from tailor.simnodes.guard import Guard, Mode
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
@@ -18,7 +18,7 @@ TOPICS = ("arm_request", "estop")  # that every driver listens to, besides its c
 class Driver:
     """Feeds a guard from the bus and tells what it does."""
 
-    def __init__(self, declared: Declaration, epoch: int) -> None:
+    def __init__(self, declared: DriverSpec, epoch: int) -> None:
         """`epoch` must be another one at every start, and not 0."""
         self.guard = Guard(declared.limits, epoch, declared.timeout_ns)
         self._axes = declared.axes

@@ -10,15 +10,15 @@ from typing import Any
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
-from tailor.runtime.loop import Loop, Turn
+from tailor.runtime.loop import Loop, Period
 from tailor.simnodes.body import Reading
-from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.declaration import DriverSpec
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.services import NAMES, Services
 from tailor.simnodes.world import World
 
 PERIOD_NS = 10_000_000  # of world time a turn; the guard's stop is late by at most as much
-MOST_AT_ONCE = 10  # periods to catch up with after a stall; what is beyond is lost to the world
+MAX_AT_ONCE = 10  # periods to catch up with after a stall; what is beyond is lost to the world
 
 
 class Node:
@@ -27,7 +27,7 @@ class Node:
     def __init__(
         self,
         world: World,
-        declared: Declaration,
+        declared: DriverSpec,
         session: Session,
         clock: Clock,
         epoch: int,
@@ -57,15 +57,15 @@ class Node:
     def run(self, stopped: Callable[[], bool]) -> None:
         """Turn after turn until `stopped` says so; leaves the robot disarmed."""
         while not stopped():
-            self._turn(self._loop.next_turn())
+            self._turn(self._loop.wait_for_next_period())
         self.driver.guard.disarm("the driver ends")
         self._tell(self._clock.now_ns())
 
-    def _turn(self, turn: Turn) -> None:
+    def _turn(self, turn: Period) -> None:
         self._services.answer()
         guard_ns = turn.now_ns - self._frozen_ns
         self._listen(turn.now_ns, guard_ns)
-        elapsed, periods = 1 + turn.skipped, min(1 + turn.skipped, MOST_AT_ONCE)
+        elapsed, periods = 1 + turn.skipped, min(1 + turn.skipped, MAX_AT_ONCE)
         if self._services.paused:
             periods, self._services.steps_due = self._services.steps_due, 0
             self._frozen_ns += (elapsed - periods) * self._loop.period_ns

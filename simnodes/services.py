@@ -6,12 +6,12 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tailor.runtime.bus.service import Question, Questions
+from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.simnodes.world import World
 
 NAMES = ("reset", "place", "pause", "step")
-MOST_STEPS = 6000  # in one request: a minute of 10 ms
-MOST_VALUE = 1000.0  # m, rad, m/s or rad/s: physics breaks down far beyond
+MAX_STEPS = 6000  # in one request: a minute of 10 ms
+MAX_VALUE = 1000.0  # m, rad, m/s or rad/s: physics breaks down far beyond
 
 
 class Services:
@@ -21,7 +21,7 @@ class Services:
     step: number of periods, only while paused.
     """
 
-    def __init__(self, world: World, questions: Mapping[str, Questions], on_reset: Callable[[], None]) -> None:
+    def __init__(self, world: World, questions: Mapping[str, ServiceServer], on_reset: Callable[[], None]) -> None:
         self.paused = False
         self.steps_due = 0  # periods to run while paused
         self._world = world
@@ -36,7 +36,7 @@ class Services:
             if question is not None:
                 self._reply(name, question)
 
-    def _reply(self, name: str, question: Question) -> None:
+    def _reply(self, name: str, question: ServiceRequest) -> None:
         try:
             said = self._answers[name](json.loads(question.text or "{}"))
         except (ValueError, RecursionError) as error:
@@ -67,17 +67,17 @@ class Services:
     def _step(self, asked: Any) -> str:
         if not self.paused:
             raise ValueError("pause first")
-        if type(asked) is not int or not 1 <= asked <= MOST_STEPS:
-            raise ValueError(f"expected a number of periods, 1 to {MOST_STEPS}")
+        if type(asked) is not int or not 1 <= asked <= MAX_STEPS:
+            raise ValueError(f"expected a number of periods, 1 to {MAX_STEPS}")
         self.steps_due += asked
         return f"{asked} periods"
 
     def _numbers(self, asked: Any) -> dict[str, float]:
         legal = isinstance(asked, dict) and all(
-            type(value) in (int, float) and abs(value) <= MOST_VALUE for value in asked.values()
+            type(value) in (int, float) and abs(value) <= MAX_VALUE for value in asked.values()
         )
         if not legal:
-            raise ValueError(f"expected an object of numbers up to {MOST_VALUE:g}, e.g. " + '{"x": 1.0}')
+            raise ValueError(f"expected an object of numbers up to {MAX_VALUE:g}, e.g. " + '{"x": 1.0}')
         names = self._world.body.names
         unknown = sorted(asked.keys() - set(names))
         if unknown:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 Joints = tuple[float, ...]  # one number a joint: rad, rad/s or rad/s²
 
-SHORTEST_S = 0.05
-LONGEST_S = 40.0
+MIN_S = 0.05
+MAX_S = 40.0
 STEPS = 60  # of the search for the best duration, evenly spaced in its logarithm
 HALVINGS = 50  # until the duration is exact to the last bits
 
@@ -74,9 +74,9 @@ def best_duration_s(q0: Joints, v0: Joints, q1: Joints, v1: Joints, acceleration
     def slope(u: float) -> float:
         return u * u * (e1 + u * (2 * e2 + u * 3 * e3))
 
-    ratio: float = (LONGEST_S / SHORTEST_S) ** (1.0 / STEPS)
-    best = min((ratio**k / LONGEST_S for k in range(STEPS + 1)), key=cost)
-    low, high = max(best / ratio, 1.0 / LONGEST_S), min(best * ratio, 1.0 / SHORTEST_S)
+    ratio: float = (MAX_S / MIN_S) ** (1.0 / STEPS)
+    best = min((ratio**k / MAX_S for k in range(STEPS + 1)), key=cost)
+    low, high = max(best / ratio, 1.0 / MAX_S), min(best * ratio, 1.0 / MIN_S)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if slope(middle) < 1.0 else (low, middle)

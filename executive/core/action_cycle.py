@@ -113,5 +113,5 @@ def _with_effects(context: Context, task: Task, running: Running) -> Task:
     if running.asserted or task.plan is None:
         return task
     action = next(step.action for step in task.plan.steps if step.id == running.step)
-    facts = planning.progress(context.pddl_domain, context.problem, task.facts, action)
+    facts = planning.apply_action(context.pddl_domain, context.problem, task.facts, action)
     return replace(task, facts=facts, done=task.done | {running.step})

@@ -11,7 +11,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 
 PERIOD_NS = 100_000_000  # 10 Hz
-LONGEST_GOAL = 8000  # bytes: each status tells the goal, and must not become longer than its topic allows
+MAX_GOAL_BYTES = 8000  # bytes: each status tells the goal, and must not become longer than its topic allows
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +80,8 @@ def make_context(
 def check_goal(context: Context, goal: str) -> str:
     """Why a PDDL goal cannot be accepted, or "" if it can."""
     length = len(goal.encode(errors="replace"))
-    if length > LONGEST_GOAL:
-        return f"the goal has {length} bytes, expected at most {LONGEST_GOAL}"
+    if length > MAX_GOAL_BYTES:
+        return f"the goal has {length} bytes, expected at most {MAX_GOAL_BYTES}"
     try:
         context.problem.with_goal(goal)
     except planning.PddlError as error:

@@ -13,7 +13,7 @@ from tailor.executive.core.plan_finding import PlanFinding, PlanFound
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
-from tailor.executive.refinement.belief_monitor import Watch
+from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
 from tailor.executive.refinement.refinement import Choice, Refinement
 from tailor.schemas.messages import PlanAnswer, PlanRequest
@@ -29,7 +29,7 @@ class Decision:
     sequence: ActionSequence
     choice: Choice
     number: int  # which deliberation it came from
-    watch: Watch = field(compare=False, repr=False)  # tells when the sequence no longer fits the belief
+    watch: BeliefMonitor = field(compare=False, repr=False)  # tells when the sequence no longer fits the belief
 
 
 class Deliberation:
@@ -54,7 +54,7 @@ class Deliberation:
         self._belief = belief
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._pattern: Pattern | None = None
-        self._watch: Watch | None = None
+        self._watch: BeliefMonitor | None = None
         self._assertion: Assertion | None = None
         self._finding: PlanFinding | None = None
         if isinstance(source, PlanFinding):
@@ -142,7 +142,7 @@ class Deliberation:
             self._fail(f"no subgoal helps: {sequence.reason}")
             return
         self.sequence = sequence
-        self._watch = Watch(self._pattern, sequence)
+        self._watch = BeliefMonitor(self._pattern, sequence)
         self.refinement = Refinement(
             sequence, self._context.models, self._context.settings.refinement, self._rng, start=None
         )

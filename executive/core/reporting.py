@@ -17,7 +17,7 @@ from tailor.schemas import messages as m
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Published:
     """What had been told before this tick's deliberation."""
 
     deliberation: Deliberation | None
@@ -29,10 +29,10 @@ class Told:
     searched: tuple[int, float]
 
 
-def snapshot(state: State) -> Told:
+def snapshot(state: State) -> Published:
     """What the state before deliberation has told already."""
     deliberation = state.deliberation
-    return Told(
+    return Published(
         deliberation,
         len(deliberation.told) if deliberation is not None else 0,
         state.task.plan,
@@ -43,7 +43,7 @@ def snapshot(state: State) -> Told:
     )
 
 
-def reports(context: Context, state: State, told: Told) -> tuple[Output, ...]:
+def reports(context: Context, state: State, told: Published) -> tuple[Output, ...]:
     """The messages about this tick, the status last."""
     outputs: list[Output] = []
     if told.running is not None and state.task.finished > told.finished:
@@ -69,7 +69,7 @@ def _overtaken(context: Context, state: State, plan: planning.Plan | None, runni
     steps = plan.steps if plan is not None and not running.asserted else ()
     action = next((step.action for step in steps if step.id == running.step), None)
     facts = state.task.facts
-    if action is not None and planning.progress(context.pddl_domain, context.problem, facts, action) <= facts:
+    if action is not None and planning.apply_action(context.pddl_domain, context.problem, facts, action) <= facts:
         return "done", "its effects hold already"
     return "aborted", "another action comes first now"
 

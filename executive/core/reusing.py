@@ -37,7 +37,7 @@ def look_further(context: Context, state: State, budget: Budget) -> State:
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     improvement = state.improvement
     if improvement is None or not improvement.follows(task.plan, running.step, facts):
-        expected = planning.progress(context.pddl_domain, context.problem, facts, action)
+        expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)
         if improvement is None or not improvement.serves(task.plan, running.step, expected):
             left = {step.id for step in task.plan.steps} - task.done - {running.step}
             improvement = Improvement(context, task.plan, running.step, left, expected, task.goal, state.ground)

@@ -45,7 +45,7 @@ def _with_deliberation(context: Context, state: State) -> State:
     task = state.task
     ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
     idle = task.running is None and task.decision is None
-    if ongoing or not (idle or _places_moved(state)):
+    if ongoing or not (idle or _bindings_violated(state)):
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
@@ -99,7 +99,7 @@ def _redirected(task: Task, running: Running, now_ns: int) -> Task:
     return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
 
 
-def _places_moved(state: State) -> bool:
+def _bindings_violated(state: State) -> bool:
     """Whether a believed value that the running sequence is bound to has moved beyond its tolerance."""
     decision = state.task.decision
     if decision is None or state.task.running is None:

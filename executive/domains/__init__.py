@@ -52,7 +52,7 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
         raise UsageError(f"no scenario {scenario!r} in {name}, expected one of: {', '.join(known)}")
     declared = _declaration(name, scenario)
     problem = resources.files(f"tailor.executive.domains.{name}.scenarios").joinpath(declared["problem"]).read_text()
-    start, places, events = _package(name).draw(declared, rng)
+    start, places, events = _package(name).sample_scenario(declared, rng)
     settings = {**declared.get("settings", {}), "events": events}
     return Scenario(scenario, problem, places, settings), start
 

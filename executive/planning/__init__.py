@@ -9,7 +9,7 @@ from tailor.executive.planning.pddl.language import Domain, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.pddl.problem_reader import parse_problem
 from tailor.executive.planning.pddl.problem_text import format_problem
-from tailor.executive.planning.plans.action_effects import progress
+from tailor.executive.planning.plans.action_effects import apply_action
 from tailor.executive.planning.plans.completion import completed
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
 from tailor.executive.planning.plans.suffix import relink, suffix
@@ -37,6 +37,7 @@ __all__ = [
     "Settings",
     "Step",
     "Unsupported",
+    "apply_action",
     "completed",
     "format_links",
     "format_plan",
@@ -44,7 +45,6 @@ __all__ = [
     "parse_domain",
     "parse_plan",
     "parse_problem",
-    "progress",
     "relink",
     "suffix",
     "validate",

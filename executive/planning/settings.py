@@ -10,7 +10,7 @@ from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.ranking import check_rankings
 from tailor.schemas.errors import UsageError
 
-SHORTEST_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
+MIN_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Settings:
         check_rankings(self.rankings)
         if not 0 <= self.weight < math.inf:
             raise UsageError(f"planner settings: expected a finite weight of at least 0, found {self.weight}")
-        if not SHORTEST_TICK_S <= self.tolerance_s <= 1e3:
+        if not MIN_TICK_S <= self.tolerance_s <= 1e3:
             raise UsageError(f"planner settings: expected a tolerance in [1e-6, 1000] s, found {self.tolerance_s}")
         if self.seed < 0:
             raise UsageError(f"planner settings: expected a seed of at least 0, found {self.seed}")

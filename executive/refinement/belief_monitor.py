@@ -11,7 +11,7 @@ from tailor.executive.library import Belief, Conflict
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
 
 
-class Watch:
+class BeliefMonitor:
     """The values of one sequence, and how far each may move before the sequence has to be thought over.
 
     Args:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import BenefitModel
+from tailor.executive.library import RefinementGate
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Variable
 from tailor.schemas.errors import UsageError
@@ -44,7 +44,7 @@ class Verdict:
     keep_greedy: bool = False
 
 
-def check_benefit(model: BenefitModel) -> BenefitModel:
+def check_gate(model: RefinementGate) -> RefinementGate:
     """The model, if it asks what is told here; raises UsageError otherwise."""
     if model.asks != SITUATION:
         raise UsageError(
@@ -54,7 +54,7 @@ def check_benefit(model: BenefitModel) -> BenefitModel:
     return model
 
 
-def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: BenefitModel | None) -> Verdict:
+def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: RefinementGate | None) -> Verdict:
     """Compare two choices of one stretch and ask the tree, if there is one for such a sequence.
 
     Where the greedy choice is not valid, or looks ahead as far as the refined one, there is nothing to decide.

@@ -44,7 +44,7 @@ def greedy(sequence: ActionSequence, models: Models, settings: RefinementSetting
     return Greedy(values, rows)
 
 
-class Polish:
+class LocalSearch:
     """Goes on with the greedy search for the next action, with its detours, until it is finished; resumable.
 
     Args:

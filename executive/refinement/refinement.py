@@ -15,7 +15,7 @@ from tailor.executive.library import Array, Models
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
 from tailor.executive.refinement.gate import Verdict, judge
-from tailor.executive.refinement.greedy import Greedy, Polish, greedy
+from tailor.executive.refinement.greedy import Greedy, LocalSearch, greedy
 from tailor.executive.refinement.objective.choice import Choice, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
@@ -75,7 +75,7 @@ class Refinement:
         self._choice: Choice | None = None
         self._alone: Choice | None = None  # the greedy choice
         self._verdict = Verdict()
-        self._polish: Polish | None = None
+        self._polish: LocalSearch | None = None
         self._certificate: Certificate | NoBound | None = None
 
     @property
@@ -179,7 +179,7 @@ class Refinement:
         """Refining is not worth it: search the greedy choice out, as a horizon of one does."""
         assert self._greedy is not None
         if self._polish is None:
-            self._polish = Polish(self._sequence, self._greedy, self._models, self._settings, self._rng)
+            self._polish = LocalSearch(self._sequence, self._greedy, self._models, self._settings, self._rng)
         self._polish.advance(budget)
         polished = choice_of(self._judge, self._judge.vector(self._polish.values))
         if polished.valid:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
 
-LEAST_SPREAD = np.float32(1e-9)  # s: below, all trees agree
+MIN_STD = np.float32(1e-9)  # s: below, all trees agree
 ROUNDS = 6  # of raising outliers: half as many cost a tenth more boxes, twice as many save none
 
 
@@ -25,7 +25,7 @@ def least_of_bag(least: Floats, most: Floats, k_std: float) -> Floats:
         mean, off, spread = _moments(said)
         said = np.maximum(least, np.minimum(most, mean - spread / k))
     mean, off, spread = _moments(said)
-    scores: Floats = np.divide(off, np.maximum(spread, LEAST_SPREAD), dtype=np.float32)
+    scores: Floats = np.divide(off, np.maximum(spread, MIN_STD), dtype=np.float32)
     scores -= _mean(scores)  # where all agree but for rounding, they are not yet
     scores /= np.maximum(np.sqrt(_mean(scores * scores)), np.float32(1))
     weights: Floats = 1 + k * scores

@@ -10,7 +10,7 @@ from tailor.models.episodes.examples import Examples, duration_examples, energy_
 
 
 @dataclass(frozen=True, slots=True)
-class Amount:
+class RegressionTarget:
     """A quantity that an action takes in the whole, and of which less remains at every tick."""
 
     kind: str  # of model
@@ -24,6 +24,6 @@ def _energy_j(episode: Episode) -> float:
     return 0.0 if episode.work_j is None else float(episode.work_j.sum())
 
 
-DURATION = Amount("duration", "s", duration_examples, lambda _: True, lambda episode: episode.duration_s)
-ENERGY = Amount("energy", "j", energy_examples, lambda episode: episode.work_j is not None, _energy_j)
-AMOUNTS = {amount.kind: amount for amount in (DURATION, ENERGY)}
+DURATION = RegressionTarget("duration", "s", duration_examples, lambda _: True, lambda episode: episode.duration_s)
+ENERGY = RegressionTarget("energy", "j", energy_examples, lambda episode: episode.work_j is not None, _energy_j)
+REGRESSION_TARGETS = {amount.kind: amount for amount in (DURATION, ENERGY)}

@@ -17,11 +17,11 @@ from tailor.models.export.onnx_trees import add_probability
 from tailor.models.export.publishing import GOLDEN, versions
 from tailor.models.export.zoo_writer import place
 from tailor.models.runtime import BENEFIT
-from tailor.models.training.gate_training import Pairs, TrainedBenefit, space
+from tailor.models.training.gate_training import Pairs, TrainedGate, space
 
 
 @dataclass(frozen=True, slots=True)
-class AboutBenefit:
+class GateProvenance:
     """What a card says beside what pairs and training know."""
 
     robot: str
@@ -35,13 +35,13 @@ class AboutBenefit:
     command: str  # what makes the model again
 
 
-def publish_benefit(zoo: Path, pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> Path:
+def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> Path:
     """Write `zoo/robot/refinement/benefit.onnx` and its card; returns the ONNX file's path."""
     card = _card(pairs, trained, about)
     return place(zoo, _exported(trained, about.names, card), card)
 
 
-def withdraw_benefit(zoo: Path, robot: str) -> bool:
+def withdraw_gate(zoo: Path, robot: str) -> bool:
     """Remove a robot's benefit tree, as its action models have changed; whether there was one."""
     path = zoo / robot / f"{BENEFIT}.onnx"
     there = path.exists()
@@ -50,7 +50,7 @@ def withdraw_benefit(zoo: Path, robot: str) -> bool:
     return there
 
 
-def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> bytes:
+def _exported(trained: TrainedGate, names: tuple[str, ...], card: Card) -> bytes:
     """Double `arguments` (n, k) to float `slower` (n,)."""
     graph, columns = Graph(), space(names)
     features = as_columns(graph, add_features(graph, columns, "arguments"))
@@ -58,7 +58,7 @@ def _exported(trained: TrainedBenefit, names: tuple[str, ...], card: Card) -> by
     return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
 
 
-def _card(pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> dict[str, Any]:
+def _card(pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> dict[str, Any]:
     action, kind = BENEFIT.split("/")
     columns = space(about.names)
     low, high = pairs.situations.min(axis=0), pairs.situations.max(axis=0)
@@ -90,7 +90,7 @@ def _card(pairs: Pairs, trained: TrainedBenefit, about: AboutBenefit) -> dict[st
     }
 
 
-def _golden(pairs: Pairs, trained: TrainedBenefit) -> dict[str, Sequence[Any]]:
+def _golden(pairs: Pairs, trained: TrainedGate) -> dict[str, Sequence[Any]]:
     """Situations spread over the pairs, and what the learner itself says of them."""
     chosen = np.linspace(0, len(pairs.slower) - 1, GOLDEN).astype(int)
     situations = pairs.situations[chosen]

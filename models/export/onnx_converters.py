@@ -13,7 +13,7 @@ from skl2onnx.common.data_types import FloatTensorType, Int64TensorType, guess_t
 from tailor.models.export.onnx_features import as_rows
 from tailor.models.export.onnx_graph import ML, ML_OPSET, OPSET
 from tailor.models.export.onnx_trees import add_bag, add_probability, add_tree
-from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
@@ -49,7 +49,7 @@ def register() -> None:
     """Register all converters; may be called again."""
     for estimator in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
         update_registered_converter(estimator, f"Tailor{estimator.__name__}", _regressor_shape, _convert_regressor)
-    for estimator in (FailureTree, FailureForest, TaughtForest, DistilledFailureTree):
+    for estimator in (FailureTree, FailureForest, DistilledForest, DistilledFailureTree):
         update_registered_converter(
             estimator,
             f"Tailor{estimator.__name__}",

@@ -12,7 +12,7 @@ from tailor.models.export.onnx_graph import Graph
 from tailor.models.export.onnx_trees import add_bag, add_probability, add_tree
 from tailor.models.failure.failure_tree import FailureModel
 from tailor.models.features.features import FeatureSpace
-from tailor.models.training.sklearn_adapters import BorrowedClassifier, BorrowedRegressor
+from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 
 
@@ -31,7 +31,7 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
             mean, spread = add_bag(graph, features, learner.trees_)
         case ModelTreeRegressor():
             mean, spread = add_tree(graph, features, learner.tree_)
-        case BorrowedRegressor():
+        case SklearnRegressor():
             from tailor.models.export.onnx_sklearn import add_regressor
 
             columns = as_columns(graph, features)
@@ -52,7 +52,7 @@ def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) 
     match learner:
         case FailureModel():
             success = add_probability(graph, features, learner.steps_)
-        case BorrowedClassifier():
+        case SklearnClassifier():
             from tailor.models.export.onnx_sklearn import add_classifier
 
             success = add_classifier(graph, features, learner.inner_)

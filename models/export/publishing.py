@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tailor.models.cards.card import FORMAT, Card, identity
 from tailor.models.episodes.episodes import DataSet
-from tailor.models.episodes.regression_targets import AMOUNTS
+from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.export.onnx_export import export_duration, export_success
 from tailor.models.export.zoo_writer import place
 from tailor.models.features.features import FeatureSpace
@@ -23,7 +23,7 @@ from tailor.models.training.training import Trained
 
 Array = NDArray[np.float64]
 GOLDEN = 32
-LONGEST_FACTOR = 3.0  # a prediction beyond three times the longest episode, or its energy, is no prediction
+MAX_FACTOR = 3.0  # a prediction beyond three times the longest episode, or its energy, is no prediction
 LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 
 
@@ -47,19 +47,19 @@ def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> P
 def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
     if about.kind == "success":
         return export_success(learner, about.space, identity(card))
-    return export_duration(learner, about.space, identity(card), AMOUNTS[about.kind].unit)
+    return export_duration(learner, about.space, identity(card), REGRESSION_TARGETS[about.kind].unit)
 
 
 def _outputs(kind: str) -> list[str]:
     """Names of the graph's outputs."""
-    return ["success"] if kind == "success" else [f"{name}_{AMOUNTS[kind].unit}" for name in ("mean", "std")]
+    return ["success"] if kind == "success" else [f"{name}_{REGRESSION_TARGETS[kind].unit}" for name in ("mean", "std")]
 
 
 def _output_range(data: DataSet, kind: str) -> list[float]:
     """Answers outside are no answers."""
     if kind == "success":
         return [0.0, 1.0]
-    return [0.0, LONGEST_FACTOR * max(AMOUNTS[kind].whole(episode) for episode in data.episodes)]
+    return [0.0, MAX_FACTOR * max(REGRESSION_TARGETS[kind].whole(episode) for episode in data.episodes)]
 
 
 def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]:

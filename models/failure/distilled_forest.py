@@ -19,7 +19,7 @@ FEATURE_SHARE = 0.7  # of the features, as many are looked at for each split
 TEACHER = {"learning_rate": 0.05, "max_leaf_nodes": 16, "min_samples_leaf": 20, "early_stopping": False}
 
 
-class TaughtForest(FailureModel):
+class DistilledForest(FailureModel):
     """Regression trees over resampled episodes that learn what boosted trees (Friedman 2001) say of each row.
 
     An optimiser asks where hardly anything fails, and there a forest of outcomes, with both kinds in each leaf, can

@@ -14,7 +14,7 @@ from tailor.models.trees.grown_tree import means_of, splits_of
 
 ROWS = 40_000  # asked of the forest, at most
 ROWS_EACH = 40  # for each row of the examples
-LEAST_ROWS = 40  # in a leaf
+MIN_ROWS = 40  # in a leaf
 
 
 class DistilledFailureTree(FailureModel):
@@ -49,7 +49,7 @@ class DistilledFailureTree(FailureModel):
         forest = FailureForest(self.trees, self.cost_ratio, self.min_rows, random_state=rng).fit(X, y, groups)
         asked = np.concatenate([features, between(features, min(ROWS, ROWS_EACH * len(features)), rng)])
         said = forest.predict_proba(asked)[:, -1]
-        grown = DecisionTreeRegressor(max_leaf_nodes=self.leaves, min_samples_leaf=LEAST_ROWS, random_state=0)
+        grown = DecisionTreeRegressor(max_leaf_nodes=self.leaves, min_samples_leaf=MIN_ROWS, random_state=0)
         grown.fit(asked, said)
         self.steps_ = [(splits_of(grown), means_of(grown))]
         return self

@@ -15,7 +15,7 @@ from tailor.models.training import scores
 Array = NDArray[np.float64]
 
 LEVEL = 0.9
-LEAST_POLICY = 30  # on-policy test episodes: fewer say little about a tenth of them
+MIN_POLICY_EPISODES = 30  # on-policy test episodes: fewer say little about a tenth of them
 
 
 def calibrated(errors: Array, spread: Array, on_policy: NDArray[np.bool_]) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def calibrated(errors: Array, spread: Array, on_policy: NDArray[np.bool_]) -> di
       factor and the share of on-policy errors that it would hold.
     """
     random = ~on_policy
-    enough = int(on_policy.sum()) >= LEAST_POLICY
+    enough = int(on_policy.sum()) >= MIN_POLICY_EPISODES
     used = on_policy if enough else random if random.any() else on_policy
     said: dict[str, Any] = {
         "interval90_factor": scores.interval_factor(errors[used], spread[used], LEVEL),

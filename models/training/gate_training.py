@@ -54,7 +54,7 @@ class Pairs:
 
 
 @dataclass(frozen=True, slots=True)
-class TrainedBenefit:
+class TrainedGate:
     """Trees learned from all pairs, the risk above which greedy is kept, and what their twins reached."""
 
     trees: RiskTrees
@@ -70,9 +70,9 @@ def space(names: tuple[str, ...]) -> FeatureSpace:
     return FeatureSpace("situation", quantities, quantities, lambda columns, _: columns)
 
 
-def train_benefit(
+def train_gate(
     pairs: Pairs, names: tuple[str, ...], learner: str, seed: int, price_pct: float = PRICE_PCT
-) -> TrainedBenefit:
+) -> TrainedGate:
     """Learn from pairs; the same pairs and seed give the same trees.
 
     Args:
@@ -94,7 +94,7 @@ def train_benefit(
     everything = np.ones_like(pairs.slower)
     ungated = judged(pairs, ~everything, 1.0)
     test = {**best, "ungated": ungated, "perfect": judged(pairs, pairs.slower, 0.0), "curve": curve}
-    return TrainedBenefit(pairs.grown(learner, everything, seed), best["threshold"], test, _rules(pairs, names))
+    return TrainedGate(pairs.grown(learner, everything, seed), best["threshold"], test, _rules(pairs, names))
 
 
 def check_learner(learner: str, pairs: int) -> None:

@@ -12,11 +12,11 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
-from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
-from tailor.models.training.sklearn_adapters import BorrowedClassifier, BorrowedRegressor
+from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
 from tailor.models.trees.distilling import DistilledModelTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 from tailor.schemas.errors import UsageError
@@ -44,17 +44,17 @@ DURATION: Mapping[str, Callable[[int], Any]] = {
     "distilled": lambda seed: DistilledModelTree(random_state=seed),
     "linear": lambda seed: ModelTreeRegressor("linear", random_state=seed),
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
-    "boosting": lambda seed: BorrowedRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
-    "network": lambda seed: BorrowedRegressor(_network(MLPRegressor, seed)),
+    "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
+    "network": lambda seed: SklearnRegressor(_network(MLPRegressor, seed)),
 }
 SUCCESS: Mapping[str, Callable[[int], Any]] = {
-    "taught": lambda seed: TaughtForest(cost_ratio=COST_RATIO, random_state=seed),
+    "taught": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
     "distilled": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
-    "boosting": lambda seed: BorrowedClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
-    "network": lambda seed: BorrowedClassifier(_network(MLPClassifier, seed), COST_RATIO),
-    "svm": lambda seed: BorrowedClassifier(_svm(seed), COST_RATIO),
+    "boosting": lambda seed: SklearnClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
+    "network": lambda seed: SklearnClassifier(_network(MLPClassifier, seed), COST_RATIO),
+    "svm": lambda seed: SklearnClassifier(_svm(seed), COST_RATIO),
 }
 
 

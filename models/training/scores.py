@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 BOOTSTRAPS = 2000
-LEAST_SPREAD = 1e-3  # no model is surer than that
+MIN_STD = 1e-3  # no model is surer than that
 
 
 def mean_with_ci(values: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
@@ -46,13 +46,13 @@ def interval_factor(errors: Array, spread: Array, level: float = 0.9) -> float:
 
     Of fresh ones, too: the rank is that of split conformal prediction, ceil((n + 1) level), at most n.
     """
-    ratios = np.sort(np.abs(errors) / np.maximum(spread, LEAST_SPREAD))
+    ratios = np.sort(np.abs(errors) / np.maximum(spread, MIN_STD))
     return float(ratios[min(len(ratios), int(np.ceil((len(ratios) + 1) * level))) - 1])
 
 
 def coverage(errors: Array, spread: Array, factor: float) -> float:
     """Percent of the errors that `mean ± factor · spread` holds."""
-    return float(100 * np.mean(np.abs(errors) <= factor * np.maximum(spread, LEAST_SPREAD)))
+    return float(100 * np.mean(np.abs(errors) <= factor * np.maximum(spread, MIN_STD)))
 
 
 def reliability(probability: Array, success: NDArray[np.bool_], bins: int = 10) -> list[tuple[float, float, int]]:

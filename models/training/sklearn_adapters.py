@@ -11,7 +11,7 @@ from sklearn.base import BaseEstimator, ClassifierMixin, RegressorMixin, clone
 Array = NDArray[np.float64]
 
 
-class BorrowedRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
+class SklearnRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     """Any regressor as a duration model; its spread is the deviation of its training errors, everywhere alike.
 
     Args:
@@ -37,7 +37,7 @@ class BorrowedRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         return self.predict(X), np.full(len(X), self.spread_)
 
 
-class BorrowedClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+class SklearnClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     """Any probabilistic classifier of two classes as a failure model.
 
     Args:

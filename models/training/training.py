@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.models.episodes.examples import Examples, folds, split, success_examples
-from tailor.models.episodes.regression_targets import DURATION, Amount
+from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import calibrated
@@ -40,7 +40,9 @@ def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: st
     return train_amount(DURATION, episodes, space, learner, seed)
 
 
-def train_amount(amount: Amount, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+def train_amount(
+    amount: RegressionTarget, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
+) -> Trained:
     """Learn how long an action takes, or how much energy.
 
     Raises:
@@ -118,7 +120,11 @@ def _check_count(episodes: Sequence[Episode], what: str) -> None:
 
 
 def _best_n_i(
-    amount: Amount, episodes: Sequence[Episode], kept: NDArray[np.int64], space: FeatureSpace, rng: np.random.Generator
+    amount: RegressionTarget,
+    episodes: Sequence[Episode],
+    kept: NDArray[np.int64],
+    space: FeatureSpace,
+    rng: np.random.Generator,
 ) -> int:
     """How many first ticks predict the whole duration of unseen episodes best, by single trees."""
     first = amount.examples(episodes, 1)

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 ROUNDS = 6  # fits; the weights hardly change after
 MAD_SIGMA = 1.4826  # a normal's standard deviation over its median absolute deviation
-LEAST_SCALE = 1e-3  # of standardised targets
+MIN_SCALE = 1e-3  # of standardised targets
 
 
 def refit(features: Array, targets: Array, weights: Array, start: Array, ridge: float, huber: float) -> Array:
@@ -28,7 +28,7 @@ def refit(features: Array, targets: Array, weights: Array, start: Array, ridge: 
     solution = start
     for _ in range(ROUNDS):
         off = np.abs(targets - rows @ solution)
-        limit = huber * max(LEAST_SCALE, MAD_SIGMA * float(np.median(off)))
+        limit = huber * max(MIN_SCALE, MAD_SIGMA * float(np.median(off)))
         counted = weights * limit / np.maximum(off, limit)
         gram = rows.T @ (rows * counted[:, None]) + penalty * counted.sum()
         solution = np.linalg.solve(gram, rows.T @ (counted * targets))

@@ -7,13 +7,13 @@ from threading import Lock
 
 from tailor.runtime.bus.inbox import Raw
 
-MOST_BYTES = 32_000_000  # about a minute of a busy robot on a disk that has stopped
+MAX_BYTES = 32_000_000  # about a minute of a busy robot on a disk that has stopped
 
 
-class Intake:
+class IngestQueue:
     """Filled by callbacks, emptied by one reader."""
 
-    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, most_bytes: int = MAX_BYTES) -> None:
         self.drops: Counter[str] = Counter()  # messages lost here, by key
         self.received = 0
         self._most_bytes = most_bytes

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 
-class Question:
+class ServiceRequest:
     """One question with its text; answer it exactly once."""
 
     def __init__(self, text: str, answer: Callable[[bool, str], None]) -> None:
@@ -22,20 +22,20 @@ class Question:
         self._answer(False, why)
 
 
-class Asked(Protocol):
+class RequestSource(Protocol):
     """Where questions come from; session.py makes it of a zenoh queryable."""
 
-    def take(self) -> Question | None:
+    def take(self) -> ServiceRequest | None:
         """The oldest question that waits, None if there is none; never blocks."""
         ...
 
 
-class Questions:
+class ServiceServer:
     """The questions under one key, polled once a tick."""
 
-    def __init__(self, source: Asked) -> None:
+    def __init__(self, source: RequestSource) -> None:
         self._source = source
 
-    def poll(self) -> Question | None:
+    def poll(self) -> ServiceRequest | None:
         """The next question, None if nobody asks."""
         return self._source.take()

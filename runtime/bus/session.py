@@ -14,9 +14,9 @@ import zenoh
 from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.attachment import SENDER_BYTES
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, depth
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.service import Question, Questions
+from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError
@@ -24,7 +24,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.schemas.typesystem import ros_type
 
 SELF_CONNECT_MS = 500
-LONGEST_KEY = 1000  # bytes; a message of zenoh has room for 65 535
+MAX_KEY_BYTES = 1000  # bytes; a message of zenoh has room for 65 535
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -130,9 +130,9 @@ class Session:
             rows.append((topic, key, _Source(subscriber)))
         return Inbox(rows, encoding_of, time.monotonic_ns)
 
-    def questions(self, key: str) -> Questions:
+    def questions(self, key: str) -> ServiceServer:
         """Questions that are asked under `key`, to be polled by a loop."""
-        return Questions(_Asked(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
+        return ServiceServer(_RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
 
     def ask(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
         """Ask under `key` and wait: (accepted, answer). Nobody there or no answer in time: (False, why)."""
@@ -143,9 +143,9 @@ class Session:
             return False, f"no answer within {timeout_s:g} s" if said == "Timeout" else said
         return False, f"nobody answers at {key}"
 
-    def tap(self, pattern: str) -> tuple[Intake, Any]:
+    def subscribe_all(self, pattern: str) -> tuple[IngestQueue, Any]:
         """Everything under a key pattern from now on, and the subscription: undeclare it at the end."""
-        intake = Intake()
+        intake = IngestQueue()
 
         def put(sample: zenoh.Sample) -> None:  # read in zenoh's own thread: a sample that waits pins its whole batch
             intake.put(_taken(sample, wall_ns()))
@@ -160,7 +160,7 @@ def _is_one_key(key: str) -> bool:
         zenoh.KeyExpr(key)
     except zenoh.ZError:
         return False
-    return "*" not in key and len(key.encode()) <= LONGEST_KEY
+    return "*" not in key and len(key.encode()) <= MAX_KEY_BYTES
 
 
 class _Wire:
@@ -189,11 +189,11 @@ class _Source:
         return None if sample is None else _raw(sample)
 
 
-class _Asked:
+class _RequestSource:
     def __init__(self, queryable: Any) -> None:
         self._queryable = queryable
 
-    def take(self) -> Question | None:
+    def take(self) -> ServiceRequest | None:
         query = self._queryable.try_recv()
         if query is None:
             return None
@@ -207,7 +207,7 @@ class _Asked:
                 query.reply_err(said)
             query.drop()
 
-        return Question(text, answer)
+        return ServiceRequest(text, answer)
 
 
 def _raw(sample: zenoh.Sample) -> Raw:

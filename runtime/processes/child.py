@@ -13,12 +13,12 @@ from typing import IO
 
 STOP_S = 3.0  # for closing files and bringing the robot to rest; then SIGKILL
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # idle BLAS threads spin beside the loop
-_LEASH = str(Path(__file__).with_name("parent_death_signal.py"))
+_PARENT_DEATH_SIGNAL = str(Path(__file__).with_name("parent_death_signal.py"))
 
 
-def leashed(argv: Sequence[str]) -> list[str]:
+def bound_to_parent(argv: Sequence[str]) -> list[str]:
     """The command that runs `argv` and ends it when this process is gone."""
-    return [sys.executable, "-I", "-S", _LEASH, str(os.getpid()), *argv]
+    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), *argv]
 
 
 class Child:
@@ -36,7 +36,7 @@ class Child:
         environment = {**os.environ, **ONE_THREAD}
         # A session of its own: Ctrl-C in the terminal reaches the launcher alone, which then stops in order.
         self._process = subprocess.Popen(
-            leashed(argv),
+            bound_to_parent(argv),
             env=environment,
             stdout=output,
             stderr=output,

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from tailor.runtime.processes.child import leashed
+from tailor.runtime.processes.child import bound_to_parent
 from tailor.schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
@@ -82,7 +82,7 @@ class PlannerProcess:
         try:
             words = words_of(command)
             child = subprocess.Popen(
-                leashed([*words, *map(str, paths)]),
+                bound_to_parent([*words, *map(str, paths)]),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import deque
 
 FIRST_DELAY_NS = 200_000_000
-LONGEST_DELAY_NS = 5_000_000_000
-MOST_STARTS = 5  # within WINDOW_NS; after that it is a crash loop
+MAX_DELAY_NS = 5_000_000_000
+MAX_STARTS = 5  # within WINDOW_NS; after that it is a crash loop
 WINDOW_NS = 60_000_000_000
 
 
@@ -14,7 +14,7 @@ class Restart:
     """The starts of one child, and what follows from them."""
 
     def __init__(self) -> None:
-        self._starts: deque[int] = deque(maxlen=MOST_STARTS)
+        self._starts: deque[int] = deque(maxlen=MAX_STARTS)
 
     def started(self, now_ns: int) -> None:
         """Note a start, the first one too."""
@@ -22,9 +22,9 @@ class Restart:
 
     def exhausted(self, now_ns: int) -> bool:
         """Whether there were too many starts in the last minute to try again."""
-        return len(self._starts) == MOST_STARTS and now_ns - self._starts[0] < WINDOW_NS
+        return len(self._starts) == MAX_STARTS and now_ns - self._starts[0] < WINDOW_NS
 
     def delay_ns(self, now_ns: int) -> int:
         """How long to wait before the next start: 0.2 s, doubling with every start in the last minute, up to 5 s."""
         recent = sum(now_ns - start < WINDOW_NS for start in self._starts)
-        return min(FIRST_DELAY_NS << max(0, recent - 1), LONGEST_DELAY_NS)
+        return min(FIRST_DELAY_NS << max(0, recent - 1), MAX_DELAY_NS)

@@ -17,7 +17,7 @@ PAUSE_NS = 500_000_000  # between two looks: then it was us who stood still, and
 
 
 @dataclass(frozen=True, slots=True)
-class Charge:
+class ProcessSpec:
     """One process to look after.
 
     `silence_ns`: kill it after this long without a sign of life (`Supervisor.heard`); None: it gives none. A hung loop
@@ -32,7 +32,7 @@ class Charge:
 
 @dataclass(slots=True)
 class _Watch:
-    charge: Charge
+    charge: ProcessSpec
     child: Child
     started_ns: int
     heard_ns: int | None = None
@@ -51,7 +51,7 @@ class Supervisor:
         self._watches: dict[str, _Watch] = {}
         self._looked_ns: int | None = None
 
-    def begin(self, charge: Charge, now_ns: int) -> None:
+    def begin(self, charge: ProcessSpec, now_ns: int) -> None:
         """Start a process and look after it."""
         watch = _Watch(charge, self._start(charge.name, charge.argv), now_ns)
         watch.restart.started(now_ns)

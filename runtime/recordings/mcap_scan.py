@@ -26,8 +26,8 @@ from tailor.runtime.recordings.mcap_chunk import records_of
 from tailor.schemas.errors import UsageError
 
 MAGIC = b"\x89MCAP0\r\n"
-MOST_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
-MOST_RECORD_BYTES = 128_000_000
+MAX_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
+MAX_RECORD_BYTES = 128_000_000
 WINDOW_BYTES = 1_000_000
 CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
 _CHUNK = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})", re.DOTALL)
@@ -115,7 +115,7 @@ def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) ->
             account.lose(len(head), "the file ends early")
             return
         opcode, length = _HEAD.unpack(head)
-        if opcode == 0 or length > min(size - file.tell(), MOST_RECORD_BYTES):
+        if opcode == 0 or length > min(size - file.tell(), MAX_RECORD_BYTES):
             again = _next_chunk(file, start + 1, size)
             if again == size:
                 account.lose(size - start, "the file ends inside a record")
@@ -144,7 +144,7 @@ def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
         window += block
         for found in _CHUNK.finditer(window):
             (length,) = struct.unpack_from("<Q", window, found.start() + 1)
-            if length <= min(size - at - found.start() - _HEAD.size, MOST_RECORD_BYTES):
+            if length <= min(size - at - found.start() - _HEAD.size, MAX_RECORD_BYTES):
                 return at + found.start()
         at += max(len(window) - CHUNK_HEAD_BYTES, 0)
         window = window[-CHUNK_HEAD_BYTES:]
@@ -175,7 +175,7 @@ def _chunk(data: bytes, account: Account) -> Iterator[Any]:
 def _unpacked(chunk: Any) -> bytes:
     """A chunk's records uncompressed, never more bytes than it declares and we allow."""
     declared = chunk.uncompressed_size
-    if declared > MOST_CHUNK_BYTES:
+    if declared > MAX_CHUNK_BYTES:
         raise ValueError(f"it declares {declared} bytes")
     if chunk.compression == "zstd":
         plain = zstandard.ZstdDecompressor().stream_reader(BytesIO(chunk.data)).read(declared + 1)

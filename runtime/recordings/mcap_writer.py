@@ -26,7 +26,7 @@ STUCK_BYTES = 16_000_000  # waiting for the disk; more is not taken
 ENCODING = "application/cdr;"
 
 
-class Tape:
+class McapWriter:
     """Takes messages in the order of their reception."""
 
     def __init__(self, path: Path, facts: Mapping[str, Mapping[str, str]], compact: bool = False) -> None:

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
-from tailor.runtime.recordings.recording_metadata import Facts
+from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
+from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
 
 FLUSH_NS = 600_000_000  # with a turn and the disk's own time, kill -9 loses less than a second
-MOST_KINDS = 10_000  # of messages that are remembered: a bus has some 30
+MAX_KINDS = 10_000  # of messages that are remembered: a bus has some 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +50,10 @@ class Recorder:
     def __init__(
         self,
         path: Path,
-        intake: Intake,
+        intake: IngestQueue,
         selection: Selection,
         limits: Limits,
-        facts: Facts,
+        facts: RecordingMetadata,
     ) -> None:
         """Create the (first) file.
 
@@ -107,7 +107,7 @@ class Recorder:
         """Whether to keep messages like this; worked out once for each kind."""
         found = self._wanted.get((key, encoding))
         if found is None:
-            if len(self._wanted) >= MOST_KINDS:
+            if len(self._wanted) >= MAX_KINDS:
                 self._wanted.clear()
             found = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
         return found
@@ -129,10 +129,10 @@ class Recorder:
             self._closed_bytes += self._tape.bytes
             self._tape = self._next_tape()
 
-    def _next_tape(self) -> Tape:
+    def _next_tape(self) -> McapWriter:
         part = len(self.health.files)
         name = f"{self._path.stem}_{part:03d}{self._path.suffix}" if self._limits.splits else self._path.name
-        tape = Tape(self._path.with_name(name), {**self._facts.entries, "part": {"number": str(part)}})
+        tape = McapWriter(self._path.with_name(name), {**self._facts.entries, "part": {"number": str(part)}})
         self.health.files.append(tape.path)
         return tape
 

@@ -17,7 +17,7 @@ CLOCKS = {
 }
 
 
-class Facts:
+class RecordingMetadata:
     """Metadata records of a recording, name -> entries; they go into each of its files."""
 
     def __init__(self, version: str, started_ns: int) -> None:

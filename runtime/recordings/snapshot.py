@@ -7,19 +7,19 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.topics import TOPICS
 
-MOST_BYTES = 256_000_000  # of memory, whatever the time span
+MAX_BYTES = 256_000_000  # of memory, whatever the time span
 AFTER_NS = 1_000_000_000  # of what follows a failure goes into its file too
 
 
 class Ring:
     """Messages of the last `span_ns`, at most `most_bytes` of them."""
 
-    def __init__(self, span_ns: int, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, span_ns: int, most_bytes: int = MAX_BYTES) -> None:
         self._span_ns, self._most_bytes = span_ns, most_bytes
         self._messages: deque[tuple[Raw, int]] = deque()
         self._bytes = 0
@@ -43,7 +43,7 @@ class Ring:
           FileExistsError: There is such a file.
           OSError: The disk does not take it; then nothing is left of it.
         """
-        tape = Tape(path, facts)
+        tape = McapWriter(path, facts)
         for raw, wall_ns in self._messages:
             tape.write(raw, wall_ns)
         if not tape.close():

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.recordings.mcap_writer import ENCODING
 from tailor.runtime.recordings.recorder import Health
-from tailor.runtime.recordings.recording_metadata import Facts
+from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
 from tailor.runtime.recordings.snapshot import AFTER_NS, Alarm, Ring
 
@@ -17,7 +17,9 @@ from tailor.runtime.recordings.snapshot import AFTER_NS, Alarm, Ring
 class SnapshotRecorder:
     """Call `turn` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
 
-    def __init__(self, path: Path, intake: Intake, selection: Selection, ring: Ring, facts: Facts) -> None:
+    def __init__(
+        self, path: Path, intake: IngestQueue, selection: Selection, ring: Ring, facts: RecordingMetadata
+    ) -> None:
         """Files will be NAME_000.mcap and so on beside `path`; none is made before it is needed."""
         self.health = Health()
         self._path, self._intake, self._selection = path, intake, selection

@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.schemas.messages import SimTruth
 from tailor.simnodes.agilo import firmware as fw
-from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.physique import PhysicalParameters
 from tailor.simnodes.agilo.scene import compile_scene
 from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
 from tailor.simnodes.body import STEP_NS, Reading
@@ -27,8 +27,8 @@ class AgiloBody:
     robot = "agilo"
     names = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
 
-    def __init__(self, physique: Physique | None = None, sensing: Sensing | None = None) -> None:
-        self._p = physique or Physique()
+    def __init__(self, physique: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
+        self._p = physique or PhysicalParameters()
         self._sensing = sensing or Sensing()
         self._model = compile_scene(self._p)
         self._data = mujoco.MjData(self._model)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Physique:
+class PhysicalParameters:
     """Robot, rail and ball. The origin of the robot is the middle of its axle, x ahead."""
 
     wheel_radius_m: float = 0.0625
@@ -38,6 +38,6 @@ class Physique:
     ball_rolling_m: float = 0.0083  # lever of the rolling resistance: the free ball slows by 0.53 m/s²
 
 
-def ball_in_rail_m(physique: Physique) -> float:
+def ball_in_rail_m(physique: PhysicalParameters) -> float:
     """Distance from the axle to the centre of a ball that lies in the rail."""
     return physique.rail_ahead_m + physique.ball_radius_m

@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.physique import PhysicalParameters
 from tailor.simnodes.agilo.sensing import Sensing
 
 PROFILES = {
-    "nominal": (Physique(), Sensing()),
+    "nominal": (PhysicalParameters(), Sensing()),
     "degraded": (
-        Physique(wheel_friction=0.7, servo_gain=0.8, rail_friction=0.13, ball_rolling_m=0.0092),
+        PhysicalParameters(wheel_friction=0.7, servo_gain=0.8, rail_friction=0.13, ball_rolling_m=0.0092),
         Sensing(
             pose_sigma_m=0.06,
             pose_sigma_rad=math.radians(3),

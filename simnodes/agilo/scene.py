@@ -7,7 +7,7 @@ import math
 
 import mujoco
 
-from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.physique import PhysicalParameters
 
 TIMESTEP_S = 0.01  # contacts give way over 0.02 s; with 1 ms rolls, pushes and hits end within 3 cm
 
@@ -15,7 +15,7 @@ TIMESTEP_S = 0.01  # contacts give way over 0.02 s; with 1 ms rolls, pushes and 
 UNUSED = ("spring", "damper", "equality", "limit", "frictionloss", "sensor", "midphase")
 
 
-def _rail(p: Physique) -> str:
+def _rail(p: PhysicalParameters) -> str:
     """Capsules along the arc, at the height of the ball's equator above the axle."""
     centre = p.rail_ahead_m + p.rail_radius_m
     radius = p.rail_radius_m + p.rail_thickness_m  # of the capsules' axes: their inner side is the arc
@@ -28,7 +28,7 @@ def _rail(p: Physique) -> str:
     )
 
 
-def _wheel(p: Physique, side: str, y: float) -> str:
+def _wheel(p: PhysicalParameters, side: str, y: float) -> str:
     """An ellipsoid, not a cylinder: one contact point, so that turning on the spot does not scrub."""
     return f"""
     <body name="{side}" pos="0 {y} 0">
@@ -38,7 +38,7 @@ def _wheel(p: Physique, side: str, y: float) -> str:
     </body>"""
 
 
-def _robot(p: Physique) -> str:
+def _robot(p: PhysicalParameters) -> str:
     yaw_inertia = p.chassis_mass_kg * (p.chassis_length_m**2 + p.chassis_width_m**2) / 12
     tilt_inertia = p.chassis_mass_kg * (p.chassis_length_m**2 + p.chassis_height_m**2) / 12
     half = f"{p.chassis_length_m / 2} {p.chassis_width_m / 2} {p.chassis_height_m / 2}"
@@ -56,7 +56,7 @@ def _robot(p: Physique) -> str:
   </body>"""
 
 
-def mjcf(p: Physique) -> str:
+def mjcf(p: PhysicalParameters) -> str:
     """The model as MJCF text.
 
     Collision bits: 1 floor, wheels, caster; 2 chassis and rail; 4 ball. The ball meets floor, chassis and rail.
@@ -91,6 +91,6 @@ def mjcf(p: Physique) -> str:
 </mujoco>"""
 
 
-def compile_scene(p: Physique) -> mujoco.MjModel:
+def compile_scene(p: PhysicalParameters) -> mujoco.MjModel:
     """The compiled model. qpos: robot 7, left, right, ball 7; qvel: robot 6, left, right, ball 6."""
     return mujoco.MjModel.from_xml_string(mjcf(p))

@@ -10,7 +10,7 @@ import numpy as np
 from tailor.schemas.messages import JointState, MotorCurrents
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.motor import PERIOD_NS, Motor
-from tailor.simnodes.powercube.physique import MODULES, NAMES, WRITING, Physique
+from tailor.simnodes.powercube.physique import MODULES, NAMES, WRITING, PhysicalParameters
 from tailor.simnodes.powercube.scene import PEN, compile_scene
 
 STATE_PERIOD_NS = 20_000_000
@@ -25,8 +25,8 @@ class PowerCubeBody:
     robot = "powercube"
     names = LEGAL
 
-    def __init__(self, physique: Physique | None = None) -> None:
-        self._p = physique or Physique()
+    def __init__(self, physique: PhysicalParameters | None = None) -> None:
+        self._p = physique or PhysicalParameters()
         self._model = compile_scene(self._p)
         self._data = mujoco.MjData(self._model)
         self._motors = (Motor(self._p), Motor(self._p))

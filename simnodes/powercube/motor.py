@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from tailor.simnodes.powercube.physique import Physique
+from tailor.simnodes.powercube.physique import PhysicalParameters
 
 PERIOD_NS = 1_000_000
 PERIOD_S = PERIOD_NS * 1e-9
@@ -22,7 +22,7 @@ END_BRAKING_RADPS2 = 2.0  # before the end of the angle's range
 class Motor:
     """A velocity servo over a current limit; `tick` is called once a period with the encoder's count."""
 
-    def __init__(self, physique: Physique) -> None:
+    def __init__(self, physique: PhysicalParameters) -> None:
         self._p = physique
         self._count_rad = physique.count_rad
         self._step_max = physique.acceleration_max_radps2 * PERIOD_S

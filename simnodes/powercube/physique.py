@@ -34,7 +34,7 @@ NAMES = tuple(module.name for module in MODULES)
 
 
 @dataclass(frozen=True, slots=True)
-class Physique:
+class PhysicalParameters:
     """Motors and gears of the two writing modules; catalogue sizes of PR 70 to PR 90, rounded."""
 
     shoulder_height_m: float = 1.25

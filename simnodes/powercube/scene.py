@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import mujoco
 
-from tailor.simnodes.powercube.physique import MODULES, WRITING, Module, Physique
+from tailor.simnodes.powercube.physique import MODULES, WRITING, Module, PhysicalParameters
 
 TIMESTEP_S = 0.001
 PEN = "pen"  # the site at the tip
 
 
-def _joint(p: Physique, module: Module) -> str:
+def _joint(p: PhysicalParameters, module: Module) -> str:
     axis = " ".join(map(str, module.axis))
     if module.name in WRITING:
         rotor = p.rotor_kgm2 * p.gear**2
@@ -21,7 +21,7 @@ def _joint(p: Physique, module: Module) -> str:
                 damping="{stiffness / 100}" springref="{module.rest_rad}"/>"""
 
 
-def _module(p: Physique, index: int, ahead_m: float) -> str:
+def _module(p: PhysicalParameters, index: int, ahead_m: float) -> str:
     module = MODULES[index]
     last = index + 1 == len(MODULES)
     inner = f'<site name="{PEN}" pos="{module.length_m} 0 0"/>' if last else _module(p, index + 1, module.length_m)
@@ -38,7 +38,7 @@ def _module(p: Physique, index: int, ahead_m: float) -> str:
   </body>"""
 
 
-def mjcf(p: Physique) -> str:
+def mjcf(p: PhysicalParameters) -> str:
     """The model as MJCF text; the arm stretches along x, one motor for each writing joint, in N·m."""
     motors = "\n".join(f'<motor joint="{name}"/>' for name in WRITING)
     return f"""
@@ -53,6 +53,6 @@ def mjcf(p: Physique) -> str:
 </mujoco>"""
 
 
-def compile_scene(p: Physique) -> mujoco.MjModel:
+def compile_scene(p: PhysicalParameters) -> mujoco.MjModel:
     """The compiled model. qpos and qvel: one number a module, in the order of MODULES."""
     return mujoco.MjModel.from_xml_string(mjcf(p))

@@ -13,7 +13,7 @@ from rosbags.highlevel import AnyReader
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.session import encoding_of
-from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example
@@ -42,7 +42,7 @@ def filled(kind, depth=0):
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
     path = tmp_path_factory.mktemp("tape") / "all.mcap"
-    tape = Tape(path, {})
+    tape = McapWriter(path, {})
     for number, kind in enumerate(MESSAGES, start=1):
         message = filled(kind) if kind in OWN else example(kind)
         origin = pack(Origin(number, number, "ab" * 16))

@@ -6,14 +6,14 @@ from tailor.runtime.stopping import Stop
 from tailor.tools.cli.deployment import Deployment, order_of
 from tailor.tools.cli.live_status import screen
 from tailor.tools.commands.run.letters import recorded
-from tailor.tools.launch.system import Plan, free_endpoint, run_system
+from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 from tailor.tools.writing.measures import waypoint_errors_rad
 
 
 @pytest.mark.slow
 def test_a_letter_written_live_passes_its_waypoints(tmp_path):
     recording = tmp_path / "letter.mcap"
-    plan = Plan(order_of("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
+    plan = LaunchConfig(order_of("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
     with screen() as shown:
         assert run_system(plan, shown, Stop()) == "achieved"
     said = recorded("live", "I", recording)

@@ -76,7 +76,7 @@ def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte
 
 @pytest.mark.xdist_group("live")
 def test_verify_names_the_first_tick_that_differs(recording):
-    from tailor.executive.composition import recompose
+    from tailor.executive.composition import rebuild_context
     from tailor.tools.commands.look.verify import verify
     from tailor.tools.recordings.recorded_run import RecordedRuns
 
@@ -84,7 +84,7 @@ def test_verify_names_the_first_tick_that_differs(recording):
     run = runs.runs[0]
     other = {**run.provenance, "order": json.loads(json.dumps(run.provenance["order"]))}
     other["order"]["settings"]["refinement"]["horizon"] = 1
-    difference = verify(runs, run, recompose(other)).difference
+    difference = verify(runs, run, rebuild_context(other)).difference
     assert difference is not None
     assert difference.key in ("exec/refinement", "exec/subgoals")
     assert difference.tick < 20

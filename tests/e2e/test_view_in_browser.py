@@ -15,7 +15,7 @@ from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.feed import Feed
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.server import serving
-from tailor.tools.viewer.timeline import Row, Story
+from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser
 from tests.support.synthetic_models import LIBRARY, MODELS
@@ -79,15 +79,15 @@ def soccer(tmp_path_factory) -> str:
     }
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(story_module, "about", lambda provenance: facts)
-        rows = rows_of(synthetic_run.soccer_run(), Story(Explainer(lambda recorded: Context)))
+        rows = rows_of(synthetic_run.soccer_run(), RunTimeline(Explainer(lambda recorded: Context)))
     return written(tmp_path_factory.mktemp("view") / "soccer.html", rows)
 
 
-def rows_of(run, story: Story) -> list[Row]:
+def rows_of(run, story: RunTimeline) -> list[Event]:
     return [row for t in run for row in story.tell(t.time_ns / 1e9, t.key, t.message)]
 
 
-def written(path: Path, rows: list[Row]) -> str:
+def written(path: Path, rows: list[Event]) -> str:
     path.write_text(page(path.stem, rows))
     return path.as_uri()
 
@@ -186,7 +186,7 @@ def test_a_click_on_the_timeline_goes_there(browser: Browser, soccer: str) -> No
 
 
 def test_a_robot_that_is_no_point_on_the_plane_gets_plots_over_time(browser: Browser, tmp_path: Path) -> None:
-    opened(browser, written(tmp_path / "arm.html", rows_of(synthetic_run.arm_run(), Story())), 6.0)
+    opened(browser, written(tmp_path / "arm.html", rows_of(synthetic_run.arm_run(), RunTimeline())), 6.0)
     assert text(browser, "#scene h2 span") == "State"
     assert count(browser, "#scene .trace") == 4
     assert count(browser, "#timeline .bar.actual") == 4
@@ -203,13 +203,13 @@ def test_hostile_strings_are_shown_and_never_run(browser: Browser, tmp_path: Pat
     evil = '<img src=x onerror="window.hit=1"></script><script>window.hit=1</script>'
     plan = synthetic_run.PLAN.replace("pos2", "<b>pos2</b>")
     messages = [
-        synthetic_run.Told(
+        synthetic_run.Published(
             0, "exec/status", m.ExecStatus(0, 1, "FAULT", evil, evil, evil, f"failed: {evil}", evil, 0, 0.0, 1.0)
         ),
-        synthetic_run.Told(0, "exec/plan", m.PlanReport(0, "solved", evil, plan, 1, 1, evil)),
-        synthetic_run.Told(0, "exec/finished", m.ActionFinished(0, 1, evil, 0, "failed", evil, 1.0, 1.0)),
+        synthetic_run.Published(0, "exec/plan", m.PlanReport(0, "solved", evil, plan, 1, 1, evil)),
+        synthetic_run.Published(0, "exec/finished", m.ActionFinished(0, 1, evil, 0, "failed", evil, 1.0, 1.0)),
     ]
-    opened(browser, written(tmp_path / "evil.html", rows_of(messages, Story())))
+    opened(browser, written(tmp_path / "evil.html", rows_of(messages, RunTimeline())))
     assert evil in text(browser, "#heading")
     assert browser.value("window.hit") is None
     assert count(browser, "main img, main b, main script") == 0
@@ -225,7 +225,7 @@ def test_both_colour_schemes_have_readable_ink(browser: Browser, soccer: str) ->
 
 
 def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) -> None:
-    rows = rows_of(synthetic_run.soccer_run(), Story())
+    rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
     half = len(rows) // 2
     feed = Feed()
     with serving(page("live", [], live=True), feed, 0) as port:
@@ -246,7 +246,7 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
 
 
 def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> None:
-    rows = rows_of(synthetic_run.soccer_run(), Story())
+    rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
     feed = Feed()
     with serving(page("live", [], live=True), feed, 0) as port:
         opened(browser, f"http://127.0.0.1:{port}/")
@@ -287,11 +287,11 @@ def test_a_long_plan_keeps_its_running_step_in_sight(browser: Browser, tmp_path:
     running = m.Subgoals(0, 1, 1, (m.InstantiatedAction("reach", 18, False, 1.0, 0.1, ()),))
     status = synthetic_run.status(0, "EXECUTING", "", "reach", 17, 0.0, 1.0, ())
     messages = [
-        synthetic_run.Told(0, "exec/plan", m.PlanReport(0, "solved", "searched", plan, 1, 1, "")),
-        synthetic_run.Told(0, "exec/subgoals", running),
-        synthetic_run.Told(0, "exec/status", status),
+        synthetic_run.Published(0, "exec/plan", m.PlanReport(0, "solved", "searched", plan, 1, 1, "")),
+        synthetic_run.Published(0, "exec/subgoals", running),
+        synthetic_run.Published(0, "exec/status", status),
     ]
-    opened(browser, written(tmp_path / "long.html", rows_of(messages, Story())))
+    opened(browser, written(tmp_path / "long.html", rows_of(messages, RunTimeline())))
     seen = """((box, node) => node.top >= box.top && node.bottom <= box.bottom)(
       document.querySelector('#plan .body').getBoundingClientRect(),
       document.querySelector('#plan .running').getBoundingClientRect())"""

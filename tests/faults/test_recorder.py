@@ -14,10 +14,10 @@ from tailor.schemas.messages import Odometry
 from tests.support.bus_system import bus_system
 from tests.support.patience import PATIENCE_S, wait_until
 
-MOST_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
+MAX_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
 LIMITED = f"""
 import resource, sys
-resource.setrlimit(resource.RLIMIT_FSIZE, ({MOST_BYTES}, {MOST_BYTES}))
+resource.setrlimit(resource.RLIMIT_FSIZE, ({MAX_BYTES}, {MAX_BYTES}))
 from tailor.tools.main import main
 sys.exit(main(sys.argv[1:]))
 """
@@ -49,7 +49,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
             code = recorder.stop(PATIENCE_S)
     assert code == 1
     assert "disk: File too large" in (tmp_path / "said").read_text()
-    assert path.stat().st_size <= MOST_BYTES
+    assert path.stat().st_size <= MAX_BYTES
     recording = open_recording(path)
     sequences = [message.sequence for message in recording.messages()]
     assert sequences == list(range(sequences[0], sequences[-1] + 1)), "what is there is whole"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.library import Models
-from tailor.executive.refinement.certificates.bound_stagnation import PATIENCE, Stalling
+from tailor.executive.refinement.certificates.bound_stagnation import PATIENCE, BoundStagnation
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
 from tailor.executive.refinement.objective.objective import SequenceObjective
@@ -140,7 +140,7 @@ def test_proof_ends_when_its_checks_are_used_up():
 
 
 def test_proof_stalls_only_where_its_bound_does_not_rise():
-    stalling, bounds = Stalling(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
+    stalling, bounds = BoundStagnation(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
     assert not any(stalling.stalls(bound, 2.0) for bound in bounds)
     idle = [stalling.stalls(2.0, 2.0) for _ in range(PATIENCE + 1)]
     assert idle == [False] * PATIENCE + [True]

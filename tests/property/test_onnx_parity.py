@@ -6,7 +6,7 @@ import pytest
 
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.export.onnx_export import export_duration, export_success
-from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.features.features import SPACES, joints, projective
@@ -95,7 +95,7 @@ def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> 
     assert len(boxes.low) == sum(tree.leaves for tree in bag.trees_)
 
 
-@pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20), TaughtForest()])
+@pytest.mark.parametrize("learner", [FailureTree(cost_ratio=5), FailureForest(trees=20), DistilledForest()])
 def test_probabilities_agree(learner, episodes) -> None:
     arguments, _, _ = standin.examples(episodes, 1)
     learner.fit(projective(arguments), np.array([success for _, _, success in episodes]))

@@ -13,11 +13,11 @@ from dataclasses import replace
 import pytest
 from rosbags.highlevel import AnyReader
 
-from tailor.executive.composition import recompose
+from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.platform_fingerprint import machine
-from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
+from tailor.runtime.platform_fingerprint import platform_fingerprint
+from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
@@ -35,12 +35,12 @@ RENEW = "`make goldens` tells what has changed and renews them"
 
 def verdict_of(path):
     runs = RecordedRuns(path)
-    return verify(runs, runs.runs[0], recompose(runs.runs[0].provenance))
+    return verify(runs, runs.runs[0], rebuild_context(runs.runs[0].provenance))
 
 
 def rewritten(source, target, change):
     """A copy in which change(value) stands for each message of a type that it knows; None: as it is."""
-    tape = Tape(target, {}, compact=True)
+    tape = McapWriter(target, {}, compact=True)
     for recorded in open_recording(source).messages():
         changed = change(decoded(recorded))
         data = recorded.data if changed is None else encode(changed)
@@ -148,7 +148,7 @@ def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
     switched = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
     asked = [sys.executable, "-c", "from tailor.runtime.platform_fingerprint import arithmetic; print(arithmetic())"]
     there = subprocess.run(asked, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
-    if there == machine()["arithmetic"]:
+    if there == platform_fingerprint()["arithmetic"]:
         pytest.skip("this libm computes alike with and without")
     command = [sys.executable, "-P", "-m", "tailor.tools.main", "verify", str(SOME)]
     done = subprocess.run(command, env=switched, capture_output=True, text=True, cwd=ROOT)

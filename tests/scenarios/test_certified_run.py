@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.composition import Order, compose
+from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import replay
 from tailor.schemas.messages import RefinementReport, Subgoals
 from tailor.tools.commands.run.sim import make_world
-from tailor.tools.lockstep.run import SENDER, run_episode
+from tailor.tools.lockstep.run import SENDER, run_lockstep
 
 
 def told(outputs, kind):
@@ -23,7 +23,7 @@ def told(outputs, kind):
 def run(certify_checks: int, checks: int = 12):
     """The begin of a run past waypoints: context, ticks as given, and what the core answered."""
     refinement = replace(RefinementSettings(), certify_checks=certify_checks)
-    context = compose(Order("soccer", "waypoints", Settings(seed=3, refinement=refinement)), SENDER)
+    context = build_context(ExecutiveConfig("soccer", "waypoints", Settings(seed=3, refinement=refinement)), SENDER)
     ticks, outputs = [], []
 
     def witness(tick, said):
@@ -32,7 +32,7 @@ def run(certify_checks: int, checks: int = 12):
 
     _, start = domains.seeded_scenario("soccer", "waypoints", 3)
     body = make_world(context.domain.robot, "waypoints", 3).body
-    run_episode(context, body, start, 3, limit_s=5.0, checks=checks, witness=witness)
+    run_lockstep(context, body, start, 3, limit_s=5.0, checks=checks, witness=witness)
     return context, ticks, outputs
 
 

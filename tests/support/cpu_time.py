@@ -4,7 +4,7 @@ import gc
 import time
 from collections.abc import Callable
 
-from tailor.runtime.gc_freeze import heap_set_aside
+from tailor.runtime.gc_freeze import gc_frozen
 
 TRIES = 3  # what other processes take from the caches only ever adds: the least of several tries is the nearest
 
@@ -16,7 +16,7 @@ def least_cpu_s(work: Callable[[], object], enough_s: float) -> float:
     """
     gc.collect()
     least_s = float("inf")
-    with heap_set_aside():
+    with gc_frozen():
         for _ in range(TRIES):
             began_s = time.process_time()
             work()

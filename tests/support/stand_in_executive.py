@@ -18,7 +18,7 @@ def main(endpoint, speed):
         inbox, asked = session.inbox(["driver"], "agilo"), False
         loop = Loop(100_000_000, MonotonicClock())
         while not stop.requested:
-            turn = loop.next_turn()
+            turn = loop.wait_for_next_period()
             if inbox.drain(turn.now_ns) and not asked:
                 arming.publish(ArmRequest(True, False, "", 0))
                 asked = True

@@ -10,13 +10,13 @@ from tailor.runtime.bus.session import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
-from tailor.simnodes.declaration import Declaration
+from tailor.simnodes.declaration import DriverSpec
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tests.support.fake_body import FakeBody
 
-LIMITS = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
+LIMITS = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
 
 
 class Traced(FakeBody):

@@ -46,7 +46,7 @@ SENDER = "ab" * 16
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Published:
     """One message of a run: when it came, under which key."""
 
     time_ns: int
@@ -54,7 +54,7 @@ class Told:
     message: m.Message
 
 
-def soccer_run(seed: int = 3) -> Iterator[Told]:
+def soccer_run(seed: int = 3) -> Iterator[Published]:
     """Approach and dribble: refined by the real refinement on analytic models, driven along smooth curves."""
     rng = np.random.default_rng(seed)
     sequence = approach_dribble(robot=(-1.2, -0.6, 2.4))
@@ -64,18 +64,18 @@ def soccer_run(seed: int = 3) -> Iterator[Told]:
     assert choice is not None
     bound = sequence.bind(choice.values).variables
     poses = [tuple(bound[4 * place + i].value for i in range(4)) for place in range(3)]
-    yield Told(0, "exec/provenance", m.Provenance(0, json.dumps(order("soccer", seed))))
-    yield Told(0, "agilo/driver", m.DriverState(0, "disarmed", "started", 7, "", 0))
-    yield Told(PERIOD_NS, "agilo/driver", m.DriverState(0, "armed", "", 7, SENDER, 1))
-    yield Told(2 * PERIOD_NS, "exec/plan", m.PlanReport(0, "solved", "searched", PLAN, 14, 9, ""))
-    yield Told(2 * PERIOD_NS, "exec/refinement", _report(2, refinement))
-    yield Told(2 * PERIOD_NS, "exec/subgoals", subgoals(2, sequence, choice, 0))
+    yield Published(0, "exec/provenance", m.Provenance(0, json.dumps(order("soccer", seed))))
+    yield Published(0, "agilo/driver", m.DriverState(0, "disarmed", "started", 7, "", 0))
+    yield Published(PERIOD_NS, "agilo/driver", m.DriverState(0, "armed", "", 7, SENDER, 1))
+    yield Published(2 * PERIOD_NS, "exec/plan", m.PlanReport(0, "solved", "searched", PLAN, 14, 9, ""))
+    yield Published(2 * PERIOD_NS, "exec/refinement", _report(2, refinement))
+    yield Published(2 * PERIOD_NS, "exec/subgoals", subgoals(2, sequence, choice, 0))
     now = 3 * PERIOD_NS
     for index, name in enumerate(("approachBall", "dribbleBall")):
         predicted, actual = choice.predicted_s[index], choice.predicted_s[index] * (1.06 - 0.1 * index)
         if index:
-            yield Told(now, "exec/plan", m.PlanReport(now, "solved", "suffix", SUFFIX, 0, 0, ""))
-            yield Told(now, "exec/subgoals", subgoals(now // PERIOD_NS, sequence, choice, 1))
+            yield Published(now, "exec/plan", m.PlanReport(now, "solved", "suffix", SUFFIX, 0, 0, ""))
+            yield Published(now, "exec/subgoals", subgoals(now // PERIOD_NS, sequence, choice, 1))
         for k in range(int(actual * 10)):
             yield from _tick(
                 now, index, name, k / 10, predicted, _between(poses[index], poses[index + 1], actual, k), rng
@@ -83,22 +83,22 @@ def soccer_run(seed: int = 3) -> Iterator[Told]:
             now += PERIOD_NS
         tick = now // PERIOD_NS
         ended = m.ActionFinished(now, tick, name, index, "done", "", predicted, int(actual * 10) / 10)
-        yield Told(now, "exec/finished", ended)
-    yield Told(now, "exec/status", status(now, "READY", "achieved", "", 2, 0.0, 0.0, ()))
+        yield Published(now, "exec/finished", ended)
+    yield Published(now, "exec/status", status(now, "READY", "achieved", "", 2, 0.0, 0.0, ()))
 
 
-def arm_run(seed: int = 1) -> Iterator[Told]:
+def arm_run(seed: int = 1) -> Iterator[Published]:
     """A robot that is no point on a plane: two joints swing between waypoints, nothing is known of its domain."""
     rng = np.random.default_rng(seed)
-    yield Told(0, "exec/provenance", m.Provenance(0, json.dumps(order("no-such-domain", seed))))
+    yield Published(0, "exec/provenance", m.Provenance(0, json.dumps(order("no-such-domain", seed))))
     for k in range(120):
         now = k * PERIOD_NS
         index, within = divmod(k, 30)
         belief = (float(np.sin(k / 12)), float(np.cos(k / 12)), 0.2, float(rng.normal(0, 0.01)))
-        yield Told(now, "exec/status", status(now, "EXECUTING", "", "reach", index, within / 10, 2.9, belief))
-        yield Told(now, "exec/tick", tick_report(now, rng))
+        yield Published(now, "exec/status", status(now, "EXECUTING", "", "reach", index, within / 10, 2.9, belief))
+        yield Published(now, "exec/tick", tick_report(now, rng))
         if within == 29:
-            yield Told(now, "exec/finished", m.ActionFinished(now, k, "reach", index, "done", "", 2.9, 3.0))
+            yield Published(now, "exec/finished", m.ActionFinished(now, k, "reach", index, "done", "", 2.9, 3.0))
 
 
 def order(domain: str, seed: int) -> dict[str, object]:
@@ -153,16 +153,18 @@ def tick_report(now: int, rng: np.random.Generator) -> m.TickReport:
     )
 
 
-def _tick(now, index, name, elapsed, predicted, pose, rng) -> Iterator[Told]:
+def _tick(now, index, name, elapsed, predicted, pose, rng) -> Iterator[Published]:
     x, y, phi, v = pose
     carried = (x + 0.3 * np.cos(phi), y + 0.3 * np.sin(phi)) if index else (1.0, 0.0)
     near = rng.normal(0, 0.02, 3)
     belief = (x + near[0], y + near[1], phi + near[2], v, 0.0, *carried)
-    yield Told(now, "agilo/odom", m.Odometry(now, x, y, phi, v, 0.0))
-    yield Told(now, "agilo/sim/truth", m.SimTruth(now, x, y, phi, v, 0.0, *map(float, carried), 0.0, 0.0))
-    yield Told(now, "agilo/cmd_vel", m.VelocityCommand(now, v, 0.1))
-    yield Told(now, "exec/status", status(now, "EXECUTING", "", name, index, elapsed, predicted, map(float, belief)))
-    yield Told(now, "exec/tick", tick_report(now, rng))
+    yield Published(now, "agilo/odom", m.Odometry(now, x, y, phi, v, 0.0))
+    yield Published(now, "agilo/sim/truth", m.SimTruth(now, x, y, phi, v, 0.0, *map(float, carried), 0.0, 0.0))
+    yield Published(now, "agilo/cmd_vel", m.VelocityCommand(now, v, 0.1))
+    yield Published(
+        now, "exec/status", status(now, "EXECUTING", "", name, index, elapsed, predicted, map(float, belief))
+    )
+    yield Published(now, "exec/tick", tick_report(now, rng))
 
 
 def _between(start, goal, seconds: float, k: int) -> tuple[float, float, float, float]:

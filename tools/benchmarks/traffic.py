@@ -24,7 +24,7 @@ def traffic(session: Session, rate_hz: float) -> Iterator[None]:
     def publish() -> None:
         loop = Loop(round(len(MIX) * 1e9 / rate_hz), MonotonicClock())
         while not ended.is_set():
-            turn = loop.next_turn()
+            turn = loop.wait_for_next_period()
             x = (turn.now_ns % 10**9) / 1e9
             for outlet in outlets:
                 outlet.publish(Odometry(time.time_ns(), x, -x, x, x, 0.1))

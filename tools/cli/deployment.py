@@ -7,7 +7,7 @@ import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from tailor.executive.composition import Order
+from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.core.context import PlannerCommand, Settings
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
 from tailor.runtime.processes.planner_process import words_of
@@ -72,7 +72,7 @@ def deployment(arguments: argparse.Namespace) -> Deployment:
     )
 
 
-def order_of(domain: str, read: Deployment) -> Order:
+def order_of(domain: str, read: Deployment) -> ExecutiveConfig:
     """What the executive is to run; the scenario's name is checked when it is composed.
 
     Raises:
@@ -85,7 +85,7 @@ def order_of(domain: str, read: Deployment) -> Order:
     if read.planner.command:
         words_of(read.planner.command)
         settings = replace(settings, external=read.planner)
-    return Order(domain, scenario, settings, read.zoo)
+    return ExecutiveConfig(domain, scenario, settings, read.zoo)
 
 
 def _read(path: str) -> Deployment:

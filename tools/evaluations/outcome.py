@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from tailor.executive.library import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import RefinementReport, SimTruth, Subgoals
-from tailor.tools.lockstep.run import Episode
+from tailor.tools.lockstep.run import Run
 
 FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
 
@@ -61,7 +61,7 @@ class Outcome:
     situation: tuple[float, ...] = ()  # what a benefit tree sees of the first choice (tailor.executive.refinement.gate)
 
 
-def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Outcome:
+def outcome_of(episode: Run, domain: Domain, variant: str, seed: int) -> Outcome:
     """Sum an episode up."""
     finished = episode.finished
     free, bound = _situation(episode.subgoals[0], domain) if episode.subgoals else ((), ())
@@ -85,19 +85,19 @@ def outcome_of(episode: Episode, domain: Domain, variant: str, seed: int) -> Out
     )
 
 
-def _foreseen(episode: Episode) -> tuple[tuple[str, bool, float], ...]:
+def _foreseen(episode: Run) -> tuple[tuple[str, bool, float], ...]:
     actions = episode.subgoals[0].actions if episode.subgoals else ()
     return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
 
 
-def _compared(episode: Episode) -> tuple[float, ...]:
+def _compared(episode: Run) -> tuple[float, ...]:
     """The first finished refinement's comparison of its choice with the greedy one; empty where they are the same."""
     reports = (message for message in episode.messages if isinstance(message, RefinementReport) and message.finished)
     first = next(reports, None)
     return tuple(round(value, 6) for value in first.situation) if first is not None else ()
 
 
-def _costs_s(episode: Episode) -> tuple[float, float]:
+def _costs_s(episode: Run) -> tuple[float, float]:
     """What the first finished refinement said of the greedy choice and of its own."""
     for message in episode.messages:
         if isinstance(message, RefinementReport) and message.finished:
@@ -121,7 +121,7 @@ def _situation(
     return tuple(free.values()), tuple(bound.values())
 
 
-def _ball_moved_m(episode: Episode) -> float:
+def _ball_moved_m(episode: Run) -> float:
     """How far the ball was from its start when the first approach ended; it should have been left alone till then."""
     ended_ns = [action.stamp_ns for action in episode.finished if action.action == "approachBall"]
     if not ended_ns or not episode.truth:

@@ -19,7 +19,7 @@ from tailor.tools.figures.page import image, page, table
 
 Row = Mapping[str, Any]
 WIDE = 9  # columns that still fit a screen
-LEAST_WIDTH = 120  # a file or a pipe has no width of its own
+MIN_WIDTH = 120  # a file or a pipe has no width of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def shown(value: object) -> str:
 
 def _print(report: Report) -> None:
     console = Console()
-    console.width = max(console.width, LEAST_WIDTH)
+    console.width = max(console.width, MIN_WIDTH)
     made = Table(title=report.title)
     head, cells = _tabled(report.rows)
     for column in head:

@@ -25,7 +25,7 @@ from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.lockstep.run import SENDER, Episode, run_episode
+from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 
 PIN_STREAM = 4
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,13 +78,13 @@ def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
     return outcome_of(episode, context.domain, variant.name, seed)
 
 
-def run_episode_of(task: Task, variant: Variant, seed: int) -> tuple[Episode, Context]:
+def run_episode_of(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     """One episode with all that was said in it, and the context that it ran in.
 
     The variant's `noise` is added to the seed of the body's noise alone: the same start, other luck.
     """
     context, start = _context(task, variant, seed)
-    return run_episode(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
+    return run_lockstep(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
 
 
 def paired(first: dict[int, Outcome], second: dict[int, Outcome]) -> tuple[list[float], list[float]]:

@@ -7,12 +7,12 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tailor.tools.recordings.comparison import Run
+from tailor.tools.recordings.comparison import ComparedRun
 
 COLOURS = ("#1f77b4", "#d62728")
 
 
-def draw_comparison(a: Run, b: Run, path: Path) -> None:
+def draw_comparison(a: ComparedRun, b: ComparedRun, path: Path) -> None:
     """Draw into a PNG; its folder is made."""
     axes_count = max(a.commands.shape[1], b.commands.shape[1]) - 1
     figure = Figure(figsize=(10, 2.2 * (axes_count + 1)), layout="constrained")
@@ -24,7 +24,7 @@ def draw_comparison(a: Run, b: Run, path: Path) -> None:
     figure.savefig(path, dpi=120)
 
 
-def _draw_axis(plot: Axes, runs: tuple[Run, Run], number: int) -> None:
+def _draw_axis(plot: Axes, runs: tuple[ComparedRun, ComparedRun], number: int) -> None:
     for run, colour in zip(runs, COLOURS, strict=True):
         if run.commands.shape[1] > number:
             plot.plot(run.commands[:, 0], run.commands[:, number], color=colour, label=run.name, linewidth=1)
@@ -34,7 +34,7 @@ def _draw_axis(plot: Axes, runs: tuple[Run, Run], number: int) -> None:
     plot.grid(alpha=0.3)
 
 
-def _draw_durations(plot: Axes, runs: tuple[Run, Run]) -> None:
+def _draw_durations(plot: Axes, runs: tuple[ComparedRun, ComparedRun]) -> None:
     """One bar a run, one block an action, a mark where the model put its end."""
     for row, (run, colour) in enumerate(zip(runs, COLOURS, strict=True)):
         start_s = 0.0

@@ -12,7 +12,7 @@ import numpy as np
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.episodes import UNOBSERVED, Episode, read_data_set
 from tailor.models.episodes.examples import Examples, success_examples
-from tailor.models.episodes.regression_targets import AMOUNTS
+from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
 from tailor.tools.figures import learned_regions, learned_shapes
@@ -43,7 +43,7 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
             pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model, region)}
         if "learning_curve" in card["test"]:
             pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
-        amount = AMOUNTS[card["kind"]]
+        amount = REGRESSION_TARGETS[card["kind"]]
         told = [episode for episode in episodes if episode.finished and amount.told(episode)]
         if told:
             rows = amount.examples(told, 1)

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 DIST_M = 1.5  # Figure 7: straight ahead, standing still
 STEP_RAD, ARRIVING_RAD_S = 0.7, 0.4  # its like for two joints: along the first, from rest
-LEAST_EPISODES = 3  # in a cell of the map: fewer say little of a mean
+MIN_EPISODES = 3  # in a cell of the map: fewer say little of a mean
 CELLS = 9, 12  # distance, angle
 
 
@@ -65,9 +65,9 @@ def error_by_region(figure: Any, model: OnnxDuration, rows: Examples, region: Re
         angle = np.degrees(features[:, 3 + k])
         total, _, _ = np.histogram2d(dist, angle, edges, weights=off)
         count, _, _ = np.histogram2d(dist, angle, edges)
-        mean = np.where(count >= LEAST_EPISODES, total / np.maximum(count, 1), np.nan)
+        mean = np.where(count >= MIN_EPISODES, total / np.maximum(count, 1), np.nan)
         shown = axes.pcolormesh(*edges, mean.T, vmin=0, vmax=top)
         axes.set(xlabel=f"dist [{region.unit}]", ylabel=f"{name} [°]", yticks=np.arange(start, 181, 60))
     unit = UNITS[model.card["kind"]]
-    label = f"mean |error| [{unit}] where fitted; white: < {LEAST_EPISODES} episodes"
+    label = f"mean |error| [{unit}] where fitted; white: < {MIN_EPISODES} episodes"
     figure.colorbar(shown, extend="max", label=label)

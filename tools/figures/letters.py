@@ -20,12 +20,12 @@ from tailor.tools.writing.track import Written
 
 Array = NDArray[np.float64]
 
-FASTEST_RADPS = 1.0  # brightest colour
+MAX_RADPS = 1.0  # brightest colour
 COLOURS = "viridis"
 GRID = 0.4  # rad in joint space; half of it in metres on the page
 CELL_INCHES = 2.1
 WORD_INCHES = 9.0
-HIGHEST_INCHES = 4.0  # of one hand
+MAX_HEIGHT_INCHES = 4.0  # of one hand
 MARGIN = 0.25  # m or rad around the waypoints
 
 
@@ -49,7 +49,7 @@ def draw_words(rows: Sequence[Written], path: Path, in_joints: bool = False) -> 
     place, unit = ((lambda angles: angles), "rad") if in_joints else (pen_m, "m")
     page = place(rows[0].waypoints)
     (left, low), (right, high) = page.min(axis=0) - MARGIN, page.max(axis=0) + MARGIN
-    scale = min(WORD_INCHES / (right - left), HIGHEST_INCHES / (high - low))
+    scale = min(WORD_INCHES / (right - left), MAX_HEIGHT_INCHES / (high - low))
     figure = Figure(
         figsize=(scale * (right - left) + 2.0, (scale * (high - low) + 0.4) * len(rows) + 0.4), layout="constrained"
     )
@@ -68,7 +68,7 @@ def _draw(axis: Any, said: Written, line: Array, points: Array) -> LineCollectio
     segments = np.stack((line[:-1], line[1:]), axis=1)
     drawn = LineCollection(list(segments), cmap=COLOURS, capstyle="round")
     drawn.set_array(0.5 * (speed[:-1] + speed[1:]))
-    drawn.set_clim(0.0, FASTEST_RADPS)
+    drawn.set_clim(0.0, MAX_RADPS)
     drawn.set_linewidths(np.where(said.pen_down()[1:], 2.4, 0.5).tolist())
     axis.add_collection(drawn)
     axis.autoscale_view()

@@ -9,7 +9,7 @@ from typing import Any
 
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.topics import TOPICS
-from tailor.tools.recordings.comparison import Run, compared_run
+from tailor.tools.recordings.comparison import ComparedRun, compared_run
 from tailor.tools.recordings.differences import first_field
 from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, RecordedRuns, decoded
 
@@ -42,7 +42,7 @@ def first_change(old: Path, new: Path) -> str:
     return ""
 
 
-def outcome(run: Run) -> str:
+def outcome(run: ComparedRun) -> str:
     """How a run ended, and how long its actions took."""
     actions = ", ".join(
         f"{a.action} {'' if a.outcome == 'done' else a.outcome + ' '}{a.actual_s:.1f}" for a in run.actions
@@ -50,7 +50,7 @@ def outcome(run: Run) -> str:
     return f"{run.result or 'no result'} in {run.total_s:.1f} s: {actions}"
 
 
-def _outcome(before: Run, now: Run) -> Iterator[str]:
+def _outcome(before: ComparedRun, now: ComparedRun) -> Iterator[str]:
     was, is_now = outcome(before), outcome(now)
     if was != is_now:
         yield f"was       {was}"

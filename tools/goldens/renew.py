@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tailor.executive import domains
-from tailor.executive.composition import Order, compose, provenance
+from tailor.executive.composition import ExecutiveConfig, build_context, provenance
 from tailor.executive.core.context import Settings
-from tailor.runtime.platform_fingerprint import machine
+from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.run.sim import make_world
 from tailor.tools.goldens.changes import changes, outcome
-from tailor.tools.lockstep.run import SENDER, run_episode
+from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.run_recording import LockstepRecording
 from tailor.tools.lockstep.run_writer import RunTape
 from tailor.tools.recordings.comparison import compared_run
@@ -52,13 +52,13 @@ def goldens() -> list[Golden]:
 
 def record(golden: Golden, path: Path) -> None:
     """Run it in lock-step and write it down; the same bytes every time on the same kind of machine."""
-    order = Order(golden.domain, golden.scenario, Settings(seed=golden.seed))
-    context = compose(order, SENDER)
+    order = ExecutiveConfig(golden.domain, golden.scenario, Settings(seed=golden.seed))
+    context = build_context(order, SENDER)
     _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
     world = make_world(context.domain.robot, golden.scenario, golden.seed)
-    tape = RunTape(path, context, {**provenance(order, context), "machine": machine()}, compact=True)
+    tape = RunTape(path, context, {**provenance(order, context), "machine": platform_fingerprint()}, compact=True)
     recording = LockstepRecording(tape)
-    run_episode(
+    run_lockstep(
         context,
         world.body,
         start,

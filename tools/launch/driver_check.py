@@ -6,10 +6,10 @@ from pathlib import Path
 
 from tailor.executive.library import Domain
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.declaration import Declaration, declaration, read_declaration
+from tailor.simnodes.declaration import DriverSpec, declaration, read_driver_spec
 
 
-def driver_of(robot: str, file: str | None) -> Declaration:
+def driver_of(robot: str, file: str | None) -> DriverSpec:
     """The driver's declaration: a file, or what ships with the simulated robot.
 
     Raises:
@@ -18,7 +18,7 @@ def driver_of(robot: str, file: str | None) -> Declaration:
     if file is None:
         return declaration(robot)
     try:
-        return read_declaration(Path(file).read_text(encoding="utf-8"))
+        return read_driver_spec(Path(file).read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"{file}: {error.strerror}, expected a driver's declaration") from error
     except (KeyError, TypeError, ValueError) as error:
@@ -27,7 +27,7 @@ def driver_of(robot: str, file: str | None) -> Declaration:
         ) from error
 
 
-def check_driver(domain: Domain, driver: Declaration) -> None:
+def check_driver(domain: Domain, driver: DriverSpec) -> None:
     """Raise UsageError, all mismatches in one line, unless the driver takes every command that the domain may send."""
     wrong = []
     if domain.command_topic != driver.command_topic:

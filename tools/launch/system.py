@@ -9,13 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tailor.executive.composition import Order, compose
+from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.runtime.bus.inbox import Inbox
 from tailor.runtime.bus.session import Session, open_router
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
 from tailor.runtime.processes.child import Child, tailor
-from tailor.runtime.processes.supervisor import Charge, Supervisor
+from tailor.runtime.processes.supervisor import ProcessSpec, Supervisor
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, ExecStatus
@@ -28,17 +28,17 @@ START_S = 20.0
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class LaunchConfig:
     """What to start."""
 
-    order: Order
+    order: ExecutiveConfig
     endpoint: str
     record: Path | None = None
     once: bool = False  # end when the goal is achieved or has failed
     config: str = ""
 
 
-def run_system(plan: Plan, screen: Screen, stop: Stop) -> str:
+def run_system(plan: LaunchConfig, screen: Screen, stop: Stop) -> str:
     """Start everything in order, watch it, stop everything in the opposite order.
 
     Returns:
@@ -49,7 +49,7 @@ def run_system(plan: Plan, screen: Screen, stop: Stop) -> str:
     """
     if plan.record is not None and plan.record.exists():
         raise UsageError(f"{plan.record}: exists already, expected the name of a new file")
-    robot = compose(plan.order, sender="").domain.robot
+    robot = build_context(plan.order, sender="").domain.robot
     with open_router(plan.endpoint) as session, tempfile.TemporaryFile("w+") as log:
         supervisor = Supervisor(screen.tell, lambda name, argv: Child(name, argv, log))
         try:
@@ -68,25 +68,25 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
-def _run(plan: Plan, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
+def _run(plan: LaunchConfig, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
     inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot, newest_only=False)
     if plan.record is not None:
         listened = session.publisher("provenance", robot)  # the recorder alone hears that: we do not
-        supervisor.begin(Charge("record", _record(plan), restarts=False), time.monotonic_ns())
+        supervisor.begin(ProcessSpec("record", _record(plan), restarts=False), time.monotonic_ns())
         if not _appeared(supervisor, "record", listened.matched, stop):
             return "failed: the recorder did not start"
-    supervisor.begin(Charge("sim", _sim(plan, robot)), time.monotonic_ns())
+    supervisor.begin(ProcessSpec("sim", _sim(plan, robot)), time.monotonic_ns())
     if not _appeared(supervisor, "sim", lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop):
         return "failed: the simulator did not start"
-    supervisor.begin(Charge("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
+    supervisor.begin(ProcessSpec("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
     return _watch(plan, inbox, supervisor, screen, stop)
 
 
-def _watch(plan: Plan, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
+def _watch(plan: LaunchConfig, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
     loop = Loop(LOOK_NS, MonotonicClock())
     own, result, stopped = OwnExecutive(), "", ""
     while not stop.requested:
-        turn = loop.next_turn()
+        turn = loop.wait_for_next_period()
         for sample in inbox.drain():
             if isinstance(sample.message, DriverState):
                 stopped = _stopped(sample.message)
@@ -124,17 +124,17 @@ def _appeared(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop
     return True
 
 
-def _sim(plan: Plan, robot: str) -> list[str]:
+def _sim(plan: LaunchConfig, robot: str) -> list[str]:
     order = plan.order
     scene = ("--scenario", order.scenario, "--seed", str(order.settings.seed))
     return tailor("sim", robot, *scene, "--connect", plan.endpoint)
 
 
-def _record(plan: Plan) -> list[str]:
+def _record(plan: LaunchConfig) -> list[str]:
     return tailor("record", "--output", str(plan.record), "--connect", plan.endpoint)
 
 
-def _executive(plan: Plan) -> list[str]:
+def _executive(plan: LaunchConfig) -> list[str]:
     order = plan.order
     flags = ["--scenario", order.scenario, "--seed", str(order.settings.seed), "--connect", plan.endpoint]
     flags += ["--horizon", str(order.settings.refinement.horizon)]

@@ -24,12 +24,12 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
 from tailor.tools.learning import gathering
 from tailor.tools.lockstep import action_run
-from tailor.tools.lockstep.episode_extraction import Cutter
+from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
 CHUNK = 10  # runs whose episodes are kept together
 READ = (Subgoals, ExecStatus, SimTruth, JointState, Odometry, ActionFinished)
-MOST_ACTIONS = 100  # of one run; spaces the numbers of its episodes
+MAX_ACTIONS = 100  # of one run; spaces the numbers of its episodes
 UNPROVEN = RefinementSettings(certify_checks=0)  # a proof of how good a choice is takes time and changes nothing
 
 
@@ -123,14 +123,14 @@ def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode
             write_part(folder / action / f"part-{part}.parquet", mine, names)
 
 
-def cut_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dict[str, int]:
+def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dict[str, int]:
     """Cut recordings into data sets; returns the number of episodes by action.
 
     Raises:
       UsageError: A file is no recording of an executive's run, none holds a finished action, or the folder holds
         episodes already; nothing is written then.
     """
-    cut = [Cutter(domains.load(domain)).read(_messages(path)) for path in recordings]
+    cut = [EpisodeExtractor(domains.load(domain)).read(_messages(path)) for path in recordings]
     if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
     about = {"source": "recordings", "recordings": [path.name for path in recordings]}
@@ -168,7 +168,7 @@ def _chunk(policy: Policy, first: int) -> int:
     some = policy.jobs[first : first + CHUNK]
     cut = []
     for k, (scenario, seed) in enumerate(some):
-        base = MOST_ACTIONS * (first + k)
+        base = MAX_ACTIONS * (first + k)
         cut += [(a, replace(e, number=base + i)) for i, (a, e) in enumerate(_run(policy, scenario, seed))]
     write(policy.domain, policy.folder, f"{first:06d}", cut)
     _mark(policy, first).touch()
@@ -176,13 +176,13 @@ def _chunk(policy: Policy, first: int) -> int:
 
 
 def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
-    from tailor.tools.lockstep.run import SENDER, run_episode
+    from tailor.tools.lockstep.run import SENDER, run_lockstep
 
     domain = domains.load(policy.domain)
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     settings = Settings(seed=seed, refinement=UNPROVEN)
     context = make_context(domain, drawn, _models(domain.robot, policy.zoo), settings, SENDER)
-    return Cutter(domain).read(run_episode(context, action_run.new_body(domain), start, seed).messages)
+    return EpisodeExtractor(domain).read(run_lockstep(context, action_run.new_body(domain), start, seed).messages)
 
 
 @lru_cache(maxsize=2)

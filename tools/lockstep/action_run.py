@@ -20,13 +20,13 @@ from tailor.simnodes.body import Body, Reading
 PERIOD_NS = 100_000_000  # 10 Hz
 LIMIT_S = 40.0  # an action that takes longer has failed
 BODIES = {"soccer": "tailor.simnodes.agilo.body:AgiloBody", "arm": "tailor.simnodes.powercube.body:PowerCubeBody"}
-TRIALS = {
+SAMPLERS = {
     "soccer": "tailor.tools.lockstep.samplers.soccer:SoccerTrials",
     "arm": "tailor.tools.lockstep.samplers.arm:ArmTrials",
 }
 
 
-class Trials(Protocol):
+class TaskSampler(Protocol):
     """How a robot's actions are tried out."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
@@ -65,7 +65,7 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
-class Episode:
+class ActionRun:
     """One execution of one action.
 
     `failure` is "" or what went wrong: "collision" (the ball was knocked away; the action may still have ended),
@@ -85,7 +85,7 @@ class Episode:
 
 def sample_arguments(domain: Domain, action_name: str, rng: np.random.Generator) -> Array:
     """Random controller arguments of an action, shape (k,), from the ranges that it declares."""
-    return trials_of(domain).sample(domain.actions[action_name], rng)
+    return sampler_of(domain).sample(domain.actions[action_name], rng)
 
 
 def new_body(domain: Domain) -> Body:
@@ -94,9 +94,9 @@ def new_body(domain: Domain) -> Body:
     return body
 
 
-def trials_of(domain: Domain) -> Trials:
+def sampler_of(domain: Domain) -> TaskSampler:
     """The domain's trials."""
-    made: Trials = _named(TRIALS[domain.name])()
+    made: TaskSampler = _named(SAMPLERS[domain.name])()
     return made
 
 
@@ -109,7 +109,7 @@ def run_action(
     *,
     limit_s: float = LIMIT_S,
     traced: bool = False,
-) -> Episode:
+) -> ActionRun:
     """Run one action from its start state until it is done, has failed, or time is up.
 
     Args:
@@ -121,7 +121,7 @@ def run_action(
       limit_s: Seconds of simulated time.
       traced: Keep beliefs, truth and commands too.
     """
-    action, trials = domain.actions[action_name], trials_of(domain)
+    action, trials = domain.actions[action_name], sampler_of(domain)
     start = trials.start(action, arguments, rng)
     belief = trials.belief(start, rng)
     body.reset(rng, start)
@@ -146,7 +146,7 @@ def run_action(
     done = control.outcome == "done"
     failure = failure or ("" if done else control.reason or "time limit")
     ticks, worked = np.array(rows), np.array([*work, 0.0])[: len(rows)]
-    return Episode(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, worked, tuple(trace))
+    return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, worked, tuple(trace))
 
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:

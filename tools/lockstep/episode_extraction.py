@@ -25,10 +25,10 @@ from tailor.schemas.messages import (
     SimTruth,
     Subgoals,
 )
-from tailor.tools.lockstep.action_run import trials_of
+from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
 
-LEAST_TICKS = 3
+MIN_TICKS = 3
 
 
 @dataclass(slots=True)
@@ -47,7 +47,7 @@ class _Running:
 
 
 @dataclass(slots=True)
-class Cutter:
+class EpisodeExtractor:
     """Reads messages in order; `cut` holds (data set's action, episode) as they end."""
 
     domain: Domain
@@ -126,7 +126,7 @@ class Cutter:
 
     def _finish(self, finished: ActionFinished) -> None:
         run, self._running = self._running, None
-        if run is None or len(run.ticks) < LEAST_TICKS or finished.outcome == "aborted":
+        if run is None or len(run.ticks) < MIN_TICKS or finished.outcome == "aborted":
             return
         failure = "" if finished.outcome == "done" else finished.reason
         if not run.action.success_model or run.ball is None:  # nobody watched the ball
@@ -144,7 +144,7 @@ class Cutter:
         """Joules of the drives from each tick to the next; None where a motion was not told."""
         if None in motions:
             return None
-        told = trials_of(self.domain).work_j
+        told = sampler_of(self.domain).work_j
         work_j = np.array([*(told(a, b) for a, b in itertools.pairwise(motions) if a and b), 0.0])
         return work_j if np.isfinite(work_j).all() else None
 

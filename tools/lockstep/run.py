@@ -33,7 +33,7 @@ Wire = Callable[[Message], Message]  # what becomes of a reading on its way to t
 
 
 @dataclass(slots=True)
-class Episode:
+class Run:
     """What happened; times in seconds since the start."""
 
     result: str = "failed: time limit"
@@ -56,7 +56,7 @@ class Episode:
         return self.ended_s - self.started_s
 
 
-def run_episode(
+def run_lockstep(
     context: Context,
     body: Body,
     start: Mapping[str, float],
@@ -66,7 +66,7 @@ def run_episode(
     checks: int = CHECKS_PER_TICK,
     witness: Witness | None = None,
     wire: Wire | None = None,
-) -> Episode:
+) -> Run:
     """Run the scenario's goal from `start` until it is achieved, has failed, or `limit_s` of simulated time is over.
 
     Args:
@@ -81,7 +81,7 @@ def run_episode(
       wire: Changes every reading as the bus does; None: the core hears the very values.
     """
     link = _Link(context.domain, World(body, start, seed, events), wire)
-    episode, state = Episode(), initial_state(context)
+    episode, state = Run(), initial_state(context)
     goal, samples = context.problem.goal_text, link.advance(0, episode)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
@@ -118,7 +118,7 @@ class _Link:
         if any(not isinstance(sample.message, ArmRequest) for sample in samples):
             self._world.begin()
 
-    def advance(self, now_ns: int, episode: Episode) -> tuple[Sample, ...]:
+    def advance(self, now_ns: int, episode: Run) -> tuple[Sample, ...]:
         """One period of the world under the guard's output; the newest reading of each topic and the driver's state."""
         self._world.body.command(self._driver.guard.output(now_ns))
         newest: dict[str, Reading] = {}
@@ -141,7 +141,7 @@ class _Link:
         return Sample(key_of(topic, self._robot), heard, arrival_ns, self._sequences[topic], DRIVER)
 
 
-def _note(episode: Episode, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
+def _note(episode: Run, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
     if state.task.running is not None and math.isnan(episode.started_s):
         episode.started_s = now_s
     for output in outputs:

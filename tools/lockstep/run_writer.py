@@ -18,8 +18,8 @@ from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import tick_report
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.loop import Turn
-from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
+from tailor.runtime.loop import Period
+from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, Provenance
 from tailor.schemas.topics import TOPICS, key_of
@@ -31,7 +31,7 @@ class RunTape:
 
     def __init__(self, path: Path, context: Context, made_of: Mapping[str, Any], compact: bool = False) -> None:
         """Create the file; `made_of` is the run's provenance. Compact: without an index, half the size."""
-        self._tape = Tape(path, {}, compact)
+        self._tape = McapWriter(path, {}, compact)
         self._context = context
         self._said: Counter[str] = Counter()  # how many of each key, which numbers them
         self._provenance = json.dumps(made_of, sort_keys=True)
@@ -53,7 +53,7 @@ class RunTape:
             self._say(TOPICS["provenance"].key, Provenance(stamp_ns, self._provenance), now_ns)
         for output in outputs:
             self._say(key_of(output.topic, self._context.domain.robot), output.message, now_ns)
-        turn = Turn(now_ns, now_ns, tick.inputs.skipped)
+        turn = Period(now_ns, now_ns, tick.inputs.skipped)
         report = tick_report(stamp_ns, tick.tick, turn, tick.inputs, (0, 0, tick.checks))
         self._say(TOPICS["tick"].key, report, now_ns)
 

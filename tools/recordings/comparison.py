@@ -17,7 +17,7 @@ COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.pri
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class ComparedRun:
     """One executive's run, reduced to what gets compared."""
 
     name: str
@@ -33,7 +33,7 @@ class Run:
         return sum(action.actual_s for action in self.actions)
 
 
-def compared_run(path: Path) -> Run:
+def compared_run(path: Path) -> ComparedRun:
     """The first executive's run in a recording.
 
     Raises:
@@ -42,7 +42,7 @@ def compared_run(path: Path) -> Run:
     run = RecordedRuns(path).runs[0]
     status = _said(run, "status", ExecStatus)
     results = [message.result for message in status if message.result]
-    return Run(
+    return ComparedRun(
         name=path.stem,
         actions=tuple(_said(run, "finished", ActionFinished)),
         plans=tuple(_said(run, "plan", PlanReport)),
@@ -62,7 +62,7 @@ def chosen(subgoals: Subgoals) -> dict[str, float]:
     return dict(named.values())
 
 
-def commands_apart(a: Run, b: Run) -> dict[str, float]:
+def commands_apart(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
     """How far the commands of two runs are apart over the time that both drove, matched by time since setting off.
 
     Returns:

@@ -26,8 +26,8 @@ from tailor.tools.recordings.executive_run import (
 
 __all__ = ["PROVENANCE_KEY", "TICK_KEY", "RecordedRun", "RecordedRuns", "decoded"]
 
-MOST_BYTES = 1_000_000_000  # a run has some 10 MB a minute
-MOST_REASONS = 3  # that are told one by one: a file may hold any number of strangers
+MAX_BYTES = 1_000_000_000  # a run has some 10 MB a minute
+MAX_REASONS = 3  # that are told one by one: a file may hold any number of strangers
 ANSWER_KEY = TOPICS["plan_answer"].key  # an executive's own, but an input of its core
 
 
@@ -62,8 +62,8 @@ class RecordedRuns:
 
     def left_out_text(self) -> str:
         """One line for people on what was left out of exec/tick; empty if nothing was."""
-        rows = [f"{count} {reason}" for reason, count in self.left_out.most_common(MOST_REASONS)]
-        others = self.left_out.total() - sum(count for _, count in self.left_out.most_common(MOST_REASONS))
+        rows = [f"{count} {reason}" for reason, count in self.left_out.most_common(MAX_REASONS)]
+        others = self.left_out.total() - sum(count for _, count in self.left_out.most_common(MAX_REASONS))
         text = ", ".join([*rows, f"{others} others"] if others else rows)
         return f"left out of {TICK_KEY}: {text}" if text else ""
 
@@ -118,9 +118,9 @@ def _bounded(recording: Recording) -> Iterator[Recorded]:
         if type_of(message.ros_type) is None:
             continue
         size += len(message.data)
-        if size > MOST_BYTES:
+        if size > MAX_BYTES:
             raise UsageError(
-                f"{recording.path}: more than {MOST_BYTES} bytes of messages, expected a piece (`tailor cut`)"
+                f"{recording.path}: more than {MAX_BYTES} bytes of messages, expected a piece (`tailor cut`)"
             )
         yield message
 

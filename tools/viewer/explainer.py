@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.composition import recompose
+from tailor.executive.composition import rebuild_context
 from tailor.executive.core.context import Context
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
@@ -22,9 +22,9 @@ STREAM = 5  # of the seed, and the one after it; the executive's own draws come 
 class Explainer:
     """Explains the decisions of one executive."""
 
-    def __init__(self, compose: Callable[[Mapping[str, Any]], Context] = recompose) -> None:
-        """`compose` makes a context of a provenance, or raises UsageError."""
-        self._compose = compose
+    def __init__(self, build_context: Callable[[Mapping[str, Any]], Context] = rebuild_context) -> None:
+        """`build_context` makes a context of a provenance, or raises UsageError."""
+        self._compose = build_context
         self._context: Context | None = None
         self.missing = "no provenance yet"  # why there are no explanations; empty when there are
 

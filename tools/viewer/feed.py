@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from queue import Empty, Full, Queue
 from threading import Lock
 
-from tailor.tools.viewer.timeline import Row
+from tailor.tools.viewer.timeline import Event
 
 KEEP_S = 600.0  # of what comes at a rate; events are kept from the start
 WAITING = 64  # batches, six seconds, that a page may lag behind
@@ -48,7 +48,7 @@ class Feed:
 
     def __init__(self, keep_s: float = KEEP_S) -> None:
         self._keep_s = keep_s
-        self._rows: list[Row] = []
+        self._rows: list[Event] = []
         self._pages: set[Subscription] = set()
         self._lock = Lock()
         self.closed = False
@@ -58,7 +58,7 @@ class Feed:
         """How many pages listen."""
         return len(self._pages)
 
-    def publish(self, rows: Sequence[Row]) -> None:
+    def publish(self, rows: Sequence[Event]) -> None:
         """Hand rows to every page; never waits for one."""
         if not rows:
             return
@@ -97,10 +97,10 @@ class Feed:
         self._rows = kept
 
 
-def encoded(rows: Sequence[Row]) -> str:
+def encoded(rows: Sequence[Event]) -> str:
     """Rows as one line of JSON."""
     return json.dumps([row.json_value() for row in rows], allow_nan=False, separators=(",", ":"))
 
 
-def _at_a_rate(row: Row) -> bool:
+def _at_a_rate(row: Event) -> bool:
     return row.kind in AT_A_RATE or row.kind.startswith("series ")

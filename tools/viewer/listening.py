@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
 from tailor.schemas.codec import decode
@@ -15,7 +15,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import type_of
 from tailor.tools.viewer.feed import Feed
 from tailor.tools.viewer.recorded import EXECUTIVE
-from tailor.tools.viewer.timeline import Row, Story
+from tailor.tools.viewer.timeline import Event, RunTimeline
 
 LOOK_NS = 50_000_000  # so often the page moves
 ENCODING = "application/cdr;"
@@ -31,7 +31,7 @@ class Listener:
       sender: Leave out executives whose id does not begin with this.
     """
 
-    def __init__(self, intake: Intake, story: Story, feed: Feed, sender: str = "") -> None:
+    def __init__(self, intake: IngestQueue, story: RunTimeline, feed: Feed, sender: str = "") -> None:
         self._intake = intake
         self._story = story
         self._feed = feed
@@ -40,7 +40,7 @@ class Listener:
 
     def look(self) -> None:
         """Take what has arrived and hand it on."""
-        rows: list[Row] = []
+        rows: list[Event] = []
         for raw in self._intake.take():
             message = _read(raw)
             if message is not None and self._wanted(raw):
@@ -51,7 +51,7 @@ class Listener:
         """Look until told to stop."""
         loop = Loop(LOOK_NS, clock)
         while not stopped():
-            loop.next_turn()
+            loop.wait_for_next_period()
             self.look()
 
     def _at_s(self, raw: Raw) -> float:

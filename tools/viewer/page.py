@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterable
 from importlib import resources
 
-from tailor.tools.viewer.timeline import Row
+from tailor.tools.viewer.timeline import Event
 
 STYLES = ("page.css", "controls.css", "drawing.css")
 # In the order in which they build on each other; together they are one module.
@@ -32,7 +32,7 @@ SCRIPTS = (
 )
 
 
-def page(title: str, rows: Iterable[Row], live: bool = False) -> str:
+def page(title: str, rows: Iterable[Event], live: bool = False) -> str:
     """The whole page.
 
     Args:

@@ -12,7 +12,7 @@ from tailor.tools.viewer.feed import Feed
 
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here
-MOST_PAGES = 8
+MAX_PAGES = 8
 RETRY_MS = 1000  # after which a page whose connection broke comes again
 BEAT_S = 2.0  # a comment so often tells a page that has gone
 
@@ -55,7 +55,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._send_document()
         elif self.path != "/events":
             self.send_error(404)
-        elif self.feed.pages >= MOST_PAGES:
+        elif self.feed.pages >= MAX_PAGES:
             self.send_error(503, "too many pages")
         else:
             self._send_events()

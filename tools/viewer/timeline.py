@@ -18,7 +18,7 @@ SILENT = (m.ArmRequest, m.BallPercept, m.PlanRequest, m.PlanAnswer)
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Event:
     """One thing that the page is told: when (seconds on its time axis), what kind of thing, and its fields."""
 
     at_s: float
@@ -30,7 +30,7 @@ class Row:
         return [round(self.at_s, 3), self.kind, self.fields]
 
 
-class Story:
+class RunTimeline:
     """Turns messages, in order, into rows.
 
     Args:
@@ -46,12 +46,12 @@ class Story:
         self._last: dict[str, Any] = {}  # by kind: what was told last, of things told on change
         self._told_s: dict[str, float] = {}  # by kind: when, of things told at a rate
 
-    def tell(self, at_s: float, key: str, message: m.Message) -> list[Row]:
+    def tell(self, at_s: float, key: str, message: m.Message) -> list[Event]:
         """The rows that follow from one message."""
         owner, _, rest = key.partition("/")
         if rest and self._robot and owner not in ("exec", self._robot):
             return []
-        return [Row(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
+        return [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
 
     def _rows(self, at_s: float, key: str, message: m.Message) -> list[tuple[str, Fields]]:
         match message:

@@ -14,7 +14,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
-from tailor.tools.lockstep.run import SENDER, run_episode
+from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.writing.track import Written, written
 
 
@@ -52,7 +52,7 @@ def write(text: str, hand: Hand, models: Models, seed: int, body: ListenedBody) 
     # a proof of how good a choice is takes time and changes nothing that is measured
     settings = Settings(seed=seed, refinement=replace(hand.refinement, certify_checks=0))
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
-    episode = run_episode(context, body, start, seed)
+    episode = run_lockstep(context, body, start, seed)
     body.command((0.0, 0.0))
     body.advance(round(0.2e9))  # until the last state is out
     told = [message for message in episode.messages if not isinstance(message, JointState)]  # the truth is one, too

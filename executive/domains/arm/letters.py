@@ -30,7 +30,7 @@ SIZES = (0.9, 1.05)  # drawn by the seed: nobody writes a letter twice alike
 HOME = (-0.85, -0.7)  # where the arm rests before it writes
 HOME_SPREAD_RAD = 0.1
 KINDS = ("letter", "word", "stops")
-MOST_LETTERS = 12  # a smaller hand could not be read
+MAX_LETTERS = 12  # a smaller hand could not be read
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def scenarios() -> list[str]:
 
 def is_word(text: str) -> bool:
     """Whether a text can be written: capitals, not too many."""
-    return re.fullmatch(f"[A-Z]{{1,{MOST_LETTERS}}}", text) is not None
+    return re.fullmatch(f"[A-Z]{{1,{MAX_LETTERS}}}", text) is not None
 
 
 def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
@@ -69,7 +69,7 @@ def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, di
     if kind not in KINDS or not is_word(text) or (kind == "letter" and len(text) > 1):
         raise UsageError(
             f"no scenario {scenario!r} in arm, expected letter-A to letter-Z, "
-            f"or word- or stops- and 1 to {MOST_LETTERS} capitals"
+            f"or word- or stops- and 1 to {MAX_LETTERS} capitals"
         )
     writing = _laid_out(text, rng)
     a, b = writing.home

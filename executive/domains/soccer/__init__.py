@@ -5,9 +5,9 @@ from __future__ import annotations
 from importlib import resources
 
 from tailor.executive.domains.soccer.domain import SoccerDomain
-from tailor.executive.domains.soccer.scenario_sampling import draw
+from tailor.executive.domains.soccer.scenario_sampling import sample_scenario
 
-__all__ = ["draw", "make"]
+__all__ = ["make", "sample_scenario"]
 
 
 def make() -> SoccerDomain:

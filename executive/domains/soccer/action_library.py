@@ -17,7 +17,7 @@ from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.rail_grip import RailGrip
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.behind import Behind
-from tailor.executive.domains.soccer.subgoal_risk import BumpRisk
+from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
 from tailor.executive.library import Action, Parameter
 
 FIELD_X_M = 3.5
@@ -61,7 +61,7 @@ APPROACH_BALL = Action(
     "approachBall/duration",
     "approachBall/success",
     detour="goToPose",
-    detour_risk=BumpRisk(_ways),
+    detour_risk=BallContactRisk(_ways),
     arguments=behind_goal,
     spans=behind_goal.spans,
 )

@@ -14,7 +14,7 @@ Point = tuple[float, float]
 TRIES = 10_000  # a declaration that fails so often contradicts itself
 
 
-def draw(
+def sample_scenario(
     declared: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, dict[str, float]], tuple[dict[str, float], ...]]:
     """Start state, places by label, and events, drawn uniformly from what a scenario file declares.

@@ -17,7 +17,7 @@ CLEAR_M = 0.55  # with what noise may add
 
 
 @dataclass(frozen=True, slots=True)
-class BumpRisk:
+class BallContactRisk:
     """See tailor.executive.library.DetourRisk: the risk that the robot touches the ball on its way."""
 
     ways: ArrivalPath  # goToPose's

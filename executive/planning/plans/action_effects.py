@@ -9,7 +9,7 @@ from tailor.executive.planning.plans.state import Objects
 from tailor.executive.planning.plans.validator import affected
 
 
-def progress(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
+def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
     """The facts after a ground action of the domain, e.g. ("dribbleball", "pos2", "pos3"), with all its effects.
 
     Its conditions are not asked for: it has been executed, whatever was remembered of the world before.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from tailor.executive.planning.pddl.language import Domain, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
-from tailor.executive.planning.plans.simulation import Need, rehearse
+from tailor.executive.planning.plans.simulation import Need, simulate
 from tailor.executive.planning.plans.state import Objects, fact_of
 
 
@@ -18,7 +18,7 @@ def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:
     Behind these, what conditional effects need: the conditions of those that a link comes from, and the opposite of
     the conditions of those that would break a link.
     """
-    events = rehearse(plan, domain, problem)
+    events = simulate(plan, domain, problem)
     pending: deque[tuple[Need, int]] = deque()
     for position, event in enumerate(events):
         pending.extend((need, position) for need in reversed(event.needs))

@@ -81,7 +81,7 @@ class _Moment:
     timed: Literal | None = None
 
 
-def rehearse(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
+def simulate(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
     """The events of a plan, timed literals among them, and the goal."""
     schemata = {action.name: action for action in domain.actions}
     steps = {step.id: step for step in plan.steps}

@@ -12,7 +12,7 @@ from tailor.executive.library import Action, Parameter
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 
 
-def with_detour(sequence: ActionSequence, position: int) -> ActionSequence:
+def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
     """The sequence with the detour that the action at `position` names put before it (Algorithm 3, lines 16 to 20).
 
     The detour starts where the action started; its goal is a new label whose parameters are all free, in the default

@@ -9,9 +9,9 @@ import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Models
-from tailor.executive.refinement.assertion.asserted_subgoal import with_detour
-from tailor.executive.refinement.assertion.feasibility_check import Examination
-from tailor.executive.refinement.assertion.subgoal_comparison import Weighing, accepting
+from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
+from tailor.executive.refinement.assertion.feasibility_check import FeasibilityCheck
+from tailor.executive.refinement.assertion.subgoal_comparison import SubgoalComparison, accepting
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
@@ -36,8 +36,8 @@ class Assertion:
         self._settings = settings
         self._rng = rng
         self._position = 0
-        self._examination: Examination | None = None
-        self._weighing: Weighing | None = None
+        self._examination: FeasibilityCheck | None = None
+        self._weighing: SubgoalComparison | None = None
         self._plain = (sequence, 0, 1.0)  # before the first detour to the current action: position, least failure
 
     def advance(self, budget: Budget) -> ActionSequence | Failure | None:
@@ -67,7 +67,9 @@ class Assertion:
         if self._examination is None:
             if not self._depth():
                 self._sequence = accepting(self._sequence, self._position, self._settings.p_fail_assert)
-            self._examination = Examination(self._sequence, self._position, self._models, self._settings, self._rng)
+            self._examination = FeasibilityCheck(
+                self._sequence, self._position, self._models, self._settings, self._rng
+            )
         succeeds = self._examination.advance(budget)
         if succeeds is None:
             return False
@@ -90,10 +92,10 @@ class Assertion:
             return Failure(f"{said} even after {depth} detours")
         if not depth:
             self._plain = (self._sequence, self._position, least)
-        detoured = with_detour(self._sequence, self._position)
+        detoured = with_subgoal(self._sequence, self._position)
         if self._settings.weigh_detours and not depth:
             args = (self._position, self._models, self._settings, self._rng)
-            self._weighing = Weighing(self._sequence, detoured, *args)
+            self._weighing = SubgoalComparison(self._sequence, detoured, *args)
         else:
             self._take(detoured)
         return True
@@ -112,14 +114,14 @@ class Assertion:
         self._sequence = accepting(self._sequence, self._position, risk)
         self._look_at(self._position + 1)
 
-    def _weigh(self, weighing: Weighing, budget: Budget) -> bool:
+    def _weigh(self, weighing: SubgoalComparison, budget: Budget) -> bool:
         """Decide which way is cheaper and take it; False: the budget is spent."""
         pays = weighing.advance(budget)
         if pays is None:
             return False
         self._weighing = None
         if pays:
-            self._take(with_detour(self._sequence, self._position))
+            self._take(with_subgoal(self._sequence, self._position))
         else:
             self._accept(1.0)
         return True

@@ -15,7 +15,7 @@ STARTS = 6  # of the values that succeed are handed on to refinement
 NEAR = 0.05  # of the least failure probability
 
 
-class Examination:
+class FeasibilityCheck:
     """Looks at one action of a sequence; `best_failure` is the least probability of failure seen so far.
 
     The limit is the risk accepted for the action, or else the settings' `p_fail_max`.

@@ -17,7 +17,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
 
 
-class Weighing:
+class SubgoalComparison:
     """A short search on both sides, in turns; resumable.
 
     Args:

@@ -8,7 +8,7 @@ WORTH = 5e-4  # of the value that is to be proven: a rise
 PATIENCE = 4  # turns without one; proofs that got there had no two in a row
 
 
-class Stalling:
+class BoundStagnation:
     """Watches the bound of one proof from turn to turn."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.library import Array
-from tailor.executive.refinement.certificates.bound_stagnation import Stalling
+from tailor.executive.refinement.certificates.bound_stagnation import BoundStagnation
 from tailor.executive.refinement.certificates.box_chain import BoxChain, Costs
 from tailor.executive.refinement.certificates.boxes import NOWHERE, box_of
 from tailor.executive.refinement.certificates.sensitivity import sensitivity
@@ -91,7 +91,7 @@ class Certificate:
         if chain.steps > HOPELESS * self._settings.certify_checks:
             return
         yield from chain.begin()
-        stalling, free = Stalling(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
+        stalling, free = BoundStagnation(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
         for turn in count():
             index = free[turn % len(free)]
             costs = chain.costs()

@@ -9,7 +9,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 
 PROBES = 16  # choices at which each parameter is moved
 PROBE_STEP = 0.05  # of its range
-LEAST_CHANGE_S = 1e-3  # where none is seen
+MIN_CHANGE_S = 1e-3  # where none is seen
 
 
 def sensitivity(objective: SequenceObjective) -> Array:
@@ -23,5 +23,5 @@ def sensitivity(objective: SequenceObjective) -> Array:
     known = np.isfinite(costs[:-1]) & np.isfinite(costs[-1])
     change = np.abs(np.subtract(costs[:-1], costs[-1], out=np.zeros_like(costs[:-1]), where=known))
     mean = change.sum(axis=1) / np.maximum(known.sum(axis=1), 1)
-    weight: Array = np.maximum(mean, LEAST_CHANGE_S) / ranges.width
+    weight: Array = np.maximum(mean, MIN_CHANGE_S) / ranges.width
     return weight

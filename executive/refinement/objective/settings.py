@@ -13,7 +13,7 @@ NOT_NEGATIVE = (
     "k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
     "certify_gap_pct",
 )  # fmt: skip
-MOST_ROWS = 1_000_000  # asked of a model at once, of each parameter: more do not fit into memory
+MAX_ROWS = 1_000_000  # asked of a model at once, of each parameter: more do not fit into memory
 # Of 150 arrivals of AGILO's goToPose: 5 cm and 3 degrees; quantities of other robots are not among these
 ARRIVAL_SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.05), ("v", 0.05))
 SolverName = Literal["auto", "chain", "genetic", "differential"]
@@ -57,8 +57,8 @@ class RefinementSettings:
             if getattr(self, name) < 1:
                 raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at least 1")
         for name in ("batch", "assertion_samples"):
-            if getattr(self, name) > MOST_ROWS:
-                raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at most {MOST_ROWS}")
+            if getattr(self, name) > MAX_ROWS:
+                raise UsageError(f"refinement.{name} is {getattr(self, name)}, expected at most {MAX_ROWS}")
         for quantity, deviation in self.arrival_spread:
             if not (math.isfinite(deviation) and deviation >= 0):
                 raise UsageError(

@@ -21,7 +21,7 @@ Columns = NDArray[np.intp]
 
 FAR_SHARE = 0.125  # of the candidates are drawn from the whole range, so that no valley is missed for ever
 DECADES = 3.5  # near ones step by 10**-3.5 to all of the range
-KEPT = 4  # candidates of a subgoal that survive a check
+N_ELITE = 4  # candidates of a subgoal that survive a check
 
 
 class StageCost(Protocol):
@@ -95,7 +95,7 @@ class ChainSolver(Solver):
         self._blocks = blocks
         self._links = links_of(objective.stages, blocks)
         paired = any(len(a) and len(b) for a, b in pairwise(blocks))
-        self._width = max(KEPT + 2, int(np.sqrt(batch)) if paired else batch // 2)
+        self._width = max(N_ELITE + 2, int(np.sqrt(batch)) if paired else batch // 2)
         self._kept = [self._seeds[:, block] for block in blocks]
 
     def _check(self) -> None:
@@ -114,7 +114,7 @@ class ChainSolver(Solver):
 
     def _keep(self, index: int, drawn: Array, through: Array) -> None:
         """Remember for a subgoal the best value of all and those that the best chains of this check go through."""
-        order = np.argsort(through, kind="stable")[:KEPT]
+        order = np.argsort(through, kind="stable")[:N_ELITE]
         valid = order[np.isfinite(through[order])]
         best = [] if self.best is None else [self.best[self._blocks[index]]]
         if best or len(valid):

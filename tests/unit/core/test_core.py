@@ -9,7 +9,7 @@ import pytest
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import checked
-from tailor.executive.core.context import LONGEST_GOAL, Settings, check_goal
+from tailor.executive.core.context import MAX_GOAL_BYTES, Settings, check_goal
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
@@ -147,7 +147,7 @@ def test_unsolvable_goal_is_told_once_and_nothing_moves():
 
 def test_a_goal_too_long_to_be_told_is_refused_and_the_longest_one_is_told():
     context = line_context()
-    longest = GOAL + " " * (LONGEST_GOAL - len(GOAL))
+    longest = GOAL + " " * (MAX_GOAL_BYTES - len(GOAL))
     assert check_goal(context, longest) == ""
     assert check_goal(context, longest + " ") == "the goal has 8001 bytes, expected at most 8000"
     run = drive(context, goal=longest, ticks=5)

@@ -11,7 +11,7 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.belief import unknown
-from tailor.executive.refinement.assertion.asserted_subgoal import with_detour
+from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tests.support.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
@@ -72,7 +72,7 @@ def test_detour_that_may_spoil_its_action_costs_what_a_failure_costs() -> None:
     costs = []
     for approach in (APPROACH, risky):
         given = sequence([approach, DRIBBLE], [start, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}, start])
-        detoured = with_detour(given, 0)
+        detoured = with_subgoal(given, 0)
         objective = SequenceObjective(detoured.actions[:1], detoured.variables, MODELS, settings)
         assert objective.stages[0].predict(np.zeros((1, 4))).failure[0] == 0.0, "alone it spoils nothing"
         objective = SequenceObjective(detoured.actions[:2], detoured.variables, MODELS, settings)

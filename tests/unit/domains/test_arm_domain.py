@@ -15,7 +15,7 @@ from tailor.executive.refinement.instantiation import instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import JointState, Sample
 from tailor.simnodes.declaration import declaration
-from tailor.simnodes.powercube.physique import Physique
+from tailor.simnodes.powercube.physique import PhysicalParameters
 
 ARM = domains.load("arm")
 ALPHABET = [chr(code) for code in range(ord("A"), ord("Z") + 1)]
@@ -49,7 +49,7 @@ def test_every_letter_lies_where_reaches_were_learned(letter, seed):
     assert (np.abs(points).max(axis=0) < (PAN_RAD, LIFT_RAD)).all()
 
 
-@given(st.text("ABCDEFGHIJKLMNOPQRSTUVWXYZ", min_size=1, max_size=letters.MOST_LETTERS), st.integers(0, 50))
+@given(st.text("ABCDEFGHIJKLMNOPQRSTUVWXYZ", min_size=1, max_size=letters.MAX_LETTERS), st.integers(0, 50))
 def test_every_word_lies_where_reaches_were_learned(word, seed):
     scenario, _ = load(f"word-{word}", seed)
     assert max(abs(place["a"]) for place in scenario.places.values()) < PAN_RAD
@@ -137,4 +137,4 @@ def test_the_executives_limits_are_the_drivers():
     assert declared.command_topic == ARM.command_topic
     assert declared.axes == tuple(axis.name for axis in ARM.axes)
     assert [(limit.lower, limit.upper) for limit in declared.limits] == [(axis.lower, axis.upper) for axis in ARM.axes]
-    assert Physique().velocity_max_radps == ARM.axes[0].upper
+    assert PhysicalParameters().velocity_max_radps == ARM.axes[0].upper

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tailor.executive import domains
 from tailor.executive.actions.arrival_path import ArrivalPath, stops
-from tailor.executive.domains.soccer.subgoal_risk import BumpRisk
+from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
 
 WAYS = ArrivalPath(v_max_mps=0.9)
 STOPPING = replace(WAYS, stop_s=1.0)
@@ -78,7 +78,7 @@ def test_ball_on_the_way_of_a_detour_is_a_certain_bump(start, share, vg):
     assume(path.pieces[0][1] < 3.0)
     action = np.array([0.0, 0.0, 0.0, 0.0, ball[0], ball[1], 0.0, 0.0])
     detour = np.array([[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, vg]])
-    assert BumpRisk(WAYS)(detour, action)[0] == 1.0
+    assert BallContactRisk(WAYS)(detour, action)[0] == 1.0
 
 
 def test_bump_risk_knows_the_detours_of_the_domain():

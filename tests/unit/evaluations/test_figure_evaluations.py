@@ -11,8 +11,8 @@ import pytest
 from tailor.schemas.messages import ActionFinished
 from tailor.tools.evaluations.assertion import figure15
 from tailor.tools.evaluations.assertion.figure16 import assertion_task, variants
-from tailor.tools.evaluations.assertion.subgoal_map import ground_of
-from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_ground
+from tailor.tools.evaluations.assertion.subgoal_map import subgoal_map_of
+from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.refinement import figure11
 from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
@@ -113,7 +113,7 @@ def asserted():
     _, asserting = variants()
     for seed in range(TRAINING_SEED, TRAINING_SEED + 40):
         watched, context = watch(assertion_task(""), asserting, seed)
-        ground = ground_of(watched.subgoals[0], context) if watched.subgoals else None
+        ground = subgoal_map_of(watched.subgoals[0], context) if watched.subgoals else None
         if ground is not None:
             return watched, ground
     raise AssertionError("no subgoal was asserted in 40 approaches")
@@ -134,7 +134,7 @@ def test_the_chosen_subgoal_costs_what_was_predicted_for_it(asserted):
 
 def test_ground_is_drawn(asserted, tmp_path):
     watched, ground = asserted
-    draw_ground(ground, (0.0, 0.0), [watched.track] * 2, "start", tmp_path / "ground.png")
+    draw_subgoal_map(ground, (0.0, 0.0), [watched.track] * 2, "start", tmp_path / "ground.png")
     assert (tmp_path / "ground.png").stat().st_size > 10_000
 
 

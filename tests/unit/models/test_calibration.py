@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tailor.models.training import scores
-from tailor.models.training.calibration import LEAST_POLICY, calibrated
+from tailor.models.training.calibration import MIN_POLICY_EPISODES, calibrated
 
 
 def errors(count: int, deviation: float, seed: int) -> np.ndarray:
@@ -31,6 +31,6 @@ def test_on_policy_errors_that_are_larger_widen_the_interval_and_the_card_says_b
 
 
 def test_a_few_on_policy_episodes_decide_nothing() -> None:
-    on_policy = np.arange(500) < LEAST_POLICY - 1
+    on_policy = np.arange(500) < MIN_POLICY_EPISODES - 1
     assert calibrated(errors(500, 0.5, 3), np.full(500, 0.5), on_policy)["interval90_on"] == "random"
     assert calibrated(errors(20, 0.5, 3), np.full(20, 0.5), np.ones(20, bool))["interval90_on"] == "on-policy"

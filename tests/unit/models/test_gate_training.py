@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tailor.executive.composition import Order, compose, load_models, provenance, recompose
+from tailor.executive.composition import ExecutiveConfig, build_context, load_models, provenance, rebuild_context
 from tailor.executive.core.context import Settings
 from tailor.executive.refinement.gate import SITUATION
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models import runtime
 from tailor.models.cards.card import card_path, read_card, write_card
-from tailor.models.export.gate_publishing import AboutBenefit, publish_benefit, withdraw_benefit
-from tailor.models.training.gate_training import Pairs, TrainedBenefit, train_benefit
+from tailor.models.export.gate_publishing import GateProvenance, publish_gate, withdraw_gate
+from tailor.models.training.gate_training import Pairs, TrainedGate, train_gate
 from tailor.models.training.gate_trees import LEARNERS
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import RefinementReport
@@ -41,26 +41,26 @@ def pairs(seed: int = 0, count: int = 300) -> Pairs:
     return Pairs(situations, np.full(count, 10.0), np.where(lost, 10.5, 9.0))
 
 
-def about(models, **changes) -> AboutBenefit:
+def about(models, **changes) -> GateProvenance:
     loaded = {**models.durations, **models.successes}
     made_with = {name: model.card["sha256"] for name, model in loaded.items()}
-    told = AboutBenefit(
+    told = GateProvenance(
         "agilo", SITUATION, (KIND,), made_with, {"horizon": 2}, {"seed": 1}, "forest", 1, "made by hand"
     )
     return dataclasses.replace(told, **changes)
 
 
 @pytest.fixture(scope="module")
-def trained() -> TrainedBenefit:
-    return train_benefit(pairs(), SITUATION, "tree", 1)
+def trained() -> TrainedGate:
+    return train_gate(pairs(), SITUATION, "tree", 1)
 
 
 @pytest.fixture
-def zoo(tmp_path: Path, trained: TrainedBenefit) -> Path:
+def zoo(tmp_path: Path, trained: TrainedGate) -> Path:
     """The shipped models with a tree learned from made-up pairs."""
     folder = tmp_path / "zoo"
     shutil.copytree(runtime.ZOO / "agilo", folder / "agilo")
-    publish_benefit(folder, pairs(), trained, about(load_models("agilo", str(folder))))
+    publish_gate(folder, pairs(), trained, about(load_models("agilo", str(folder))))
     return folder
 
 
@@ -70,7 +70,7 @@ def tree_of(zoo: Path) -> Path:
 
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_what_can_be_learned_is_learned(learner: str) -> None:
-    trained = train_benefit(pairs(), SITUATION, learner, 1)
+    trained = train_gate(pairs(), SITUATION, learner, 1)
     assert trained.test["right_pct"] > 85
     assert trained.test["slower_pct"] < trained.test["ungated"]["slower_pct"] / 2
     assert trained.test["improvement_pct"] >= trained.test["ungated"]["improvement_pct"]
@@ -81,14 +81,14 @@ def test_what_can_be_learned_is_learned(learner: str) -> None:
 def test_what_cannot_be_learned_costs_nothing() -> None:
     rng = np.random.default_rng(0)
     noise = Pairs(rng.uniform(0, 1, (400, len(SITUATION))), np.full(400, 10.0), rng.normal(9.5, 0.5, 400))
-    test = train_benefit(noise, SITUATION, "forest", 1).test
+    test = train_gate(noise, SITUATION, "forest", 1).test
     assert test["improvement_pct"] >= test["ungated"]["improvement_pct"] - 0.3
 
 
 def test_training_is_reproducible(tmp_path: Path) -> None:
     told = about(load_models("agilo"))
     paths = [
-        publish_benefit(tmp_path / name, pairs(), train_benefit(pairs(), SITUATION, "forest", 1), told)
+        publish_gate(tmp_path / name, pairs(), train_gate(pairs(), SITUATION, "forest", 1), told)
         for name in ("one", "other")
     ]
     assert len({path.read_bytes() for path in paths}) == 1
@@ -97,9 +97,9 @@ def test_training_is_reproducible(tmp_path: Path) -> None:
 
 def test_too_few_pairs_or_an_unknown_learner_are_refused() -> None:
     with pytest.raises(UsageError, match="50 pairs of episodes, expected at least 100"):
-        train_benefit(pairs(count=50), SITUATION, "forest", 1)
+        train_gate(pairs(count=50), SITUATION, "forest", 1)
     with pytest.raises(UsageError, match="learner 'oracle' is unknown for benefit"):
-        train_benefit(pairs(), SITUATION, "oracle", 1)
+        train_gate(pairs(), SITUATION, "oracle", 1)
 
 
 def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
@@ -138,7 +138,7 @@ def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes
     assert load_models("agilo", str(tmp_path), gated=True).benefit.card["sha256"] == tree.card["sha256"]
 
 
-def test_a_published_tree_says_what_its_learner_said(zoo: Path, trained: TrainedBenefit) -> None:
+def test_a_published_tree_says_what_its_learner_said(zoo: Path, trained: TrainedGate) -> None:
     tree = load_models("agilo", str(zoo), gated=True).benefit
     fresh = pairs(1).situations
     assert tree.slower(fresh) == pytest.approx(trained.trees.risk(fresh), abs=1e-6)
@@ -175,8 +175,8 @@ def test_a_flipped_bit_of_the_tree_is_refused(zoo: Path) -> None:
         load_models("agilo", str(zoo), gated=True)
 
 
-def test_a_tree_that_asks_for_something_else_is_refused(zoo: Path, trained: TrainedBenefit) -> None:
-    publish_benefit(zoo, pairs(), trained, about(load_models("agilo", str(zoo)), names=("luck", *SITUATION[1:])))
+def test_a_tree_that_asks_for_something_else_is_refused(zoo: Path, trained: TrainedGate) -> None:
+    publish_gate(zoo, pairs(), trained, about(load_models("agilo", str(zoo)), names=("luck", *SITUATION[1:])))
     with pytest.raises(UsageError, match=r"asks for luck.*expected gain_s"):
         load_models("agilo", str(zoo), gated=True)
 
@@ -193,9 +193,9 @@ def test_models_commands_know_the_tree(zoo: Path, capsys) -> None:
 
 
 def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
-    assert withdraw_benefit(zoo, "agilo")
+    assert withdraw_gate(zoo, "agilo")
     assert load_models("agilo", str(zoo), gated=True).benefit is None
-    assert not withdraw_benefit(zoo, "agilo")
+    assert not withdraw_gate(zoo, "agilo")
 
 
 def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(zoo: Path) -> None:
@@ -205,33 +205,33 @@ def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(z
     assert "`tailor train-benefit agilo` makes it" in console.export_text()
 
 
-def gated_order(zoo: Path, gate: bool = True) -> Order:
+def gated_order(zoo: Path, gate: bool = True) -> ExecutiveConfig:
     settings = Settings(seed=4, refinement=RefinementSettings(benefit_gate=gate))
-    return Order("soccer", "approach-dribble", settings, str(zoo))
+    return ExecutiveConfig("soccer", "approach-dribble", settings, str(zoo))
 
 
 def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_without(zoo: Path) -> None:
-    with_tree = provenance(order := gated_order(zoo), compose(order, "ab" * 16))
-    without = provenance(order := gated_order(zoo, gate=False), compose(order, "ab" * 16))
+    with_tree = provenance(order := gated_order(zoo), build_context(order, "ab" * 16))
+    without = provenance(order := gated_order(zoo, gate=False), build_context(order, "ab" * 16))
     assert with_tree["models"]["refinement/benefit"] == read_card(card_path(tree_of(zoo)))["sha256"]
-    assert recompose(with_tree).models.benefit is not None
-    assert recompose(without).models.benefit is None
+    assert rebuild_context(with_tree).models.benefit is not None
+    assert rebuild_context(without).models.benefit is None
     del without["order"]["settings"]["refinement"]["benefit_gate"]  # recorded before there were trees
-    assert recompose(without).models.benefit is None
-    withdraw_benefit(zoo, "agilo")
+    assert rebuild_context(without).models.benefit is None
+    withdraw_gate(zoo, "agilo")
     with pytest.raises(UsageError, match="refinement/benefit is missing"):
-        recompose(with_tree)
+        rebuild_context(with_tree)
 
 
 def test_a_run_that_was_advised_verifies_bit_for_bit(zoo: Path, tmp_path: Path, monkeypatch) -> None:
     fearful = read_card(card_path(tree_of(zoo)))
     write_card(card_path(tree_of(zoo)), {**fearful, "threshold": 0.0})  # always keeps greedy
-    monkeypatch.setattr(renew, "Order", lambda *words: dataclasses.replace(Order(*words), zoo=str(zoo)))
+    monkeypatch.setattr(renew, "Order", lambda *words: dataclasses.replace(ExecutiveConfig(*words), zoo=str(zoo)))
     renew.record(renew.Golden("soccer", "approach-dribble", 2), tmp_path / "run.mcap")
     runs = RecordedRuns(tmp_path / "run.mcap")
     said = [m.message for m in _reports(tmp_path / "run.mcap")]
     assert any(report.kept_greedy for report in said)
-    verdict = verify(runs, runs.runs[0], recompose(runs.runs[0].provenance))
+    verdict = verify(runs, runs.runs[0], rebuild_context(runs.runs[0].provenance))
     assert verdict.difference is None
 
 

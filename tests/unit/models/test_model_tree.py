@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn.utils.estimator_checks import check_estimator
 
-from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
@@ -17,7 +17,7 @@ ESTIMATORS = [
     BaggedModelTrees(trees=3),
     FailureTree(),
     FailureForest(trees=5),
-    TaughtForest(trees=3, rounds=20),
+    DistilledForest(trees=3, rounds=20),
     DistilledFailureTree(trees=5),
     DistilledModelTree(trees=3),
 ]

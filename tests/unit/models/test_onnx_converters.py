@@ -8,7 +8,7 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 
 from tailor.models.export import onnx_converters
-from tailor.models.failure.distilled_forest import TaughtForest
+from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
@@ -41,7 +41,7 @@ def test_a_pipeline_with_a_model_tree_converts() -> None:
     assert np.quantile(off, 0.99) <= 1e-4  # scaling in single precision may move a row over a threshold
 
 
-@pytest.mark.parametrize("model", [FailureTree(cost_ratio=5), FailureForest(trees=7, cost_ratio=2), TaughtForest()])
+@pytest.mark.parametrize("model", [FailureTree(cost_ratio=5), FailureForest(trees=7, cost_ratio=2), DistilledForest()])
 def test_failure_models_convert(model) -> None:
     model.fit(X, (X[:, 0] + RNG.normal(0, 0.3, len(X)) > 0).astype(int))
     label, probability = run(model, options={"zipmap": False})

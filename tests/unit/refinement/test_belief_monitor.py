@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tailor.executive.library import Conflict, Interval
-from tailor.executive.refinement.belief_monitor import Watch
+from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import Failure, Pattern, instantiate
 from tailor.executive.refinement.objective.sequence import InstantiatedAction
 from tests.support.synthetic_models import LIBRARY
@@ -70,13 +70,13 @@ START = {"robot": {"x": 0.0, "y": 0.0}, "ball": {"x": 3.0, "y": 0.0}, "final": {
 def test_watch_says_what_a_new_instantiation_would(belief):
     plan, domain = paper_plan(), ShiftingDomain()
     then = instantiate(plan, domain, START, None)
-    watch = Watch(Pattern(plan, domain, None), then)
+    watch = BeliefMonitor(Pattern(plan, domain, None), then)
     assert watch.moved(belief) == places_moved_by_definition(plan, domain, then, belief)
 
 
 def test_watch_notices_a_moved_ball_but_not_one_that_is_out_of_sight():
     plan, domain = paper_plan(), ShiftingDomain()
-    watch = Watch(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
+    watch = BeliefMonitor(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
     assert not watch.moved(START)
     assert watch.moved({**START, "ball": {"x": 3.0, "y": 0.2}})
     assert not watch.moved({**START, "ball": None})
@@ -85,7 +85,7 @@ def test_watch_notices_a_moved_ball_but_not_one_that_is_out_of_sight():
 def test_watch_asks_for_no_more_than_the_values_with_a_tolerance():
     plan, domain = paper_plan(), ShiftingDomain()
     sequence = instantiate(plan, domain, START, None)
-    watch, domain.asked = Watch(Pattern(plan, domain, None), sequence), 0
+    watch, domain.asked = BeliefMonitor(Pattern(plan, domain, None), sequence), 0
     watch.moved(START)
     watched = {
         v for a in sequence.actions for p, v in zip(a.action.parameters, a.variables, strict=True) if p.tolerance
@@ -100,4 +100,4 @@ def test_a_detour_is_not_watched():
     first = sequence.actions[0]
     detour = InstantiatedAction(replace(first.action, name="goToPose"), first.step, first.variables, asserted=True)
     alone = replace(sequence, actions=(detour,))
-    assert not Watch(pattern, alone).moved({**START, "ball": {"x": 9.0, "y": 9.0}})
+    assert not BeliefMonitor(pattern, alone).moved({**START, "ball": {"x": 9.0, "y": 9.0}})

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mcap.writer import Writer
 
-from tailor.executive.composition import recompose
+from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.recordings.mcap_scan import MAGIC
 from tailor.runtime.recordings.recording import open_recording
@@ -129,7 +129,7 @@ def with_provenance(monkeypatch, text):
 def test_a_run_that_does_not_say_what_it_was_made_of_is_refused_in_one_line(monkeypatch, text):
     with_provenance(monkeypatch, text)
     with pytest.raises(UsageError, match="provenance"):
-        recompose(RecordedRuns(GOLDEN).runs[0].provenance)
+        rebuild_context(RecordedRuns(GOLDEN).runs[0].provenance)
 
 
 @pytest.mark.parametrize("name", ["order", "sender", "stamp_offset_ns", "models", "machine"])
@@ -139,7 +139,7 @@ def test_every_part_of_a_provenance_is_checked(name, value):
     if name == "sender" and value == "x":
         return
     with pytest.raises(UsageError, match=name):
-        recompose({**said, name: value})
+        rebuild_context({**said, name: value})
 
 
 def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):

@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.runtime.budget import ClockBudget
-from tailor.runtime.loop import Loop, Turn
+from tailor.runtime.loop import Loop, Period
 
 MS = 1_000_000
 
@@ -22,17 +22,17 @@ class SteppedClock:
 def test_turns_come_at_absolute_deadlines_whatever_the_work_takes():
     clock = SteppedClock(7 * MS)
     loop = Loop(100 * MS, clock)
-    assert loop.next_turn() == Turn(7 * MS, 7 * MS, 0)
+    assert loop.wait_for_next_period() == Period(7 * MS, 7 * MS, 0)
     for k, work in enumerate([0, 30, 99, 60], start=1):
         clock.now += work * MS
-        assert loop.next_turn() == Turn((7 + 100 * k) * MS, (7 + 100 * k) * MS, 0)
+        assert loop.wait_for_next_period() == Period((7 + 100 * k) * MS, (7 + 100 * k) * MS, 0)
 
 
 def test_oversleeping_is_lateness_and_does_not_add_up():
     clock = SteppedClock(0, oversleep_ns=3 * MS)
     loop = Loop(100 * MS, clock)
-    loop.next_turn()
-    turns = [loop.next_turn() for _ in range(5)]
+    loop.wait_for_next_period()
+    turns = [loop.wait_for_next_period() for _ in range(5)]
     assert [t.lateness_ns for t in turns] == [3 * MS] * 5
     assert turns[-1].deadline_ns == 500 * MS
 
@@ -40,30 +40,30 @@ def test_oversleeping_is_lateness_and_does_not_add_up():
 def test_an_overrun_skips_whole_periods_and_keeps_the_phase():
     clock = SteppedClock()
     loop = Loop(100 * MS, clock)
-    loop.next_turn()
+    loop.wait_for_next_period()
     clock.now = 250 * MS
-    assert loop.next_turn() == Turn(200 * MS, 250 * MS, 1)
-    assert loop.next_turn() == Turn(300 * MS, 300 * MS, 0)
+    assert loop.wait_for_next_period() == Period(200 * MS, 250 * MS, 1)
+    assert loop.wait_for_next_period() == Period(300 * MS, 300 * MS, 0)
     clock.now = 1000 * MS
-    assert loop.next_turn() == Turn(1000 * MS, 1000 * MS, 6)
+    assert loop.wait_for_next_period() == Period(1000 * MS, 1000 * MS, 6)
     assert (loop.overruns, loop.skipped) == (2, 7)
 
 
 def test_a_tick_that_just_fills_its_period_skips_nothing():
     clock = SteppedClock()
     loop = Loop(100 * MS, clock)
-    loop.next_turn()
+    loop.wait_for_next_period()
     clock.now = 199 * MS
-    assert loop.next_turn() == Turn(100 * MS, 199 * MS, 0)
+    assert loop.wait_for_next_period() == Period(100 * MS, 199 * MS, 0)
     assert loop.skipped == 0
 
 
 def test_a_clock_that_goes_back_does_not_break_the_loop():
     clock = SteppedClock(1000 * MS)
     loop = Loop(100 * MS, clock)
-    loop.next_turn()
+    loop.wait_for_next_period()
     clock.now = 500 * MS
-    assert loop.next_turn() == Turn(1100 * MS, 1100 * MS, 0)
+    assert loop.wait_for_next_period() == Period(1100 * MS, 1100 * MS, 0)
 
 
 def test_a_period_must_be_positive():

@@ -10,13 +10,13 @@ import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap_scan import MAGIC, Account, scan
-from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording import open_recording
-from tailor.runtime.recordings.recording_metadata import Facts
+from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
 from tailor.runtime.recordings.sink import Sink
 from tailor.runtime.recordings.snapshot import Alarm, Ring
@@ -48,7 +48,7 @@ def odometry(sequence, **changes):
 
 
 def write_tape(path, count=50, chunks=5):
-    tape = Tape(path, {"made": {"by": "test"}})
+    tape = McapWriter(path, {"made": {"by": "test"}})
     for sequence in range(1, count + 1):
         tape.write(odometry(sequence), sequence * S)
         if sequence % (count // chunks) == 0:
@@ -69,7 +69,7 @@ def test_a_tape_reads_back_exactly_what_went_in(tmp_path):
 
 
 def test_an_unsigned_message_of_a_known_key_gets_its_type_from_the_table(tmp_path):
-    tape = Tape(tmp_path / "a.mcap", {})
+    tape = McapWriter(tmp_path / "a.mcap", {})
     tape.write(odometry(1, attachment=None, encoding="zenoh/bytes"), 7)
     tape.write(raw(EStop(True), key="some/where", attachment=b"?", encoding="text/plain"), 8)
     tape.close()
@@ -199,12 +199,12 @@ def test_a_full_disk_leaves_whole_blocks_and_the_rest_is_written_when_there_is_s
 
 
 def make_recorder(tmp_path, intake, wanted=EVERYTHING, **limits):
-    return Recorder(tmp_path / "r.mcap", intake, wanted, Limits(**limits), Facts("1", 0))
+    return Recorder(tmp_path / "r.mcap", intake, wanted, Limits(**limits), RecordingMetadata("1", 0))
 
 
 def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 2000)
-    intake = Intake()
+    intake = IngestQueue()
     recorder = make_recorder(tmp_path, intake)
     real = os.write
 
@@ -229,7 +229,7 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
 
 
 def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
-    intake = Intake(most_bytes=2000)
+    intake = IngestQueue(most_bytes=2000)
     for sequence in range(100):
         intake.put(odometry(sequence))
     kept = len(intake.take())
@@ -238,7 +238,7 @@ def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
 
 
 def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
-    intake = Intake()
+    intake = IngestQueue()
     recorder = make_recorder(tmp_path, intake, most_bytes=1)
     for sequence in range(1, 4):
         intake.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
@@ -253,7 +253,7 @@ def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
 
 
 def test_deletes_and_unwanted_topics_are_not_recorded(tmp_path):
-    intake = Intake()
+    intake = IngestQueue()
     recorder = make_recorder(tmp_path, intake, selection(["odom"], []))
     intake.put(odometry(1, is_put=False))
     intake.put(raw(EStop(True), 1, "estop"))
@@ -327,8 +327,8 @@ def test_a_ring_is_bounded_in_bytes_too(tmp_path):
 
 
 def test_a_snapshot_of_nothing_is_refused(tmp_path):
-    intake = Intake()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake = IngestQueue()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     assert not recorder.ask("by hand", 0)
     recorder.turn(0)
     intake.put(odometry(1))
@@ -352,8 +352,8 @@ def full_disk(monkeypatch):
 
 
 def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
-    intake = Intake()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake = IngestQueue()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     intake.put(odometry(1))
     recorder.turn(0)
     full_disk(True)
@@ -369,8 +369,8 @@ def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_writ
 
 def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
     (tmp_path / "s_000.mcap").write_text("of yesterday")
-    intake = Intake()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake = IngestQueue()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     intake.put(odometry(1))
     recorder.turn(0)
     for k in (1, 2):
@@ -391,8 +391,8 @@ def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_p
 
 
 def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
-    intake = Intake()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), Facts("1", 0))
+    intake = IngestQueue()
+    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     for k, message in enumerate([odometry(1), status("READY", 2), status("FAULT", 3)]):
         intake.put(message)
         recorder.turn(k * S // 10)

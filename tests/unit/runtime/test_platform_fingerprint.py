@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tailor.runtime.platform_fingerprint import KIND, contrast, machine, same_kind
+from tailor.runtime.platform_fingerprint import KIND, contrast, platform_fingerprint, same_kind
 
 ROOT = Path(__file__).resolve().parents[3]
 CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "features" / "intervals.py"]
@@ -37,8 +37,8 @@ def test_core_calls_what_varies_with_avx_512_in_known_places_only():
 
 
 def test_a_machine_is_of_its_own_kind_and_describes_itself():
-    here = machine()
-    assert here == machine()
+    here = platform_fingerprint()
+    assert here == platform_fingerprint()
     assert len(here["arithmetic"]) == 12
     assert here["cpu"]
     assert same_kind(here, here)
@@ -47,17 +47,17 @@ def test_a_machine_is_of_its_own_kind_and_describes_itself():
 
 @pytest.mark.parametrize("name", KIND)
 def test_another_arithmetic_or_version_is_another_kind(name):
-    here, there = machine(), {**machine(), name: "another"}
+    here, there = platform_fingerprint(), {**platform_fingerprint(), name: "another"}
     assert not same_kind(there, here)
     assert contrast(there, here) == f"{name} another against {name} {here[name]}"
 
 
 def test_another_cpu_that_computes_alike_is_the_same_kind_but_is_told():
-    here, there = machine(), {**machine(), "cpu": "x86_64 fma"}
+    here, there = platform_fingerprint(), {**platform_fingerprint(), "cpu": "x86_64 fma"}
     assert same_kind(there, here)
     assert contrast(there, here) == f"cpu x86_64 fma against cpu {here['cpu']}"
 
 
 def test_a_recording_that_does_not_know_its_machine_is_compared_exactly():
-    assert same_kind({}, machine())
-    assert contrast({}, machine()) == ""
+    assert same_kind({}, platform_fingerprint())
+    assert contrast({}, platform_fingerprint()) == ""

@@ -11,7 +11,7 @@ import pytest
 
 from tailor.runtime.processes.child import Child, stopped_in_order
 from tailor.runtime.processes.restart import Restart
-from tailor.runtime.processes.supervisor import STARTUP_NS, Charge, Supervisor
+from tailor.runtime.processes.supervisor import STARTUP_NS, ProcessSpec, Supervisor
 from tailor.runtime.stopping import SIGNALS, stop_on_signals
 from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
@@ -64,7 +64,7 @@ def supervisor():
 
 
 def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
-    supervisor.begin(Charge("executive", ["x"]), 0)
+    supervisor.begin(ProcessSpec("executive", ["x"]), 0)
     FakeChild.made[0].code = -9
     supervisor.look(1 * S)
     supervisor.look(1 * S + 199 * MS)
@@ -76,7 +76,7 @@ def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
 
 
 def test_a_crash_loop_is_given_up(supervisor):
-    supervisor.begin(Charge("executive", ["x"]), 0)
+    supervisor.begin(ProcessSpec("executive", ["x"]), 0)
     for k in range(1, 400):
         FakeChild.made[-1].code = 1
         supervisor.look(k * 100 * MS)
@@ -87,7 +87,7 @@ def test_a_crash_loop_is_given_up(supervisor):
 
 @pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
 def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, code):
-    supervisor.begin(Charge("sim", ["x"], restarts=restarts), 0)
+    supervisor.begin(ProcessSpec("sim", ["x"], restarts=restarts), 0)
     FakeChild.made[0].code = code
     supervisor.look(1)
     supervisor.look(10 * S)
@@ -95,7 +95,7 @@ def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, cod
 
 
 def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
-    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     for now_ns in range(0, 30 * S, 50 * MS):
         if now_ns % S == 0:
             supervisor.heard("executive", now_ns)
@@ -108,7 +108,7 @@ def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(superv
 
 @pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
 def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervisor, paused_s):
-    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     supervisor.heard("executive", S)
     supervisor.look(S + 100 * MS)
     on_ns = S + 100 * MS + round(paused_s * S)
@@ -120,7 +120,7 @@ def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervis
 
 
 def test_a_child_that_is_gone_for_good_is_told(supervisor):
-    supervisor.begin(Charge("record", ["x"], restarts=False), 0)
+    supervisor.begin(ProcessSpec("record", ["x"], restarts=False), 0)
     FakeChild.made[0].code = -9
     supervisor.look(S)
     supervisor.look(2 * S)
@@ -128,7 +128,7 @@ def test_a_child_that_is_gone_for_good_is_told(supervisor):
 
 
 def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
-    supervisor.begin(Charge("executive", ["x"], silence_ns=S), 0)
+    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     supervisor.look(STARTUP_NS)
     assert not FakeChild.made[0].killed
     supervisor.look(STARTUP_NS + 1)

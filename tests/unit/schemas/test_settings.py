@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tailor.executive.composition import Order
+from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.deployment import Deployment
@@ -58,5 +58,5 @@ def test_all_mistakes_are_told_at_once():
 def test_an_order_survives_its_way_through_json():
     import dataclasses
 
-    order = Order("soccer", "approach-dribble")
-    assert from_table(Order, json.loads(json.dumps(dataclasses.asdict(order))), "x") == order
+    order = ExecutiveConfig("soccer", "approach-dribble")
+    assert from_table(ExecutiveConfig, json.loads(json.dumps(dataclasses.asdict(order))), "x") == order

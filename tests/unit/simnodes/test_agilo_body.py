@@ -14,7 +14,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.agilo import body as agilo_body
 from tailor.simnodes.agilo import firmware, scene
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.simnodes.agilo.physique import Physique, ball_in_rail_m
+from tailor.simnodes.agilo.physique import PhysicalParameters, ball_in_rail_m
 from tailor.simnodes.agilo.sensing import Sensing
 from tailor.simnodes.body import STEP_NS
 
@@ -166,7 +166,7 @@ def test_rail_holds_the_ball_in_gentle_turns_only(omega, held):
 
 
 def test_executive_knows_the_body_that_is_simulated():
-    assert ball_in_rail_m(Physique()) == pytest.approx(robot.IN_RAIL_M)
+    assert ball_in_rail_m(PhysicalParameters()) == pytest.approx(robot.IN_RAIL_M)
     assert (firmware.V_MAX_MPS, firmware.OMEGA_MAX_RADPS) == (robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
-from tailor.simnodes.declaration import Declaration, declaration
+from tailor.simnodes.declaration import DriverSpec, declaration
 from tailor.simnodes.driver import Driver, command_values
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.services import Services
@@ -15,7 +15,7 @@ from tests.support.fake_body import FakeBody
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000
-DECLARED = Declaration("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
+DECLARED = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
 
 
 def arm(by=A, at_ns=0, **changes):
@@ -91,7 +91,7 @@ def test_joint_commands_go_by_name():
 
 
 def test_agilo_declares_its_limits_and_the_time_out():
-    assert declaration("agilo") == Declaration("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
+    assert declaration("agilo") == DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
 
 
 def make_world(*events):
@@ -128,7 +128,7 @@ def test_a_world_steps_in_whole_body_steps():
         make_world().advance(1)
 
 
-class Asked:
+class RequestSource:
     def __init__(self, text):
         self.text, self.answer = text, None
 
@@ -149,7 +149,7 @@ class Queue:
 
 def ask(name, text, paused=False):
     resets = []
-    asked = Asked(text)
+    asked = RequestSource(text)
     services = Services(make_world(), {name: Queue(asked)}, on_reset=lambda: resets.append(1))
     services.paused = paused
     services.answer()

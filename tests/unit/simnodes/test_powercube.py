@@ -9,7 +9,7 @@ import pytest
 
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.simnodes.powercube.motor import PERIOD_S, Motor
-from tailor.simnodes.powercube.physique import NAMES, Physique
+from tailor.simnodes.powercube.physique import NAMES, PhysicalParameters
 from tests.support.cpu_time import least_cpu_s
 
 TICK_NS = 100_000_000
@@ -71,7 +71,7 @@ def test_set_points_are_followed_within_three_hundredths():
 
 @pytest.mark.parametrize("command", [(1e9, -1e9), (-1e9, 1e9)])
 def test_no_command_breaks_a_limit(command):
-    made, limits = body(), Physique()
+    made, limits = body(), PhysicalParameters()
     made.command(command)
     for _ in range(60):
         made.advance(TICK_NS)
@@ -81,7 +81,7 @@ def test_no_command_breaks_a_limit(command):
 
 
 def test_a_motor_never_takes_more_than_its_current_limit():
-    limits = Physique()
+    limits = PhysicalParameters()
     motor = Motor(limits)
     motor.accept(1.0)
     taken = [motor.tick(0.0) for _ in range(1000)]  # jammed
@@ -92,7 +92,7 @@ def test_a_motor_never_takes_more_than_its_current_limit():
 
 
 def test_a_motor_ramps_its_set_point_within_the_acceleration_limit():
-    limits = Physique()
+    limits = PhysicalParameters()
     motor = Motor(limits)
     motor.accept(1.2)
     speeds = []
@@ -106,7 +106,7 @@ def test_a_motor_ramps_its_set_point_within_the_acceleration_limit():
 def test_encoders_say_whole_counts_and_all_six_joints():
     readings = follow(body(2), [(0.3, 0.2)] * 5)
     states = [reading.message for reading in readings if reading.topic == "joint_states"]
-    count = Physique().count_rad
+    count = PhysicalParameters().count_rad
     assert len(states) == 25
     for state in states:
         assert state.names == NAMES

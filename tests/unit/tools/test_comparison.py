@@ -9,7 +9,7 @@ import pytest
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.session import encoding_of
-from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand
 from tailor.schemas.own import example
@@ -24,7 +24,7 @@ class Script:
     """Writes a recording, message by message."""
 
     def __init__(self, path):
-        self.tape, self.numbers, self.path = Tape(path, {}), {}, path
+        self.tape, self.numbers, self.path = McapWriter(path, {}), {}, path
 
     def say(self, at_ms, key, message, sender=EXECUTIVE, skip=0):
         number = self.numbers[key] = self.numbers.get(key, 0) + 1 + skip

@@ -5,7 +5,7 @@ import numpy as np
 from tailor.executive import domains
 from tailor.models.episodes.episodes import UNOBSERVED
 from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, SimTruth, Subgoals
-from tailor.tools.lockstep.episode_extraction import Cutter
+from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
 DOMAIN = domains.load("soccer")
 START = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}
@@ -38,7 +38,7 @@ def drive(action: str, index: int, ticks: int, first: int = 0) -> list[ExecStatu
 
 
 def cut(*messages):
-    return Cutter(DOMAIN).read(messages)
+    return EpisodeExtractor(DOMAIN).read(messages)
 
 
 def test_an_action_becomes_an_episode_with_the_believed_states() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap_writer import ENCODING, Tape
+from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
@@ -33,7 +33,7 @@ def executive(whole):
 
 def written(path, messages, said=()):
     """The messages, with what else was said on exec/tick: rows of sender, bytes and ROS type."""
-    tape = Tape(path, {}, compact=True)
+    tape = McapWriter(path, {}, compact=True)
     rows = [(m.key, m.data, m.sender, m.sequence, m.ros_type) for m in messages]
     rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(said)]
     for n, (key, data, sender, sequence, kind) in enumerate(rows):

@@ -11,12 +11,12 @@ from tailor.schemas import messages as m
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import MESSAGES
 from tailor.tools.viewer.rows import numbers
-from tailor.tools.viewer.timeline import Row, Story
+from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 
 
-def rows_of(run) -> list[Row]:
-    story = Story()
+def rows_of(run) -> list[Event]:
+    story = RunTimeline()
     return [row for t in run for row in story.tell(t.time_ns / 1e9, t.key, t.message)]
 
 
@@ -26,7 +26,7 @@ def kinds(rows) -> set[str]:
 
 @pytest.mark.parametrize("kind", MESSAGES, ids=lambda kind: kind.__name__)
 def test_every_message_of_the_bus_can_be_told_as_json(kind: type) -> None:
-    rows = Story().tell(0.0, "agilo/anything", example(kind))
+    rows = RunTimeline().tell(0.0, "agilo/anything", example(kind))
     assert json.loads(json.dumps([row.json_value() for row in rows], allow_nan=False)) is not None
 
 
@@ -43,7 +43,7 @@ def test_an_arm_is_told_as_belief_values_and_never_as_a_point_on_the_plane() -> 
 
 
 def test_what_does_not_change_is_told_once() -> None:
-    story = Story()
+    story = RunTimeline()
     state = m.DriverState(0, "armed", "", 7, "", 0)
     assert len(story.tell(0.0, "agilo/driver", state)) == 1
     assert story.tell(1.0, "agilo/driver", state) == []
@@ -51,7 +51,7 @@ def test_what_does_not_change_is_told_once() -> None:
 
 
 def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -> None:
-    story = Story()
+    story = RunTimeline()
     fast = [story.tell(k / 50, "agilo/odom", m.Odometry(0, k, 0, 0, 0, 0)) for k in range(100)]
     assert 20 <= sum(map(len, fast)) <= 34
     jitter = [0.0, 0.113, 0.19, 0.31, 0.387, 0.5]
@@ -60,7 +60,7 @@ def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -
 
 def test_topics_that_the_page_does_not_know_are_told_as_named_numbers() -> None:
     joints = m.JointState(0, ("elbow", "wrist"), (0.25, 1.5), (0.0, 0.1), ())
-    (row,) = Story().tell(0.0, "powercube/joint_states", joints)
+    (row,) = RunTimeline().tell(0.0, "powercube/joint_states", joints)
     assert row.kind == "series joint_states"
     assert row.fields == {
         "positions elbow": 0.25,
@@ -71,7 +71,7 @@ def test_topics_that_the_page_does_not_know_are_told_as_named_numbers() -> None:
 
 
 def test_only_the_executives_robot_is_told_of_once_it_is_known() -> None:
-    story = Story(robot="agilo")
+    story = RunTimeline(robot="agilo")
     pose = m.Odometry(0, 1.0, 2.0, 0.0, 0.0, 0.0)
     assert story.tell(0.0, "b21/odom", pose) == []
     assert len(story.tell(0.0, "agilo/odom", pose)) == 1
@@ -92,14 +92,14 @@ def test_numbers_that_are_not_finite_become_null() -> None:
 
 
 def test_a_plan_tells_links_and_orderings_apart() -> None:
-    (row,) = Story().tell(0.0, "exec/plan", m.PlanReport(0, "solved", "searched", TWO_BALLS, 5, 4, ""))
+    (row,) = RunTimeline().tell(0.0, "exec/plan", m.PlanReport(0, "solved", "searched", TWO_BALLS, 5, 4, ""))
     assert {"from": 2, "literal": "(atball pos2)", "to": 1} in row.fields["links"]
     assert {"from": 0, "literal": "(final pos3)", "to": "goal"} in row.fields["links"]
     assert row.fields["orderings"] == [[1, 3]], "2<1 has a link, 2<3 follows from the others"
 
 
 def test_a_plan_that_cannot_be_read_is_told_with_the_reason() -> None:
-    (row,) = Story().tell(0.0, "exec/plan", m.PlanReport(0, "solved", "searched", "gibberish", 5, 4, ""))
+    (row,) = RunTimeline().tell(0.0, "exec/plan", m.PlanReport(0, "solved", "searched", "gibberish", 5, 4, ""))
     assert row.fields["text"] == "gibberish"
     assert "line 1" in row.fields["reason"]
 

@@ -11,7 +11,7 @@ import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap_writer import Tape
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.typesystem import ros_type
@@ -26,7 +26,7 @@ BEGIN_NS = 1_700_000_000_000_000_000
 def recording(tmp_path_factory) -> Path:
     """The soccer run on tape; its provenance names no scenario that could be composed."""
     path = tmp_path_factory.mktemp("tape") / "run.mcap"
-    tape = Tape(path, {})
+    tape = McapWriter(path, {})
     for number, t in enumerate(synthetic_run.soccer_run()):
         kind = f"application/cdr;{ros_type(type(t.message))}"
         origin = pack(Origin(number, BEGIN_NS, synthetic_run.SENDER))

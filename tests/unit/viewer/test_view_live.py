@@ -11,7 +11,7 @@ import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
@@ -20,12 +20,12 @@ from tailor.tools.viewer import server
 from tailor.tools.viewer.feed import WAITING, Feed
 from tailor.tools.viewer.listening import Listener
 from tailor.tools.viewer.server import serving
-from tailor.tools.viewer.timeline import Row, Story
+from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support.patience import PATIENCE_S
 
 
-def tick(at_s: float) -> Row:
-    return Row(at_s, "tick", {"work": 1.0})
+def tick(at_s: float) -> Event:
+    return Event(at_s, "tick", {"work": 1.0})
 
 
 def raw(message: m.Message, key: str = "exec/status", sender: str = "ab" * 16, wall_ns: int = 10**18) -> Raw:
@@ -75,7 +75,7 @@ def test_a_newcomer_gets_what_was_and_what_comes() -> None:
 
 def test_old_ticks_are_forgotten_and_old_events_are_not() -> None:
     feed = Feed(keep_s=10)
-    feed.publish([Row(0.0, "plan", {}), tick(0.0)])
+    feed.publish([Event(0.0, "plan", {}), tick(0.0)])
     for k in range(200):
         feed.publish([tick(k)])
     with feed.subscribe() as page:
@@ -136,8 +136,8 @@ def test_a_port_in_use_is_told_in_one_line() -> None:
 
 
 def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
-    intake, feed = Intake(), Feed()
-    listener = Listener(intake, Story(), feed)
+    intake, feed = IngestQueue(), Feed()
+    listener = Listener(intake, RunTimeline(), feed)
     intake.put(raw(status()))
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
     listener.look()
@@ -149,12 +149,12 @@ def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
 
 
 def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
-    intake, feed = Intake(), Feed()
+    intake, feed = IngestQueue(), Feed()
     good = raw(status())
     intake.put(Raw(good.key, good.payload[:-9], good.attachment, good.encoding, True, 1))
     intake.put(Raw("exec/status", b"hello", None, "text/plain", True, 1))
     intake.put(Raw(good.key, good.payload, good.attachment, good.encoding, False, 1))
     intake.put(raw(status(), sender="cd" * 16))
-    Listener(intake, Story(), feed, sender="ab").look()
+    Listener(intake, RunTimeline(), feed, sender="ab").look()
     with feed.subscribe() as page:
         assert json.loads(page.next(0)) == []

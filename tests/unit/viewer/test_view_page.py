@@ -7,7 +7,7 @@ import re
 from importlib import resources
 
 from tailor.tools.viewer.page import SCRIPTS, page
-from tailor.tools.viewer.timeline import Row
+from tailor.tools.viewer.timeline import Event
 
 EVIL = "</script><script>alert(1)</script>"
 
@@ -26,7 +26,7 @@ def test_every_script_is_in_the_page() -> None:
 
 
 def test_strings_of_a_recording_cannot_end_the_data() -> None:
-    text = page(EVIL, [Row(0.0, "state", {"reason": EVIL, "mode": "@SCRIPT@"})])
+    text = page(EVIL, [Event(0.0, "state", {"reason": EVIL, "mode": "@SCRIPT@"})])
     assert text.count("</script>") == page("run", []).count("</script>")
     embedded = re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1]
     assert json.loads(embedded)["rows"] == [[0.0, "state", {"reason": EVIL, "mode": "@SCRIPT@"}]]

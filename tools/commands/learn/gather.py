@@ -85,7 +85,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from and --on-policy")
     if arguments.recordings:
-        counts = run_gathering.cut_recordings(domain, out, arguments.recordings)
+        counts = run_gathering.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
     for scenario in arguments.on_policy:

@@ -11,10 +11,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from tailor.executive.composition import asked_ranges, load_models
+from tailor.executive.composition import load_models, required_ranges
 from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
-from tailor.models.runtime import BENEFIT, ZOO, OnnxBenefit, OnnxModel, load_model
+from tailor.models.runtime import BENEFIT, ZOO, OnnxGate, OnnxModel, load_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.terminal import table_console
 
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         from tailor.tools.figures import learned
 
         for model in loaded:
-            if isinstance(model, OnnxBenefit):  # it has no surface that a plane could show; `rules` tells it
+            if isinstance(model, OnnxGate):  # it has no surface that a plane could show; `rules` tells it
                 continue
             for path in learned.draw(model, arguments.data, arguments.out):
                 print(path)
@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
     from tailor.tools.learning.model_rules import DISTILLED, rules, tree_number
 
-    if isinstance(model, OnnxBenefit):
+    if isinstance(model, OnnxGate):
         return _benefit_rules(model.card)
     tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
     return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
@@ -178,7 +178,7 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
             if name.endswith(f"/{BENEFIT}"):  # sound only with the action models that it was learned with
                 load_models(name.removesuffix(f"/{BENEFIT}"), str(arguments.zoo), gated=True)
             model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
-            check_ranges(model.card, asked_ranges(robot).get(action, {}), arguments.zoo / name)
+            check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
         except UsageError as error:
             failed[name] = str(error)
         if not arguments.json:

@@ -81,9 +81,9 @@ def _check_names(arguments: argparse.Namespace) -> None:
 
 def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
     """A benefit tree judges the choices of the models that it was learned with: these are gone now."""
-    from tailor.models.export.gate_publishing import withdraw_benefit
+    from tailor.models.export.gate_publishing import withdraw_gate
 
-    if withdraw_benefit(arguments.zoo, arguments.robot):
+    if withdraw_gate(arguments.zoo, arguments.robot):
         again = f"tailor train-benefit {arguments.robot}"
         console.print(
             f"removed {arguments.robot}/refinement/benefit, learned with the models before; `{again}` makes it"

@@ -18,7 +18,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, finite, processes
 
 if TYPE_CHECKING:
-    from tailor.models.export.gate_publishing import AboutBenefit
+    from tailor.models.export.gate_publishing import GateProvenance
     from tailor.models.training.gate_training import Pairs
     from tailor.tools.evaluations.outcome import Outcome, Task
 
@@ -88,8 +88,8 @@ def run(arguments: argparse.Namespace) -> int:
 def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     """Make the tree and write it to the zoo; returns where it lies, and its test."""
     from tailor.executive.refinement.gate import SITUATION
-    from tailor.models.export.gate_publishing import publish_benefit
-    from tailor.models.training.gate_training import check_learner, train_benefit
+    from tailor.models.export.gate_publishing import publish_gate
+    from tailor.models.training.gate_training import check_learner, train_gate
     from tailor.tools.evaluations.outcome import Task
     from tailor.tools.learning import gathering
 
@@ -98,7 +98,7 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
     settings = RefinementSettings(benefit_gate=False)
     zoo = "" if arguments.zoo == ZOO else str(arguments.zoo)
     found = gathered(Task(domain, arguments.scenario, zoo=zoo), settings, arguments)
-    trained = train_benefit(found.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
+    trained = train_gate(found.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
     episodes = {
         "scenario": arguments.scenario,
         "started": found.started,
@@ -106,7 +106,7 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
         "source_sha256": gathering.source_hash(arguments.robot, domain),
     }
     about = _about(arguments, settings, found.sequences, episodes)
-    return publish_benefit(arguments.zoo, found.pairs, trained, about), dict(trained.test)
+    return publish_gate(arguments.zoo, found.pairs, trained, about), dict(trained.test)
 
 
 def _about(
@@ -114,15 +114,15 @@ def _about(
     settings: RefinementSettings,
     sequences: tuple[tuple[str, ...], ...],
     episodes: dict[str, Any],
-) -> AboutBenefit:
+) -> GateProvenance:
     """What the card is to say, the action models that the tree was learned with among it."""
     from tailor.executive.composition import load_models
     from tailor.executive.refinement.gate import SITUATION
-    from tailor.models.export.gate_publishing import AboutBenefit
+    from tailor.models.export.gate_publishing import GateProvenance
 
     loaded: Any = load_models(arguments.robot, "" if arguments.zoo == ZOO else str(arguments.zoo))
     models = {**loaded.durations, **loaded.successes}
-    return AboutBenefit(
+    return GateProvenance(
         arguments.robot,
         SITUATION,
         sequences,

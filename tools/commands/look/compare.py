@@ -15,7 +15,7 @@ from rich.table import Table
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.tools.cli.terminal import table_console
-from tailor.tools.recordings.comparison import Run, chosen, commands_apart, compared_run
+from tailor.tools.recordings.comparison import ComparedRun, chosen, commands_apart, compared_run
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if told["equal"] else 1
 
 
-def _told(a: Run, b: Run) -> dict[str, Any]:
+def _told(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
     apart = {name: None if math.isnan(value) else round(value, 6) for name, value in commands_apart(a, b).items()}
     same_commands = apart["first_s"] is None and len(a.commands) == len(b.commands)
     return {
@@ -72,7 +72,7 @@ def _action(action: ActionFinished) -> dict[str, Any]:
     }
 
 
-def _show(a: Run, b: Run, told: dict[str, Any]) -> None:
+def _show(a: ComparedRun, b: ComparedRun, told: dict[str, Any]) -> None:
     console = table_console()
     actions = [[_brief(action) for action in run.actions] for run in (a, b)]
     console.print(_side_by_side("action, predicted → actual s", a, b, *actions))
@@ -95,7 +95,7 @@ def _brief(action: ActionFinished) -> str:
     return f"{action.action}{outcome} {action.predicted_s:.2f} → {action.actual_s:.2f}"
 
 
-def _changes(run: Run) -> list[str]:
+def _changes(run: ComparedRun) -> list[str]:
     """The chosen subgoals, without repetitions."""
     return _distinct([", ".join(f"{name} {value:.2f}" for name, value in chosen(s).items()) for s in run.subgoals])
 
@@ -111,7 +111,7 @@ def _distinct(texts: list[str]) -> list[str]:
     return [text for text, before in zip(texts, ["", *texts], strict=False) if text and text != before]
 
 
-def _side_by_side(what: str, a: Run, b: Run, left: list[str], right: list[str]) -> Table:
+def _side_by_side(what: str, a: ComparedRun, b: ComparedRun, left: list[str], right: list[str]) -> Table:
     table = Table(title=what, title_justify="left", box=None, show_lines=False)
     table.add_column(a.name, ratio=1)
     table.add_column(b.name, ratio=1)

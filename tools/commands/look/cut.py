@@ -10,7 +10,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.errors import UsageError
 
-LONGEST_S = 1e10  # what the file's clock can tell
+MAX_S = 1e10  # what the file's clock can tell
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +34,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 when something is left, 1 when nothing is."""
-    if not 0 <= arguments.start < LONGEST_S:
+    if not 0 <= arguments.start < MAX_S:
         raise UsageError(f"--from is {arguments.start:g}, expected seconds from 0 on")
-    if arguments.end is not None and not arguments.start < arguments.end < LONGEST_S:
+    if arguments.end is not None and not arguments.start < arguments.end < MAX_S:
         raise UsageError(f"--to is {arguments.end:g}, expected more than --from {arguments.start:g}")
     recording = open_recording(arguments.file)
     wanted = selection(arguments.topics, arguments.exclude)

@@ -16,7 +16,7 @@ from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.survey import Stream, Survey, percentiles, survey
 
-MOST_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
+MAX_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -96,9 +96,9 @@ def _show(told: dict[str, Any]) -> None:
         console.print(f"damaged: {told['damage']}", style="red")
     for key, count in told["drops"].items():
         console.print(f"dropped: {count} of {plain(key)}", style="red")
-    console.print(_topics(told["topics"][:MOST_ROWS]))
-    if len(told["topics"]) > MOST_ROWS:
-        console.print(f"and {len(told['topics']) - MOST_ROWS} topics more; --json tells all")
+    console.print(_topics(told["topics"][:MAX_ROWS]))
+    if len(told["topics"]) > MAX_ROWS:
+        console.print(f"and {len(told['topics']) - MAX_ROWS} topics more; --json tells all")
     if told["actions"]:
         console.print(_actions(told["actions"]))
     for episode in told["episodes"]:

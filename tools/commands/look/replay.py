@@ -33,7 +33,7 @@ from tailor.tools.recordings.substitution import SILENCED, SUBSTITUTES, armed_fo
 
 DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.priority == "real_time"))
 LISTEN_S = 0.5  # for a live driver; they speak at 10 Hz
-LONGEST_S = 1e9  # a recording has no such length
+MAX_S = 1e9  # a recording has no such length
 FASTEST_CLOCK_HZ = 10_000.0
 LAST_CLOCK_NS = (2**31 - 1) * 10**9  # ROS's clock ends in 2038
 TAIL_S = 0.2  # for the last messages to leave before the session closes
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Play until the end; 0, or 1 when the bus went away."""
     if not SLOWEST <= arguments.rate <= FASTEST:
         raise UsageError(f"--rate is {arguments.rate:g}, expected {SLOWEST:g} to {FASTEST:g}")
-    for name, most in (("start", LONGEST_S), ("duration", LONGEST_S), ("wait", LONGEST_S), ("clock", FASTEST_CLOCK_HZ)):
+    for name, most in (("start", MAX_S), ("duration", MAX_S), ("wait", MAX_S), ("clock", FASTEST_CLOCK_HZ)):
         check_within(getattr(arguments, name), most, f"--{name}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
@@ -128,9 +128,9 @@ def _steer(pace: Pace, key: str, now_ns: int) -> bool:
 
 
 def _driver_is_live(session: Session) -> bool:
-    intake, tap = session.tap(TOPICS["driver"].key.format(robot="*"))
+    intake, subscribe_all = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
     time.sleep(LISTEN_S)
-    tap.undeclare()
+    subscribe_all.undeclare()
     return bool(intake.take())
 
 

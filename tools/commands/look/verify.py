@@ -15,11 +15,11 @@ from itertools import tee
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tailor.executive.composition import recompose
+from tailor.executive.composition import rebuild_context
 from tailor.executive.core.context import Context
 from tailor.executive.replay import replay
-from tailor.runtime.gc_freeze import heap_set_aside
-from tailor.runtime.platform_fingerprint import contrast, machine, same_kind
+from tailor.runtime.gc_freeze import gc_frozen
+from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind
 from tailor.schemas.errors import UsageError
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
 from tailor.tools.recordings.differences import ROUNDING, Difference
@@ -65,7 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     runs = RecordedRuns(arguments.recording)
     if arguments.output is None:
         verdicts = [
-            verify(runs, found, recompose(found.provenance), proofs=not arguments.without_proofs) for found in runs.runs
+            verify(runs, found, rebuild_context(found.provenance), proofs=not arguments.without_proofs)
+            for found in runs.runs
         ]
     else:
         verdicts = [_verify_onto(arguments.output, runs)]
@@ -87,13 +88,13 @@ def verify(
     Args:
       runs: The recording.
       run: One of its runs.
-      context: What today's core is given, as `recompose` makes it.
+      context: What today's core is given, as `rebuild_context` makes it.
       tape: Where to write what it says; it then goes on to the end, whatever differs.
       proofs: Whether to prove choices again and compare how near to the optimum they are.
     """
-    here, there = machine(), run.provenance.get("machine", {})
+    here, there = platform_fingerprint(), run.provenance.get("machine", {})
     comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
-    with heap_set_aside():  # as live
+    with gc_frozen():  # as live
         began = time.perf_counter()
         difference = _compared(comparison, runs, run, context if proofs else without_proofs(context), tape)
         took_s = time.perf_counter() - began
@@ -130,8 +131,8 @@ def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
     if path.exists():
         raise UsageError(f"--output {path}: there is such a file already, expected a new one")
     run = runs.runs[0]
-    context = recompose(run.provenance)
-    tape = RunTape(path, context, {**run.provenance, "machine": machine()})
+    context = rebuild_context(run.provenance)
+    tape = RunTape(path, context, {**run.provenance, "machine": platform_fingerprint()})
     try:
         return verify(runs, run, context, tape)
     finally:

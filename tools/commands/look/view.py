@@ -20,7 +20,7 @@ from tailor.tools.viewer.listening import Listener
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded import recorded_rows
 from tailor.tools.viewer.server import serving
-from tailor.tools.viewer.timeline import Story
+from tailor.tools.viewer.timeline import RunTimeline
 
 PORT = 7450
 NICENESS = 10  # whoever watches gives way to whoever acts
@@ -57,7 +57,7 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     output: Path = arguments.output or recording.with_suffix(".html")
     console = Console(stderr=True)
     with console.status(f"reading {recording}"):
-        rows = recorded_rows(recording, Story(explainer, arguments.robot), arguments.sender)
+        rows = recorded_rows(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     try:
@@ -76,9 +76,9 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     feed = Feed()
     with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
         codec.prime()
-        intake, tap = session.tap("**")
-        listener = Listener(intake, Story(explainer, arguments.robot), feed, arguments.sender)
+        intake, subscribe_all = session.subscribe_all("**")
+        listener = Listener(intake, RunTimeline(explainer, arguments.robot), feed, arguments.sender)
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
-        tap.undeclare()
+        subscribe_all.undeclare()
     return 0

@@ -17,7 +17,7 @@ from tailor.tools.figures.page import write_paths_page
 from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.recorded import recorded_track
 from tailor.tools.figures.track import Track
-from tailor.tools.launch.system import Plan, free_endpoint, run_system
+from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 
 RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 
@@ -60,7 +60,7 @@ def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording:
     order = replace(order, settings=replace(settings, seed=arguments.seed, refinement=refinement))
     with screen() as shown:
         shown.tell(f"{name}: h = {horizon}, scenario {arguments.scenario}, seed {arguments.seed}")
-        result = run_system(Plan(order, free_endpoint(), recording, once=True), shown, stop)
+        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), shown, stop)
         shown.tell(f"{name}: {result or 'stopped'}")
 
 

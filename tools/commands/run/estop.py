@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from tailor.runtime.bus.ingest_queue import Intake
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import open_client
 from tailor.schemas.codec import decode
@@ -25,9 +25,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 when every driver that speaks has stopped, 1 when one has not or none speaks."""
     with open_client(endpoint_of(arguments)) as session:
-        intake, tap = session.tap(TOPICS["driver"].key.format(robot="*"))
+        intake, subscribe_all = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
         modes = _stop(session.publisher("estop", ""), intake)
-        tap.undeclare()
+        subscribe_all.undeclare()
     for robot, mode in sorted(modes.items()):
         print(f"{robot} is {mode}")
     if not modes:
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if modes and set(modes.values()) == {"estopped"} else 1
 
 
-def _stop(outlet: Publisher, intake: Intake) -> dict[str, str]:
+def _stop(outlet: Publisher, intake: IngestQueue) -> dict[str, str]:
     """Each robot's mode after the e-stop was sent, repeatedly, for WAIT_S."""
     modes: dict[str, str] = {}
     ends = time.monotonic() + WAIT_S

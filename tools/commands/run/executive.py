@@ -6,13 +6,13 @@ import argparse
 import time
 from dataclasses import replace
 
-from tailor.executive.composition import compose, provenance
+from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.context import Context, check_goal
 from tailor.executive.shell import Shell
 from tailor.runtime import realtime
 from tailor.runtime.bus.session import open_client
 from tailor.runtime.clock import MonotonicClock, wall_ns
-from tailor.runtime.platform_fingerprint import machine
+from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
@@ -34,14 +34,14 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     read = deployment(arguments)
     order = order_of(arguments.domain, read)
-    context = compose(order, sender="")  # every mistake of ours is told before the bus is touched
+    context = build_context(order, sender="")  # every mistake of ours is told before the bus is touched
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
     with open_client(read.bus.endpoint) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()
-        made_of = {**provenance(order, context), "machine": machine()}
+        made_of = {**provenance(order, context), "machine": platform_fingerprint()}
         made_of["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), made_of)
         state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))

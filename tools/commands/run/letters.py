@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive.domains.arm.letters import MOST_LETTERS, is_word
+from tailor.executive.domains.arm.letters import is_word
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import Stop, stop_on_signals
@@ -19,7 +19,7 @@ from tailor.schemas.messages import JointState
 from tailor.tools.cli.deployment import Deployment, order_of
 from tailor.tools.cli.live_status import screen
 from tailor.tools.figures.letters import draw_words
-from tailor.tools.launch.system import Plan, free_endpoint, run_system
+from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 from tailor.tools.writing.lockstep import Hand, ListenedBody, write
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
 from tailor.tools.writing.track import PERIOD_S, Written, written
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Write by every hand, show the table, draw; 0 when all reached the last waypoint."""
     text = arguments.text.upper()
     if not is_word(text):
-        raise UsageError(f"cannot write {arguments.text!r}, expected 1 to {MOST_LETTERS} of the letters A to Z")
+        raise UsageError(f"cannot write {arguments.text!r}, expected 1 to {MAX_LETTERS} of the letters A to Z")
     if arguments.seed < 0:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
     hands = [hand for hand in HANDS if arguments.greedy or hand.name != "greedy"]
@@ -109,7 +109,7 @@ def _run_once(text: str, hand: Hand, seed: int, recording: Path, stop: Stop) -> 
     order = replace(order, settings=replace(order.settings, seed=seed, refinement=hand.refinement))
     with screen() as shown:
         shown.tell(f"{hand.name}: {text}, seed {seed}")
-        run_system(Plan(order, free_endpoint(), recording, once=True), shown, stop)
+        run_system(LaunchConfig(order, free_endpoint(), recording, once=True), shown, stop)
 
 
 def recorded(title: str, text: str, path: Path) -> Written:

@@ -17,12 +17,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.live import Live
 
-from tailor.runtime.bus.ingest_queue import Intake
-from tailor.runtime.bus.service import Questions
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.service import ServiceServer
 from tailor.runtime.bus.session import Session, open_client
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
-from tailor.runtime.recordings.recording_metadata import Facts
+from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import selection
 from tailor.runtime.recordings.snapshot import Ring
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
@@ -62,22 +62,22 @@ def run(arguments: argparse.Namespace) -> int:
             done, said = session.ask(SNAPSHOT_KEY, "asked for")
             print(said, file=sys.stdout if done else sys.stderr)
             return 0 if done else 1
-        intake, tap = session.tap("**")
+        intake, subscribe_all = session.subscribe_all("**")
         recorder = _recorder(arguments, intake)
         questions = session.questions(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
         _record(recorder, questions, stop, session, quiet=arguments.quiet)
-        tap.undeclare()
+        subscribe_all.undeclare()
         health = recorder.close()
     if not arguments.quiet or health.drops or health.trouble:
         print(_line(health), file=sys.stderr)
     return 1 if health.drops or health.trouble else 0
 
 
-def _recorder(arguments: argparse.Namespace, intake: Intake) -> Recorder | SnapshotRecorder:
+def _recorder(arguments: argparse.Namespace, intake: IngestQueue) -> Recorder | SnapshotRecorder:
     wanted = selection(arguments.topics, arguments.exclude)
     limits = Limits(round(arguments.max_size * 1e6), round(arguments.max_duration * 1e9))
     path = Path(arguments.output or datetime.now().strftime("tailor-%Y%m%d-%H%M%S.mcap"))
-    facts = Facts(version("tailor"), wall_ns())
+    facts = RecordingMetadata(version("tailor"), wall_ns())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if arguments.snapshot:
@@ -90,7 +90,7 @@ def _recorder(arguments: argparse.Namespace, intake: Intake) -> Recorder | Snaps
 
 
 def _record(
-    recorder: Recorder | SnapshotRecorder, questions: Questions | None, stop: Stop, session: Session, quiet: bool
+    recorder: Recorder | SnapshotRecorder, questions: ServiceServer | None, stop: Stop, session: Session, quiet: bool
 ) -> None:
     shown = Live(console=Console(stderr=True), refresh_per_second=4, transient=True)
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
@@ -107,7 +107,7 @@ def _record(
             time.sleep(TURN_S)
 
 
-def _answer(recorder: SnapshotRecorder, questions: Questions) -> None:
+def _answer(recorder: SnapshotRecorder, questions: ServiceServer) -> None:
     question = questions.poll()
     if question is None:
         return

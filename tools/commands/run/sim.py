@@ -14,7 +14,7 @@ from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.declaration import Declaration, declaration
+from tailor.simnodes.declaration import DriverSpec, declaration
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import Event, World
 from tailor.tools.cli.deployment import deployment
@@ -25,7 +25,7 @@ ROBOTS = {
     "agilo": ("tailor.simnodes.agilo.body", "AgiloBody", "soccer"),
     "powercube": ("tailor.simnodes.powercube.body", "PowerCubeBody", "arm"),
 }
-MOST_SPEED = 10.0
+MAX_SPEED = 10.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -41,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Simulate until told to stop."""
     if arguments.robot not in ROBOTS:
         raise UsageError(f"robot {arguments.robot!r} is not known, expected one of: {', '.join(ROBOTS)}")
-    if not 0.1 <= arguments.speed <= MOST_SPEED:
-        raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MOST_SPEED:g}")
+    if not 0.1 <= arguments.speed <= MAX_SPEED:
+        raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MAX_SPEED:g}")
     read = deployment(arguments)
     world = make_world(arguments.robot, read.scenario, read.executive.seed)
     stop = stop_on_signals()
@@ -54,9 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def run_node(
-    world: World, declared: Declaration, session: Any, stopped: Callable[[], bool], speed: float = 1.0
-) -> None:
+def run_node(world: World, declared: DriverSpec, session: Any, stopped: Callable[[], bool], speed: float = 1.0) -> None:
     """Put a world on the bus, under a fresh epoch."""
     epoch = 1 + secrets.randbelow(2**62)
     Node(world, declared, session, MonotonicClock(), epoch, speed).run(stopped)

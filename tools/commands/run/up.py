@@ -8,7 +8,7 @@ from pathlib import Path
 from tailor.runtime.stopping import stop_on_signals
 from tailor.tools.cli.deployment import configure_system, deployment, order_of
 from tailor.tools.cli.live_status import screen
-from tailor.tools.launch.system import Plan, run_system
+from tailor.tools.launch.system import LaunchConfig, run_system
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.letters:
         arguments.scenario = f"word-{arguments.letters.upper()}"
     read = deployment(arguments)
-    plan = Plan(
+    plan = LaunchConfig(
         order_of(arguments.domain, read), read.bus.endpoint, arguments.record, arguments.once, arguments.config or ""
     )
     with screen() as shown:

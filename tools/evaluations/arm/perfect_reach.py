@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.actions.cubic import LONGEST_S, SHORTEST_S
+from tailor.executive.actions.cubic import MAX_S, MIN_S
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import ACCELERATION_RADPS2
 
@@ -29,7 +29,7 @@ class PerfectReach:
         e1 = 4 * weight * (v0 * v0 + v0 * v1 + v1 * v1).sum(axis=1)
         e2 = -12 * weight * (way * (v0 + v1)).sum(axis=1)
         e3 = 12 * weight * (way * way).sum(axis=1)
-        rates = np.geomspace(1 / LONGEST_S, 1 / SHORTEST_S, STEPS)
+        rates = np.geomspace(1 / MAX_S, 1 / MIN_S, STEPS)
         u = rates[None, :]
         best = (1 / u + u * (e1[:, None] + u * (e2[:, None] + u * e3[:, None]))).argmin(axis=1)
         low, high = rates[np.maximum(best - 1, 0)], rates[np.minimum(best + 1, STEPS - 1)]

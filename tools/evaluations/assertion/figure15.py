@@ -16,8 +16,8 @@ import numpy as np
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_task, succeeded, variants
-from tailor.tools.evaluations.assertion.subgoal_map import Ground, ground_of
-from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_ground
+from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
+from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
 from tailor.tools.evaluations.comparison import share_interval
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tailor.tools.evaluations.report import Report, configure_report, tell
@@ -84,10 +84,10 @@ def _summary(found: Mapping[str, Mapping[int, Outcome]], seeds: Sequence[int]) -
 
 def _looked_at(
     task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
-) -> tuple[dict[str, Any], Ground | None]:
+) -> tuple[dict[str, Any], SubgoalMap | None]:
     """One start with a subgoal; the ground is None where two detours were made in a row."""
     watched, context = watch(task, _asserting(), seed)
-    ground = ground_of(watched.subgoals[0], context)
+    ground = subgoal_map_of(watched.subgoals[0], context)
     before, after = found["blind"][seed], found["asserted"][seed]
     row = {
         "start": str(seed),
@@ -109,14 +109,14 @@ def _looked_at(
     return row, ground
 
 
-def _draw(task: Task, seed: int, ground: Ground, path: Path) -> Path:
+def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     tracks = []
     for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
         watched, _ = watch(task, variant, seed)
         said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.ball_moved_m:.2f} m"
         tracks.append(replace(watched.track, title=f"{title} ({said})"))
     first = tracks[0].points[0]
-    draw_ground(ground, (first.ball_x, first.ball_y), tracks, f"start {seed}", path)
+    draw_subgoal_map(ground, (first.ball_x, first.ball_y), tracks, f"start {seed}", path)
     return path
 
 

@@ -26,7 +26,7 @@ ROWS_AT_ONCE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class SubgoalMap:
     """Values at every place, shape (len(y), len(x)); seconds are NaN where the subgoal is INVALID."""
 
     x: Array  # m
@@ -78,7 +78,7 @@ class _Decision:
         return x, y, phi
 
 
-def ground_of(message: Subgoals, context: Context) -> Ground | None:
+def subgoal_map_of(message: Subgoals, context: Context) -> SubgoalMap | None:
     """The ground for the first decision of an episode; None unless it puts one detour before its next action."""
     decision = _decision(message, context)
     if decision is None:
@@ -94,7 +94,7 @@ def ground_of(message: Subgoals, context: Context) -> Ground | None:
         np.concatenate(column).reshape(len(x), len(y)).T for column in zip(*tables, strict=True)
     )
     chosen_s = _durations_s(decision)
-    return Ground(x, y, first_s, second_s, success, decision.limit, subgoal, start[:2], goal, chosen_s)
+    return SubgoalMap(x, y, first_s, second_s, success, decision.limit, subgoal, start[:2], goal, chosen_s)
 
 
 def _decision(message: Subgoals, context: Context) -> _Decision | None:

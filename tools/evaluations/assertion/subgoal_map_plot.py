@@ -10,14 +10,16 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from tailor.tools.evaluations.assertion.subgoal_map import Array, Ground
+from tailor.tools.evaluations.assertion.subgoal_map import Array, SubgoalMap
 from tailor.tools.figures.paths import BALL_RADIUS_M, draw_side_by_side
 from tailor.tools.figures.track import Track
 
 ARROW_M = 0.3
 
 
-def draw_ground(ground: Ground, ball: tuple[float, float], tracks: Sequence[Track], title: str, path: Path) -> None:
+def draw_subgoal_map(
+    ground: SubgoalMap, ball: tuple[float, float], tracks: Sequence[Track], title: str, path: Path
+) -> None:
     """Draw into a PNG: seconds to the subgoal, from it, and their sum; below, predicted success and two runs.
 
     Args:
@@ -45,7 +47,7 @@ def draw_ground(ground: Ground, ball: tuple[float, float], tracks: Sequence[Trac
     figure.savefig(path, dpi=100)
 
 
-def _mark_least(axis: Any, ground: Ground) -> None:
+def _mark_least(axis: Any, ground: SubgoalMap) -> None:
     if np.isfinite(ground.total_s).any():
         row, column = np.unravel_index(int(np.nanargmin(ground.total_s)), ground.total_s.shape)
         where = (ground.x[column], ground.y[row])
@@ -54,7 +56,13 @@ def _mark_least(axis: Any, ground: Ground) -> None:
 
 
 def _map(
-    figure: Figure, axis: Any, ground: Ground, ball: tuple[float, float], table: Array, name: str, cmap: str = "viridis"
+    figure: Figure,
+    axis: Any,
+    ground: SubgoalMap,
+    ball: tuple[float, float],
+    table: Array,
+    name: str,
+    cmap: str = "viridis",
 ) -> None:
     """One table over the ground, with start, ball, goal and the subgoal as chosen."""
     from matplotlib.patches import Circle

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals
-from tailor.tools.lockstep.run import Episode
+from tailor.tools.lockstep.run import Run
 
 
 class Unseen:
@@ -18,14 +18,14 @@ class Unseen:
         """Drop a message."""
 
 
-def episode_of(messages: Iterable[Message], result: str) -> Episode:
+def episode_of(messages: Iterable[Message], result: str) -> Run:
     """Sum a run's messages up, in the order in which they were recorded.
 
     Args:
       messages: Of one executive and one simulator. Stamps are one clock's.
       result: "achieved", or why not.
     """
-    episode = Episode(result)
+    episode = Run(result)
     started_ns: int | None = None
     for message in messages:
         episode.messages.append(message)

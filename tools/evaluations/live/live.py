@@ -16,7 +16,7 @@ import numpy as np
 from rich.progress import track
 
 from tailor.executive import domains
-from tailor.executive.composition import Order
+from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.core.context import Settings
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.runtime.recordings.recording import open_recording
@@ -31,7 +31,7 @@ from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.report import Report, configure_report, tell
 from tailor.tools.evaluations.trials import made_of, run_all
-from tailor.tools.launch.system import Plan, free_endpoint, run_system
+from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 
 OTHER_NOISE = 500_000  # from one lock-step run of a start to the next
 MARGIN_PCT = 5.0  # fixed before the first run: half of what refinement gains
@@ -102,7 +102,7 @@ def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop:
     journal = Journal(arguments.store, task, Variant(LIVE, refinement), made_of(task))
     missing = [seed for seed in seeds if seed not in journal.known]
     for seed in track(missing, "live", transient=True):
-        order = Order(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
+        order = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
         outcome = run_live(order, stop, arguments.recordings)
         if stop.requested:
             break
@@ -111,7 +111,7 @@ def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop:
     return {seed: journal.known[seed] for seed in seeds if seed in journal.known}
 
 
-def run_live(order: Order, stop: Stop, keep: Path | None = None) -> Outcome:
+def run_live(order: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> Outcome:
     """One whole system from start to goal over a bus of its own, and what came of it, from its recording alone.
 
     Args:
@@ -126,7 +126,7 @@ def run_live(order: Order, stop: Stop, keep: Path | None = None) -> Outcome:
         recording = kept / f"{order.scenario}-h{order.settings.refinement.horizon}-{seed}.mcap"
         recording.unlink(missing_ok=True)
         unseen = Unseen()
-        result = run_system(Plan(order, free_endpoint(), recording, once=True), unseen, stop)
+        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), unseen, stop)
         episode = episode_of(_messages(recording), result or "failed: stopped")
     return outcome_of(episode, domains.load(order.domain), LIVE, seed)
 

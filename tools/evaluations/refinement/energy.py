@@ -19,8 +19,8 @@ from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.report import Report, configure_report, tell
 from tailor.tools.evaluations.trials import run_episode_of
-from tailor.tools.lockstep.action_run import trials_of
-from tailor.tools.lockstep.run import Episode
+from tailor.tools.lockstep.action_run import sampler_of
+from tailor.tools.lockstep.run import Run
 
 WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with
 
@@ -68,9 +68,9 @@ def cost_of(task: Task, weight: float, seed: int) -> Cost:
     return Cost(episode.achieved, episode.duration_s, energy_j(episode, task.domain))
 
 
-def energy_j(episode: Episode, domain: str) -> float:
+def energy_j(episode: Run, domain: str) -> float:
     """Work of the drives over an episode's actions."""
-    work = trials_of(domains.load(domain)).work_j
+    work = sampler_of(domains.load(domain)).work_j
     during = [t for t in episode.truth if episode.started_s <= t.stamp_ns * 1e-9 <= episode.ended_s]
     return float(sum(work(before, after) for before, after in itertools.pairwise(during)))
 

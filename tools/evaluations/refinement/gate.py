@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.executive.composition import load_models
-from tailor.executive.library import BenefitModel
+from tailor.executive.library import RefinementGate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
@@ -77,7 +77,7 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
     return summary(starts, tree) | ceiling
 
 
-def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: BenefitModel) -> dict[str, Any]:
+def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: RefinementGate) -> dict[str, Any]:
     """Figures of starts that were run greedy, refined, and with the tree; those that failed in any way are left out."""
     achieved = [start for start in starts if all(outcome.achieved for outcome in start)]
     greedy_s, refined_s, gated_s = (np.array([start[way].duration_s for start in achieved]) for way in range(3))
@@ -106,7 +106,7 @@ def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: BenefitModel) 
     }
 
 
-def advised(refined: list[Outcome], tree: BenefitModel) -> NDArray[np.bool_]:
+def advised(refined: list[Outcome], tree: RefinementGate) -> NDArray[np.bool_]:
     """Where the tree says to keep the greedy choice, shape (n,), from what it saw in runs without it."""
     kept = np.zeros(len(refined), np.bool_)
     asked = [place for place, outcome in enumerate(refined) if outcome.situation]

@@ -22,7 +22,7 @@ DISTANCE_RAD = (0.05, 2.2)  # evenly: drawn in a rectangle, short reaches would 
 
 
 @dataclass(frozen=True, slots=True)
-class ArmTrials:
+class ArmSampler:
     """See tailor.tools.lockstep.action_run.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:

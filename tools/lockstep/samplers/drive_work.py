@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 from tailor.schemas.messages import JointState, Message, Odometry, SimTruth
-from tailor.simnodes.agilo.physique import Physique
+from tailor.simnodes.agilo.physique import PhysicalParameters
 
-AGILO = Physique()
+AGILO = PhysicalParameters()
 WHEELS = 2
 ARMATURE_KGM2 = 0.002  # of a wheel's motor and gear, as in the scene
 # each wheel weighs again what it takes to spin it up (an ellipsoid's 2/5 m r²), and its motor

@@ -32,7 +32,7 @@ DRIBBLE_ASIDE_RAD = 1.5  # the target's heading off the line to it
 
 
 @dataclass(frozen=True, slots=True)
-class SoccerTrials:
+class SoccerSampler:
     """See tailor.tools.lockstep.action_run.Trials; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
