@@ -10,7 +10,7 @@ from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.gate import check_gate
 from tailor.models.runtime import BENEFIT, load_gate, load_robot
 from tailor.schemas.errors import UsageError

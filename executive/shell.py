@@ -37,7 +37,7 @@ class Shell:
         self._clock = clock
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
-        self._goals = session.questions("exec/goal")
+        self._goals = session.service_server("exec/goal")
         topics = (domain.command_topic, *TOPICS)
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         external = context.settings.external

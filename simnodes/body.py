@@ -47,6 +47,6 @@ class Body(Protocol):
         """Simulator service: move or push a thing while the clock runs; names as in `reset`."""
         ...
 
-    def truth(self) -> Message:
+    def ground_truth(self) -> Message:
         """The state of the world now, as the simulator tells it."""
         ...

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
-from tailor.simnodes.declaration import DriverSpec
+from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Guard, Mode
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change

@@ -12,8 +12,8 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop, Period
 from tailor.simnodes.body import Reading
-from tailor.simnodes.declaration import DriverSpec
 from tailor.simnodes.driver import TOPICS, Driver
+from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.services import NAMES, Services
 from tailor.simnodes.world import World
 
@@ -50,7 +50,7 @@ class Node:
         self._inbox = session.inbox((declared.command_topic, *TOPICS), robot)
         self._session = session
         self._out = {"driver": session.publisher("driver", robot)}
-        questions = {name: session.questions(f"{robot}/sim/{name}") for name in NAMES}
+        questions = {name: session.service_server(f"{robot}/sim/{name}") for name in NAMES}
         self._services = Services(world, questions, on_reset=lambda: self.driver.guard.disarm("the world was reset"))
         self._frozen_ns = 0  # real time that does not count for the guard, because the world stood still
 

@@ -12,7 +12,8 @@ from typing import Any
 
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.planar import PHIG, XG, YG, BallBelief
-from tailor.executive.library import Array, Control
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +25,7 @@ class ApproachBall:
     follow_m: float  # a ball farther off has been moved: another task, for which the executive thinks again
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
-        """See tailor.executive.library.Controller; the command is (v m/s, omega rad/s)."""
+        """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
         return self.go(memory, now_ns, belief, self._followed(arguments, belief.ball_xy))
 
     def _followed(self, arguments: Array, ball_xy: tuple[float, float] | None) -> Array:

@@ -14,7 +14,8 @@ from tailor.executive.actions.rail_grip import RailGrip
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
-from tailor.executive.library import Array, Control
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Array
 
 TICK_S = 0.1  # the controller's period
 SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
@@ -71,7 +72,7 @@ class DribbleBall:
     speed_mps: float = 0.10
 
     def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
-        """See tailor.executive.library.Controller; arguments are poses of the axle, not of the ball."""
+        """See tailor.executive.interfaces.action.Controller; arguments are poses of the axle, not of the ball."""
         goal = tuple(arguments[XG : VG + 1].tolist())
         ball = belief.ball
         if ball is None:

@@ -11,7 +11,8 @@ from tailor.executive.actions.path_follower import Deviation, Pace, Progress, pr
 from tailor.executive.actions.planar import VG, XG, PlanarBelief
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.planar_ekf import Pose
-from tailor.executive.library import Array, Control
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Array
 
 ALIGN = "align"  # the memory while it turns on the spot at its goal
 
@@ -53,7 +54,7 @@ class GoToPose:
     crawl_mps: float = 0.10  # never slower, or it would not arrive
 
     def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
-        """See tailor.executive.library.Controller; the command is (v m/s, omega rad/s)."""
+        """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
         xg, yg, phig, vg = arguments[XG : VG + 1].tolist()
         pose = _seen_from(belief.pose, xg, yg, phig)
         if self._arrived(belief, pose, vg, memory):

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from tailor.executive.actions.cubic import Cubic, Joints, best_duration_s, cubic
-from tailor.executive.library import Array, Control
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Array
 
 PERIOD_S = 0.1  # of the executive; a command stands until the next one
 
@@ -46,7 +47,7 @@ class Reach:
     reached_radps: float = 0.25
 
     def __call__(self, memory: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
-        """See tailor.executive.library.Controller; the command is a velocity (rad/s) for each joint.
+        """See tailor.executive.interfaces.action.Controller; the command is a velocity (rad/s) for each joint.
 
         It is done one period before the waypoint, with the command that leads there: when the next action takes over,
         the arm is where it was to be, as fast as it was to be.

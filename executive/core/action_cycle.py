@@ -11,7 +11,8 @@ from tailor.executive.core.deliberation import Decision
 from tailor.executive.core.execution import Running, control_step
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import State, Task
-from tailor.executive.library import Control, Fact
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tailor.executive.library import Axis
+from tailor.executive.interfaces.domain import Axis
 
 
 def at_rest(axes: tuple[Axis, ...]) -> tuple[float, ...]:

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 from tailor.executive import planning
-from tailor.executive.library import Domain, Models, Scenario
+from tailor.executive.interfaces.domain import Domain, Scenario
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 

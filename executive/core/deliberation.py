@@ -11,7 +11,7 @@ from tailor.executive import planning
 from tailor.executive.core.context import Context
 from tailor.executive.core.plan_finding import PlanFinding, PlanFound
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Belief
+from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.library import Action, Array, Belief, Control
+from tailor.executive.interfaces.action import Action, Control
+from tailor.executive.interfaces.values import Array, Belief
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from tailor.executive import planning
 from tailor.executive.core.context import Context
 from tailor.executive.core.plan_finding import PlanFound, problem_of_now, validated
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 
 
 class Improvement:

@@ -11,7 +11,7 @@ from typing import Literal
 from tailor.executive import planning
 from tailor.executive.core.context import Context
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Way = Literal["searched", "suffix", "improved", "external"]

@@ -11,7 +11,7 @@ from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.improvement import Improvement
 from tailor.executive.core.modes import Mode
-from tailor.executive.library import Belief, Fact
+from tailor.executive.interfaces.values import Belief, Fact
 from tailor.executive.planning import GroundCache, Plan
 from tailor.schemas.messages import DriverState, Message, Sample
 

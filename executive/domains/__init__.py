@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.library import Domain, Scenario
+from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.schemas.errors import UsageError
 
 SCENARIO_STREAM = 0  # of a run's seed; noise and search are drawn from others

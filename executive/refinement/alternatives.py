@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import Array, Models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tailor.executive.library import Belief, Conflict
+from tailor.executive.interfaces.domain import Conflict
+from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import RefinementGate
+from tailor.executive.interfaces.models import RefinementGate
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Variable
 from tailor.schemas.errors import UsageError

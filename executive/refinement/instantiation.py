@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from tailor.executive.library import Belief, Conflict, Domain, Fact, Interval, Parameter, Scenario
+from tailor.executive.interfaces.action import Parameter
+from tailor.executive.interfaces.domain import Conflict, Domain, Scenario
+from tailor.executive.interfaces.values import Belief, Fact, Interval
 from tailor.executive.planning import Plan
 from tailor.executive.refinement.objective.sequence import (
     ActionSequence,

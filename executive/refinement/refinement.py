@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Array, Models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
 from tailor.executive.refinement.gate import Verdict, judge

@@ -130,7 +130,7 @@ class Session:
             rows.append((topic, key, _Source(subscriber)))
         return Inbox(rows, encoding_of, time.monotonic_ns)
 
-    def questions(self, key: str) -> ServiceServer:
+    def service_server(self, key: str) -> ServiceServer:
         """Questions that are asked under `key`, to be polled by a loop."""
         return ServiceServer(_RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
 

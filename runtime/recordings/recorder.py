@@ -45,7 +45,7 @@ class Health:
 
 
 class Recorder:
-    """Call `turn` some ten times a second from one thread, and `close` at the end."""
+    """Call `spin_once` some ten times a second from one thread, and `close` at the end."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class Recorder:
         self._flush_at_ns = 0
         self._tape = self._next_tape()
 
-    def turn(self, now_ns: int) -> None:
+    def spin_once(self, now_ns: int) -> None:
         """Write what has arrived; flush when it is time. `now_ns` is monotonic."""
         for raw in self._intake.take():
             self._keep(raw)

@@ -15,7 +15,7 @@ from tailor.runtime.recordings.snapshot import AFTER_NS, Alarm, Ring
 
 
 class SnapshotRecorder:
-    """Call `turn` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
+    """Call `spin_once` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
 
     def __init__(
         self, path: Path, intake: IngestQueue, selection: Selection, ring: Ring, facts: RecordingMetadata
@@ -28,7 +28,7 @@ class SnapshotRecorder:
         self._write_at_ns = 0
         self._number = 0  # of the next file
 
-    def turn(self, now_ns: int) -> None:
+    def spin_once(self, now_ns: int) -> None:
         """Take what has arrived; write a file when one is due. `now_ns` is monotonic."""
         for raw in self._intake.take():
             self._keep(raw, now_ns)

@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.schemas.messages import SimTruth
 from tailor.simnodes.agilo import firmware as fw
-from tailor.simnodes.agilo.physique import PhysicalParameters
+from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 from tailor.simnodes.agilo.scene import compile_scene
 from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
 from tailor.simnodes.body import STEP_NS, Reading
@@ -27,8 +27,8 @@ class AgiloBody:
     robot = "agilo"
     names = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
 
-    def __init__(self, physique: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
-        self._p = physique or PhysicalParameters()
+    def __init__(self, physical_parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
+        self._p = physical_parameters or PhysicalParameters()
         self._sensing = sensing or Sensing()
         self._model = compile_scene(self._p)
         self._data = mujoco.MjData(self._model)
@@ -50,7 +50,7 @@ class AgiloBody:
 
     def place(self, values: Mapping[str, float]) -> None:
         """Move the robot (with any of x, y, phi, v, omega) or the ball; what is not named stays as it is."""
-        now = asdict(self.truth())
+        now = asdict(self.ground_truth())
         if any(name in values for name in ("x", "y", "phi", "v", "omega")):
             self._place_robot({**now, **values})
         if any(name.startswith("ball_") for name in values):
@@ -76,7 +76,7 @@ class AgiloBody:
                 readings += self._sense()
         return readings
 
-    def truth(self) -> SimTruth:
+    def ground_truth(self) -> SimTruth:
         """Pose and velocities of robot and ball, field frame."""
         x, y, phi = self._pose()
         vx, vy, _, _, _, omega, _, _, ball_vx, ball_vy = self._qvel[: BALL_V + 2].tolist()
@@ -102,7 +102,7 @@ class AgiloBody:
         while self._pending and self._pending[0].time_ns <= now_ns:
             readings.append(self._pending.pop(0))
         if now_ns % TRUTH_PERIOD_NS == 0:
-            readings.append(Reading("truth", self.truth(), now_ns))
+            readings.append(Reading("truth", self.ground_truth(), now_ns))
         return readings
 
     def _look(self, now_ns: int) -> None:

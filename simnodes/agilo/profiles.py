@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.simnodes.agilo.physique import PhysicalParameters
+from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 from tailor.simnodes.agilo.sensing import Sensing
 
 PROFILES = {
@@ -29,5 +29,5 @@ PROFILES = {
 
 def body(profile: str = "nominal") -> AgiloBody:
     """A body of that profile; raises KeyError for another name."""
-    physique, sensing = PROFILES[profile]
-    return AgiloBody(physique, sensing)
+    physical_parameters, sensing = PROFILES[profile]
+    return AgiloBody(physical_parameters, sensing)

@@ -7,7 +7,7 @@ import math
 
 import mujoco
 
-from tailor.simnodes.agilo.physique import PhysicalParameters
+from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 
 TIMESTEP_S = 0.01  # contacts give way over 0.02 s; with 1 ms rolls, pushes and hits end within 3 cm
 

@@ -10,7 +10,7 @@ import numpy as np
 from tailor.schemas.messages import JointState, MotorCurrents
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.motor import PERIOD_NS, Motor
-from tailor.simnodes.powercube.physique import MODULES, NAMES, WRITING, PhysicalParameters
+from tailor.simnodes.powercube.physical_parameters import MODULES, NAMES, WRITING, PhysicalParameters
 from tailor.simnodes.powercube.scene import PEN, compile_scene
 
 STATE_PERIOD_NS = 20_000_000
@@ -25,8 +25,8 @@ class PowerCubeBody:
     robot = "powercube"
     names = LEGAL
 
-    def __init__(self, physique: PhysicalParameters | None = None) -> None:
-        self._p = physique or PhysicalParameters()
+    def __init__(self, physical_parameters: PhysicalParameters | None = None) -> None:
+        self._p = physical_parameters or PhysicalParameters()
         self._model = compile_scene(self._p)
         self._data = mujoco.MjData(self._model)
         self._motors = (Motor(self._p), Motor(self._p))
@@ -69,7 +69,7 @@ class PowerCubeBody:
                 readings += self._sense()
         return readings
 
-    def truth(self) -> JointState:
+    def ground_truth(self) -> JointState:
         """Exact angles and velocities, and the torques (N·m) of the motors."""
         torques = (*self._data.ctrl.tolist(), *(0.0 for _ in NAMES[len(WRITING) :]))
         return JointState(
@@ -106,7 +106,7 @@ class PowerCubeBody:
         readings = [Reading("joint_states", JointState(now_ns, NAMES, angles, velocities, efforts), now_ns)]
         if now_ns % CURRENT_PERIOD_NS == 0:
             told = MotorCurrents(now_ns, WRITING, currents, tuple(self._peaks_a))
-            readings += [Reading("currents", told, now_ns), Reading("joint_truth", self.truth(), now_ns)]
+            readings += [Reading("currents", told, now_ns), Reading("joint_truth", self.ground_truth(), now_ns)]
             self._peaks_a = [abs(current) for current in currents]
         return readings
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from tailor.simnodes.powercube.physique import PhysicalParameters
+from tailor.simnodes.powercube.physical_parameters import PhysicalParameters
 
 PERIOD_NS = 1_000_000
 PERIOD_S = PERIOD_NS * 1e-9
@@ -22,10 +22,10 @@ END_BRAKING_RADPS2 = 2.0  # before the end of the angle's range
 class Motor:
     """A velocity servo over a current limit; `tick` is called once a period with the encoder's count."""
 
-    def __init__(self, physique: PhysicalParameters) -> None:
-        self._p = physique
-        self._count_rad = physique.count_rad
-        self._step_max = physique.acceleration_max_radps2 * PERIOD_S
+    def __init__(self, physical_parameters: PhysicalParameters) -> None:
+        self._p = physical_parameters
+        self._count_rad = physical_parameters.count_rad
+        self._step_max = physical_parameters.acceleration_max_radps2 * PERIOD_S
         self.reset(0.0, 0.0, 0.0)
 
     def reset(self, angle: float, velocity: float, current_a: float) -> None:

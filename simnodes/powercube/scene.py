@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mujoco
 
-from tailor.simnodes.powercube.physique import MODULES, WRITING, Module, PhysicalParameters
+from tailor.simnodes.powercube.physical_parameters import MODULES, WRITING, Module, PhysicalParameters
 
 TIMESTEP_S = 0.001
 PEN = "pen"  # the site at the tip

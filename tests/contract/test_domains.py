@@ -9,11 +9,11 @@ import pytest
 
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Scenario
+from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.refinement.instantiation import ActionSequence, instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import TOPICS
-from tailor.simnodes.declaration import declaration
+from tailor.simnodes.driver_spec import declaration
 from tailor.tools.lockstep.action_run import new_body, newest, run_action, sample_arguments
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -104,7 +104,7 @@ def test_a_plain_put_of_a_ros_bridge_is_heard(pair):
 
 def test_questions_are_answered_from_a_loop(pair):
     a, b = pair
-    questions, over = b.questions("exec/goal"), threading.Event()
+    questions, over = b.service_server("exec/goal"), threading.Event()
 
     def loop():
         while not over.is_set():

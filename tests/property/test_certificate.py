@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.bound_stagnation import PATIENCE, BoundStagnation
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound

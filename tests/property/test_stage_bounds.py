@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.boxes import NOWHERE, Boxes, box_of
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings

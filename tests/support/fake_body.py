@@ -38,7 +38,7 @@ class FakeBody:
             readings += [Reading(topic, self._sense(topic), self.time_ns) for topic in due]
         return readings
 
-    def truth(self):
+    def ground_truth(self):
         s = self.state
         return SimTruth(self.time_ns, s["x"], s["y"], s["phi"], self.v, self.omega, s["ball_x"], s["ball_y"], 0.0, 0.0)
 
@@ -50,4 +50,4 @@ class FakeBody:
             return PoseEstimate(now, s["x"], s["y"], s["phi"], 1e-4, 1e-4, 1e-4)
         if topic == "ball":
             return BallPercept(now, s["ball_x"], s["ball_y"], 1e-4, 1e-4, 0.0)
-        return self.truth()
+        return self.ground_truth()

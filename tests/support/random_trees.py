@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.models.bounds.leaf_bounds import LeafBounds
 from tailor.models.bounds.model_bounds import ModelBounds
 from tailor.models.bounds.tree_boxes import TreeBoxes

@@ -10,7 +10,7 @@ from tailor.runtime.bus.session import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
-from tailor.simnodes.declaration import DriverSpec
+from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World

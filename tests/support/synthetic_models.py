@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tailor.executive.library import Action, Array, Control, Models, Parameter
+from tailor.executive.interfaces.action import Action, Control, Parameter
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 
 PI = float(np.pi)

@@ -8,7 +8,10 @@ import numpy as np
 
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.core.state import Inputs
-from tailor.executive.library import Action, Axis, Control, Interval, Models, Parameter, Scenario
+from tailor.executive.interfaces.action import Action, Control, Parameter
+from tailor.executive.interfaces.domain import Axis, Scenario
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import DriverState, Odometry, Sample, VelocityCommand
 
 PDDL = """

@@ -15,7 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Array, Models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for

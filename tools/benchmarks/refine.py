@@ -12,7 +12,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Column, Table
 
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks import certificates
 from tailor.tools.benchmarks.refine_cases import Case, cases

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive import domains
+from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Action, Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable

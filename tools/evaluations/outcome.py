@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from tailor.executive.library import Domain
+from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import RefinementReport, SimTruth, Subgoals
 from tailor.tools.lockstep.run import Run

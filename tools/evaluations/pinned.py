@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from tailor.executive.library import Belief, Domain, Fact, Interval, Scenario
+from tailor.executive.interfaces.domain import Domain, Scenario
+from tailor.executive.interfaces.values import Belief, Fact, Interval
 
 Pins = Mapping[tuple[str, str], float]  # (label, quantity) -> value
 

@@ -20,7 +20,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.core.context import Context, Settings, make_context
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tailor.executive.library import Domain
+from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.declaration import DriverSpec, declaration, read_driver_spec
+from tailor.simnodes.driver_spec import DriverSpec, declaration, read_driver_spec
 
 
 def driver_of(robot: str, file: str | None) -> DriverSpec:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.library import Domain
+from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
 from tailor.schemas.errors import UsageError

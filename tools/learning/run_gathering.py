@@ -16,7 +16,7 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.core.context import Settings, make_context
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest

@@ -12,7 +12,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tailor.executive.library import Action, Array, Belief, Domain
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.values import Array, Belief
 from tailor.schemas.messages import Message, Sample
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.body import Body, Reading
@@ -127,7 +129,7 @@ def run_action(
     body.reset(rng, start)
     memory: Any = None
     failure, rows, work, trace = "", [], [], []
-    truth = body.truth()
+    truth = body.ground_truth()
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         failure = failure or trials.failure(action, start, truth)
@@ -141,7 +143,7 @@ def run_action(
         body.command(control.command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
-        before, truth = truth, body.truth()
+        before, truth = truth, body.ground_truth()
         work.append(trials.work_j(before, truth))
     done = control.outcome == "done"
     failure = failure or ("" if done else control.reason or "time limit")

@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tailor.executive.library import Action, Array, Domain
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import (

@@ -14,13 +14,13 @@ from tailor.executive.core.context import PERIOD_NS, Context
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Domain
+from tailor.executive.interfaces.domain import Domain
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.simnodes.body import Body, Reading
-from tailor.simnodes.declaration import declaration
 from tailor.simnodes.driver import Driver
+from tailor.simnodes.driver_spec import declaration
 from tailor.simnodes.world import Event, World
 
 CHECKS_PER_TICK = 300  # what a quiet machine grants in 60 ms, roughly

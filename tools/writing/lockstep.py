@@ -9,7 +9,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.core.context import Settings, make_context
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading

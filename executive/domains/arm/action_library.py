@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tailor.executive.actions.reach import Reach
-from tailor.executive.library import Action, Parameter
+from tailor.executive.interfaces.action import Action, Parameter
 
 PAN_RAD = 1.3  # where waypoints may lie
 LIFT_RAD = 0.9

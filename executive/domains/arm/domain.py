@@ -10,13 +10,15 @@ from tailor.executive.domains.arm import predicates
 from tailor.executive.domains.arm.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
-from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Axis, Scenario
+from tailor.executive.interfaces.values import Fact, Interval
 from tailor.schemas.messages import JointCommand, Message, Sample
 
 
 @dataclass(frozen=True, slots=True)
 class ArmDomain:
-    """See tailor.executive.library.Domain."""
+    """See tailor.executive.interfaces.domain.Domain."""
 
     pddl: str
     name: str = "arm"

@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from tailor.executive.domains.arm.action_library import fastest_radps
-from tailor.executive.library import Scenario
+from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.errors import UsageError
 
 Point = tuple[float, float]  # rad: pan, lift

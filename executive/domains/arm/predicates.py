@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tailor.executive.domains.arm.belief import ArmBelief, Joints, ahead
-from tailor.executive.library import Fact, Interval, Scenario
+from tailor.executive.interfaces.domain import Scenario
+from tailor.executive.interfaces.values import Fact, Interval
 
 
 def value(quantity: str, label: str, holds: tuple[Fact, ...], belief: ArmBelief, scenario: Scenario) -> Interval | None:
-    """See tailor.executive.library.Domain.value.
+    """See tailor.executive.interfaces.domain.Domain.value.
 
     `at` says where the arm will be when the next action begins, `next` where the scenario put the waypoint. The
     velocities at a waypoint are free up to the fastest that its neighbours allow, unless the scenario names them, which

@@ -18,7 +18,7 @@ from tailor.executive.actions.rail_grip import RailGrip
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.behind import Behind
 from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
-from tailor.executive.library import Action, Parameter
+from tailor.executive.interfaces.action import Action, Parameter
 
 FIELD_X_M = 3.5
 FIELD_Y_M = 2.25

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import Array, Columns
+from tailor.executive.interfaces.values import Array, Columns
 
 TURN = 2 * np.pi
 

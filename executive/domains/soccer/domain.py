@@ -10,13 +10,15 @@ from tailor.executive.domains.soccer import predicates
 from tailor.executive.domains.soccer.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.belief import SoccerBelief
 from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
-from tailor.executive.library import Action, Axis, Fact, Interval, Scenario
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Axis, Scenario
+from tailor.executive.interfaces.values import Fact, Interval
 from tailor.schemas.messages import Message, Sample, VelocityCommand
 
 
 @dataclass(frozen=True, slots=True)
 class SoccerDomain:
-    """See tailor.executive.library.Domain."""
+    """See tailor.executive.interfaces.domain.Domain."""
 
     pddl: str
     name: str = "soccer"

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.action_library import AT_BALL_MPS
 from tailor.executive.domains.soccer.belief import SoccerBelief
-from tailor.executive.library import Conflict, Fact, Interval, Scenario
+from tailor.executive.interfaces.domain import Conflict, Scenario
+from tailor.executive.interfaces.values import Fact, Interval
 
 BEFORE_AHEAD_M = (0.15, 0.70)  # a ball there, in the robot's frame, is `atball`: dribbling can begin
 BEFORE_LEFT_M = 0.25
@@ -23,7 +24,7 @@ def value(
     belief: SoccerBelief,
     scenario: Scenario,
 ) -> Interval | None:
-    """See tailor.executive.library.Domain.value."""
+    """See tailor.executive.interfaces.domain.Domain.value."""
     result: Interval | None = None
     for fact in (*holds, *achieved):
         said = _said(quantity, label, fact, fact in holds, belief, scenario.places)

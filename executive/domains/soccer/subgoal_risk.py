@@ -9,7 +9,7 @@ import numpy as np
 
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.planar import PHIG, VG, XG, YG, X, Y
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 
 POINTS = np.linspace(0.0, 1.0, 6)[:, None]  # of the straight piece, and of the bend, that are looked at
 TOUCHING_M = 0.38  # from the axle to the ball: about what the rail reaches, and the ball's radius
@@ -18,7 +18,7 @@ CLEAR_M = 0.55  # with what noise may add
 
 @dataclass(frozen=True, slots=True)
 class BallContactRisk:
-    """See tailor.executive.library.DetourRisk: the risk that the robot touches the ball on its way."""
+    """See tailor.executive.interfaces.action.DetourRisk: the risk that the robot touches the ball on its way."""
 
     ways: ArrivalPath  # goToPose's
 

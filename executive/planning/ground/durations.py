@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial, reduce
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, World
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 
 Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end

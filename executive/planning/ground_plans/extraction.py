@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, World, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
 from tailor.executive.planning.ground.ground_formula import Facts, World
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask

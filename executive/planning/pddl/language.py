@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 
 When = OneOf["start", "over", "end"]  # an action's moments: at start, over all, at end
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal as OneOf
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
 from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
 from tailor.executive.planning.pddl.s_expressions import read_form

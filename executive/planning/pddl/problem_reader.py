@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.action_reader import number_of
 from tailor.executive.planning.pddl.domain_reader import check_requirements, define_name
 from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_atom, read_formula, read_terms

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, Effect
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground_plans.partial_plan import GOAL_STEP
 from tailor.executive.planning.pddl.language import Literal
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.durations import duration_range
 from tailor.executive.planning.ground.grounding import world_of
 from tailor.executive.planning.pddl.language import Action, Domain, Effect

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from tailor.executive.library import Fact
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
 from tailor.executive.planning.structures.schedule import levels

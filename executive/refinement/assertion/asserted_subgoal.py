@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tailor.executive.library import Action, Parameter
+from tailor.executive.interfaces.action import Action, Parameter
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.assertion.feasibility_check import FeasibilityCheck
 from tailor.executive.refinement.assertion.subgoal_comparison import SubgoalComparison, accepting

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings

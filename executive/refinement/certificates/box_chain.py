@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.boxes import NOWHERE, Boxes, joined
 from tailor.executive.refinement.solvers.chain import forward_costs, through_costs, traced
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.ranges import Ranges
 
 

@@ -12,7 +12,7 @@ from itertools import count
 import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.bound_stagnation import BoundStagnation
 from tailor.executive.refinement.certificates.box_chain import BoxChain, Costs
 from tailor.executive.refinement.certificates.boxes import NOWHERE, box_of

@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.library import Array, Columns, ModelBounds, Spans, unchanged
+from tailor.executive.interfaces.action import unchanged
+from tailor.executive.interfaces.models import ModelBounds
+from tailor.executive.interfaces.values import Array, Columns, Spans
 from tailor.executive.refinement.certificates.boxes import Boxes
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage import Stage

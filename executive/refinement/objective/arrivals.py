@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 
 
 def displacements(quantities: Sequence[str], spread: Mapping[str, float]) -> Array:

@@ -7,7 +7,8 @@ from itertools import zip_longest
 
 import numpy as np
 
-from tailor.executive.library import Array, Models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.ranges import ranges_of
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings

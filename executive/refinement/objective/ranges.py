@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.sequence import Variable
 
 

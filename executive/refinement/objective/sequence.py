@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from tailor.executive.library import Action
+from tailor.executive.interfaces.action import Action
 
 
 @dataclass(frozen=True, slots=True)

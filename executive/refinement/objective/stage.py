@@ -11,7 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.library import Action, Array, DurationModel, Models, SuccessModel
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.models import DurationModel, Models, SuccessModel
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.arrivals import displacements
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 
 Spoiling = Callable[[Array], Array]  # parameters of a detour, shape (n, p), to risks, shape (n,)

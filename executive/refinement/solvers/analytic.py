@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.solvers.chain import ChainObjective, blocks_of, links_of, pairwise_costs, traced
 from tailor.executive.refinement.solvers.solver import Limits, Solver
 

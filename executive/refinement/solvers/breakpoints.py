@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.solvers.solver import Limits, Objective, Solver
 
 Columns = NDArray[np.intp]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.solvers.solver import Limits, Objective, Solver
 
 INDIVIDUALS_PER_PARAMETER = 5  # few, and most of them after the best: there is time for some 60 generations only

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.library import Array
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.ranges import Ranges
 
 

@@ -14,7 +14,8 @@ from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Axis, Models
+from tailor.executive.interfaces.domain import Axis
+from tailor.executive.interfaces.models import Models
 from tailor.schemas import codec
 from tailor.schemas.messages import (
     ActionFinished,

@@ -14,8 +14,8 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.instantiation import instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import JointState, Sample
-from tailor.simnodes.declaration import declaration
-from tailor.simnodes.powercube.physique import PhysicalParameters
+from tailor.simnodes.driver_spec import declaration
+from tailor.simnodes.powercube.physical_parameters import PhysicalParameters
 
 ARM = domains.load("arm")
 ALPHABET = [chr(code) for code in range(ord("A"), ord("Z") + 1)]

@@ -25,7 +25,7 @@ def ball_held(v, omega):
     for tick in range(90):
         body.command((v, min(omega, 0.03 * tick)))
         body.advance(100_000_000)
-    truth = body.truth()
+    truth = body.ground_truth()
     return abs(math.hypot(truth.ball_x - truth.x, truth.ball_y - truth.y) - robot.IN_RAIL_M) < 0.03
 
 

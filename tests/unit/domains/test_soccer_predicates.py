@@ -11,7 +11,8 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer import robot
-from tailor.executive.library import Conflict, Interval, Scenario
+from tailor.executive.interfaces.domain import Conflict, Scenario
+from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
 from tailor.tools.lockstep.action_run import new_body, newest
 
@@ -121,7 +122,7 @@ def test_belief_follows_the_robot_within_centimetres():
     for tick in range(150):
         body.command((0.0, 0.0) if tick < 20 else (0.5, 0.5 * math.sin(0.1 * tick)))
         belief = SOCCER.update(belief, (tick + 1) * 100_000_000, newest(body.advance(100_000_000)), zero)
-        truth = body.truth()
+        truth = body.ground_truth()
         if tick > 20:
             errors.append(
                 (math.hypot(belief.pose.x - truth.x, belief.pose.y - truth.y), abs(belief.pose.phi - truth.phi))

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tailor.executive.library import Interval
+from tailor.executive.interfaces.values import Interval
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.assertion import figure15, figure16

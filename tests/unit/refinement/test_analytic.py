@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Array, Models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.analytic import AnalyticSolver

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Action, Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings

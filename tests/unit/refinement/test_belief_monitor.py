@@ -8,7 +8,8 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tailor.executive.library import Conflict, Interval
+from tailor.executive.interfaces.domain import Conflict
+from tailor.executive.interfaces.values import Interval
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import Failure, Pattern, instantiate
 from tailor.executive.refinement.objective.sequence import InstantiatedAction

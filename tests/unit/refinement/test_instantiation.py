@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Conflict, Interval
+from tailor.executive.interfaces.domain import Conflict
+from tailor.executive.interfaces.values import Interval
 from tailor.executive.planning import Link, Literal, Plan, Search, parse_domain, parse_problem
 from tailor.executive.refinement.instantiation import ActionSequence, Failure, instantiate
 from tests.support.synthetic_models import LIBRARY, PI

@@ -214,12 +214,12 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
     monkeypatch.setattr(os, "write", full)
     for sequence in range(1, 31):
         intake.put(odometry(sequence))
-        recorder.turn(sequence * S)
+        recorder.spin_once(sequence * S)
     assert recorder.health.trouble == "No space left on device"
     lost = recorder.health.drops["agilo/odom"]
     assert 0 < lost < 30
     monkeypatch.setattr(os, "write", real)
-    recorder.turn(100 * S)
+    recorder.spin_once(100 * S)
     assert recorder.health.trouble == ""
     intake.put(odometry(31))
     assert recorder.close().messages == 31 - lost
@@ -242,7 +242,7 @@ def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
     recorder = make_recorder(tmp_path, intake, most_bytes=1)
     for sequence in range(1, 4):
         intake.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
-        recorder.turn(sequence * S)
+        recorder.spin_once(sequence * S)
     recorder.close()
     parts = sorted(tmp_path.glob("r_*.mcap"))
     assert len(parts) == 4
@@ -330,12 +330,12 @@ def test_a_snapshot_of_nothing_is_refused(tmp_path):
     intake = IngestQueue()
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     assert not recorder.ask("by hand", 0)
-    recorder.turn(0)
+    recorder.spin_once(0)
     intake.put(odometry(1))
-    recorder.turn(1)
+    recorder.spin_once(1)
     assert list(tmp_path.iterdir()) == []
     assert recorder.ask("by hand", 2)
-    recorder.turn(2)
+    recorder.spin_once(2)
     assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
 
 
@@ -355,15 +355,15 @@ def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_writ
     intake = IngestQueue()
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     intake.put(odometry(1))
-    recorder.turn(0)
+    recorder.spin_once(0)
     full_disk(True)
     recorder.ask("by hand", 1)
-    recorder.turn(1)
+    recorder.spin_once(1)
     assert recorder.health.trouble == "No space left on device"
     assert (recorder.health.files, list(tmp_path.iterdir())) == ([], [])
     full_disk(False)
     recorder.ask("again", 2)
-    recorder.turn(2)
+    recorder.spin_once(2)
     assert [path.name for path in recorder.health.files] == ["s_000.mcap"]
 
 
@@ -372,10 +372,10 @@ def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones
     intake = IngestQueue()
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     intake.put(odometry(1))
-    recorder.turn(0)
+    recorder.spin_once(0)
     for k in (1, 2):
         recorder.ask("by hand", k)
-        recorder.turn(k)
+        recorder.spin_once(k)
     assert [path.name for path in recorder.health.files] == ["s_001.mcap", "s_002.mcap"]
     assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
 
@@ -395,12 +395,12 @@ def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path)
     recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
     for k, message in enumerate([odometry(1), status("READY", 2), status("FAULT", 3)]):
         intake.put(message)
-        recorder.turn(k * S // 10)
+        recorder.spin_once(k * S // 10)
     assert list(tmp_path.iterdir()) == []
     intake.put(odometry(4))
-    recorder.turn(2 * S)
+    recorder.spin_once(2 * S)
     recorder.ask("by hand", 3 * S)
-    recorder.turn(3 * S)
+    recorder.spin_once(3 * S)
     health = recorder.close()
     assert [p.name for p in health.files] == ["s_000.mcap", "s_001.mcap"]
     first = open_recording(health.files[0])

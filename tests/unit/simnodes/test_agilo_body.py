@@ -14,7 +14,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.agilo import body as agilo_body
 from tailor.simnodes.agilo import firmware, scene
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.simnodes.agilo.physique import PhysicalParameters, ball_in_rail_m
+from tailor.simnodes.agilo.physical_parameters import PhysicalParameters, ball_in_rail_m
 from tailor.simnodes.agilo.sensing import Sensing
 from tailor.simnodes.body import STEP_NS
 
@@ -29,7 +29,7 @@ heard = []
 for i in range(60):
     body.command((0.6, 0.8 - 0.02 * i))
     heard += body.advance(100_000_000)
-print(repr(heard[-6:]), body.truth())
+print(repr(heard[-6:]), body.ground_truth())
 """
 
 
@@ -56,10 +56,10 @@ def test_two_processes_say_the_same_to_the_last_bit():
 
 def test_an_episode_does_not_depend_on_the_one_before():
     body, fresh = driven((0.5, 0.5), 20)
-    first = body.truth()
+    first = body.ground_truth()
     driven((0.9, -1.0), 13, {"x": 2.0, "ball_x": 2.3, "ball_y": 0.0}, body)
     again, heard = driven((0.5, 0.5), 20, None, body)
-    assert again.truth() == first
+    assert again.ground_truth() == first
     assert heard == fresh
 
 
@@ -71,7 +71,7 @@ def test_other_seed_gives_other_noise_but_the_same_physics():
         body.command((0.5, 0.3))
         heard.append(body.advance(10 * TICK_NS))
     assert heard[0] != heard[1]
-    assert bodies[0].truth() == bodies[1].truth()
+    assert bodies[0].ground_truth() == bodies[1].ground_truth()
 
 
 def test_steps_of_any_length_lead_to_the_same_place():
@@ -83,16 +83,16 @@ def test_steps_of_any_length_lead_to_the_same_place():
     pieces = []
     for steps in (1, 2, 3, 7, 4, 3):
         pieces += parts.advance(steps * STEP_NS)
-    assert whole.truth() == parts.truth()
+    assert whole.ground_truth() == parts.ground_truth()
     assert heard == pieces
 
 
 def test_robot_goes_where_its_wheels_turn():
-    truth = driven((0.5, 0.0), 40)[0].truth()
+    truth = driven((0.5, 0.0), 40)[0].ground_truth()
     assert truth.v == pytest.approx(0.5, abs=0.01)
     assert truth.x == pytest.approx(0.5 * 4.0 - 0.25, abs=0.06)
     assert abs(truth.y) < 0.01
-    turned = driven((0.0, 1.0), 20)[0].truth()
+    turned = driven((0.0, 1.0), 20)[0].ground_truth()
     assert turned.omega == pytest.approx(1.0, abs=0.05)
     assert math.hypot(turned.x, turned.y) < 0.01
 
@@ -125,9 +125,9 @@ def test_free_ball_slows_down_as_declared():
     body = AgiloBody()
     body.reset(np.random.default_rng(0), {"ball_x": 2.0, "ball_y": 1.0, "ball_vx": 1.0})
     body.advance(10 * TICK_NS)
-    assert body.truth().ball_vx == pytest.approx(1.0 - robot.BALL_ROLLING_MPS2, abs=0.03)
+    assert body.ground_truth().ball_vx == pytest.approx(1.0 - robot.BALL_ROLLING_MPS2, abs=0.03)
     body.advance(15 * TICK_NS)
-    assert body.truth().ball_vx == pytest.approx(0.0, abs=0.01)
+    assert body.ground_truth().ball_vx == pytest.approx(0.0, abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -143,10 +143,10 @@ def test_free_ball_slows_down_as_declared():
     ids=["rolls", "hit", "hit hard", "grazed by the rail's tip", "carried round", "caught"],
 )
 def test_ball_ends_where_ten_times_finer_steps_take_it(monkeypatch, start, command):
-    coarse = driven(command, 20, start)[0].truth()
+    coarse = driven(command, 20, start)[0].ground_truth()
     monkeypatch.setattr(scene, "TIMESTEP_S", scene.TIMESTEP_S / 10)
     monkeypatch.setattr(agilo_body, "STEP_NS", STEP_NS // 10)
-    fine = driven(command, 20, start)[0].truth()
+    fine = driven(command, 20, start)[0].ground_truth()
     assert coarse != fine
     assert math.hypot(coarse.ball_x - fine.ball_x, coarse.ball_y - fine.ball_y) < 0.03
     assert math.hypot(coarse.x - fine.x, coarse.y - fine.y) < 0.02
@@ -160,7 +160,7 @@ def test_rail_holds_the_ball_in_gentle_turns_only(omega, held):
     for tick in range(80):
         body.command((0.36, min(omega, 0.1 * tick)))
         body.advance(TICK_NS)
-    t = body.truth()
+    t = body.ground_truth()
     distance = math.hypot(t.ball_x - t.x, t.ball_y - t.y)
     assert (abs(distance - robot.IN_RAIL_M) < 0.02) is held
 
@@ -211,17 +211,17 @@ def test_ball_is_seen_only_in_view(ball, seen):
 def test_odometry_adds_up_to_where_the_robot_is():
     body, heard = driven((0.5, 0.3), 60)
     last = [r.message for r in heard if isinstance(r.message, Odometry)][-1]
-    truth = body.truth()
+    truth = body.ground_truth()
     assert math.hypot(last.x - truth.x, last.y - truth.y) < 0.15
     assert last.v == pytest.approx(truth.v, abs=0.05)
 
 
 def test_things_are_moved_mid_run_without_touching_the_rest():
     body, _ = driven((0.4, 0.0), 20, {"ball_x": 3.0, "ball_y": 0.0})
-    before = body.truth()
+    before = body.ground_truth()
     body.place({"ball_vx": 0.0, "ball_vy": 1.0})
-    after = body.truth()
+    after = body.ground_truth()
     assert (after.ball_x, after.ball_vy) == (before.ball_x, 1.0)
     assert (after.x, after.v) == (before.x, before.v)
     body.place({"x": -1.0})
-    assert (body.truth().x, body.truth().y) == (-1.0, before.y)
+    assert (body.ground_truth().x, body.ground_truth().y) == (-1.0, before.y)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
-from tailor.simnodes.declaration import DriverSpec, declaration
 from tailor.simnodes.driver import Driver, command_values
+from tailor.simnodes.driver_spec import DriverSpec, declaration
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.services import Services
 from tailor.simnodes.world import Event, World

@@ -9,7 +9,7 @@ import pytest
 
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.simnodes.powercube.motor import PERIOD_S, Motor
-from tailor.simnodes.powercube.physique import NAMES, PhysicalParameters
+from tailor.simnodes.powercube.physical_parameters import NAMES, PhysicalParameters
 from tests.support.cpu_time import least_cpu_s
 
 TICK_NS = 100_000_000
@@ -56,8 +56,8 @@ def test_advancing_in_pieces_is_advancing_at_once():
 def test_the_arm_holds_still_without_sagging():
     made = body(a=0.5, b=-0.4)
     follow(made, [(0.0, 0.0)] * 20)
-    _, _, *rest = made.truth().positions
-    assert made.truth().positions[:2] == pytest.approx((0.5, -0.4), abs=1e-3)
+    _, _, *rest = made.ground_truth().positions
+    assert made.ground_truth().positions[:2] == pytest.approx((0.5, -0.4), abs=1e-3)
     assert np.isfinite(rest).all()
 
 
@@ -66,7 +66,7 @@ def test_set_points_are_followed_within_three_hundredths():
     follow(made, [(0.05 * k, -0.05 * k) for k in range(11)])
     for _ in range(5):
         follow(made, [(0.5, -0.5)])
-        assert made.truth().velocities[:2] == pytest.approx((0.5, -0.5), abs=0.03)
+        assert made.ground_truth().velocities[:2] == pytest.approx((0.5, -0.5), abs=0.03)
 
 
 @pytest.mark.parametrize("command", [(1e9, -1e9), (-1e9, 1e9)])
@@ -75,7 +75,7 @@ def test_no_command_breaks_a_limit(command):
     made.command(command)
     for _ in range(60):
         made.advance(TICK_NS)
-        state = made.truth()
+        state = made.ground_truth()
         assert np.abs(state.positions[:2]).max() < limits.position_max_rad + 0.02
         assert np.abs(state.velocities[:2]).max() < limits.velocity_max_radps + 0.05
 
@@ -141,4 +141,4 @@ def test_hearing_a_set_point_again_changes_nothing():
 def test_a_motor_turns_round_after_it_was_braked_at_the_end_of_its_range():
     made = body(a=1.8)
     follow(made, [(1.2, 0.0)] * 20 + [(1.1, 0.0)] * 5 + [(-0.5, 0.0)] * 10)
-    assert made.truth().velocities[0] == pytest.approx(-0.5, abs=0.03)
+    assert made.ground_truth().velocities[0] == pytest.approx(-0.5, abs=0.03)

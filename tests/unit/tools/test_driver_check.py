@@ -9,7 +9,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.declaration import declaration
+from tailor.simnodes.driver_spec import declaration
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.driver_check import check_driver, driver_of
 

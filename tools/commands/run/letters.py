@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive.domains.arm.letters import is_word
+from tailor.executive.domains.arm.letters import MAX_LETTERS, is_word
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import Stop, stop_on_signals
@@ -83,7 +83,7 @@ def summary(rows: Sequence[Written]) -> Table:
 
 
 def _in_lockstep(text: str, hands: Sequence[Hand], seed: int) -> list[Written]:
-    from tailor.executive.library import Models
+    from tailor.executive.interfaces.models import Models
     from tailor.models.runtime import load_robot
 
     models, body = Models(*load_robot(ListenedBody.robot)), ListenedBody()

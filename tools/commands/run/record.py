@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
             return 0 if done else 1
         intake, subscribe_all = session.subscribe_all("**")
         recorder = _recorder(arguments, intake)
-        questions = session.questions(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
+        questions = session.service_server(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
         _record(recorder, questions, stop, session, quiet=arguments.quiet)
         subscribe_all.undeclare()
         health = recorder.close()
@@ -96,7 +96,7 @@ def _record(
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
         connected = True
         while not stop.requested:
-            recorder.turn(time.monotonic_ns())
+            recorder.spin_once(time.monotonic_ns())
             if session.connected != connected:
                 connected = not connected
                 print(BACK if connected else GONE, file=sys.stderr, flush=True)

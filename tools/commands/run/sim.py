@@ -14,7 +14,7 @@ from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.declaration import DriverSpec, declaration
+from tailor.simnodes.driver_spec import DriverSpec, declaration
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import Event, World
 from tailor.tools.cli.deployment import deployment

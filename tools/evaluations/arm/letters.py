@@ -14,7 +14,7 @@ from joblib import Parallel, delayed
 from rich.progress import track
 
 from tailor.executive.domains.arm.letters import font
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
 from tailor.tools.cli.number_checks import at_least

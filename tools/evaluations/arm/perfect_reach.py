@@ -17,7 +17,7 @@ HALVINGS = 22
 
 
 class PerfectReach:
-    """See tailor.executive.library.DurationModel: exact but for the rounding to whole periods, and never unsure."""
+    """See `DurationModel`: exact but for the rounding to whole periods, and never unsure."""
 
     card: ClassVar[dict[str, Any]] = {"sha256": "the controller itself"}
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.executive.composition import load_models
-from tailor.executive.library import RefinementGate
+from tailor.executive.interfaces.models import RefinementGate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least

@@ -10,7 +10,8 @@ import numpy as np
 from tailor.executive.domains.arm.action_library import PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.predicates import named
-from tailor.executive.library import Action, Array
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import Message
 from tailor.tools.lockstep.samplers.drive_work import joint_work_j
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from tailor.schemas.messages import JointState, Message, Odometry, SimTruth
-from tailor.simnodes.agilo.physique import PhysicalParameters
+from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 
 AGILO = PhysicalParameters()
 WHEELS = 2

@@ -14,7 +14,8 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
-from tailor.executive.library import Action, Array
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import Message, SimTruth
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 

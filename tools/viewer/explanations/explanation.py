@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.library import Action, Array, Models
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.alternatives import Alternatives, alternatives
 from tailor.executive.refinement.greedy import greedy
 from tailor.executive.refinement.objective.objective import SequenceObjective

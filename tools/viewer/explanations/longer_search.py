@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.library import Action, Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import Subgoals

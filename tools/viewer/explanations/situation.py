@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.library import Models
+from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
 from tailor.models.cards.card import UNITS
 from tailor.models.features.features import SPACES, Quantity

@@ -38,6 +38,6 @@ class PhysicalParameters:
     ball_rolling_m: float = 0.0083  # lever of the rolling resistance: the free ball slows by 0.53 m/s²
 
 
-def ball_in_rail_m(physique: PhysicalParameters) -> float:
+def ball_in_rail_m(physical_parameters: PhysicalParameters) -> float:
     """Distance from the axle to the centre of a ball that lies in the rail."""
-    return physique.rail_ahead_m + physique.ball_radius_m
+    return physical_parameters.rail_ahead_m + physical_parameters.ball_radius_m
