@@ -12,7 +12,7 @@ from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.gate import check_gate
-from tailor.models.runtime import BENEFIT, load_gate, load_robot
+from tailor.models.runtime import GATE, load_gate, load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 
@@ -37,7 +37,7 @@ def build_context(order: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0)
     """
     domain = domains.load(order.domain)
     scenario, _ = domains.seeded_scenario(order.domain, order.scenario, order.settings.seed)
-    models = load_models(domain.robot, order.zoo, order.settings.refinement.benefit_gate)
+    models = load_models(domain.robot, order.zoo, order.settings.refinement.gate)
     return make_context(domain, scenario, models, order.settings, sender, stamp_offset_ns)
 
 
@@ -50,8 +50,8 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
     """
     folder = Path(zoo) if zoo else None
     durations, successes = load_robot(robot, folder, required_ranges(robot))
-    benefit = load_gate(robot, folder, {**durations, **successes}) if gated else None
-    return Models(durations, successes, None if benefit is None else check_gate(benefit))
+    gate = load_gate(robot, folder, {**durations, **successes}) if gated else None
+    return Models(durations, successes, None if gate is None else check_gate(gate))
 
 
 def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
@@ -73,8 +73,8 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
 def provenance(order: ExecutiveConfig, context: Context) -> dict[str, Any]:
     """All that it takes to compose the same context again, and the cards of the models it used."""
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
-    if context.models.benefit is not None:
-        models[BENEFIT] = context.models.benefit
+    if context.models.gate is not None:
+        models[GATE] = context.models.gate
     return {
         "order": dataclasses.asdict(order),
         "sender": context.sender,
@@ -85,7 +85,7 @@ def provenance(order: ExecutiveConfig, context: Context) -> dict[str, Any]:
 
 def without_gate(order: ExecutiveConfig) -> ExecutiveConfig:
     """The order of a run that always refines."""
-    refinement = dataclasses.replace(order.settings.refinement, benefit_gate=False)
+    refinement = dataclasses.replace(order.settings.refinement, gate=False)
     return dataclasses.replace(order, settings=dataclasses.replace(order.settings, refinement=refinement))
 
 
@@ -93,7 +93,7 @@ def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     _check(recorded)
     order = from_table(ExecutiveConfig, recorded["order"], "recording's provenance")
-    if BENEFIT not in recorded["models"]:  # the run had no benefit tree, whatever there is here
+    if GATE not in recorded["models"]:  # the run had no benefit tree, whatever there is here
         order = without_gate(order)
     context = build_context(order, recorded["sender"], recorded["stamp_offset_ns"])
     here = provenance(order, context)["models"]

@@ -22,7 +22,7 @@ from tailor.schemas.errors import UsageError
 Array = NDArray[np.float64]
 
 ZOO = Path(__file__).parent / "zoo"
-BENEFIT = "refinement/benefit"  # the one model of a robot that is not of an action but of choosing subgoals
+GATE = "refinement/benefit"  # the one model of a robot that is not of an action but of choosing subgoals
 GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
 
 
@@ -77,7 +77,7 @@ class OnnxGate:
         """Kinds of sequences that it was learned for: names of actions, detours left out."""
         return frozenset(tuple(names) for names in self.card["sequences"])
 
-    def slower(self, situations: Array) -> Array:
+    def p_slowdown(self, situations: Array) -> Array:
         """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN where it is invalid."""
         return _probability(self.session, situations)
 
@@ -146,11 +146,11 @@ def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> 
     Raises:
       UsageError: It cannot be trusted, or was learned with other action models.
     """
-    path = (zoo or ZOO) / robot / f"{BENEFIT}.onnx"
+    path = (zoo or ZOO) / robot / f"{GATE}.onnx"
     if not path.exists() and not card_path(path).exists():
         return None
     model = load_model(path)
-    check_place(model.card, f"{robot}/{BENEFIT}", path.parent)
+    check_place(model.card, f"{robot}/{GATE}", path.parent)
     check_made_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
     assert isinstance(model, OnnxGate)
     return model
@@ -159,7 +159,7 @@ def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> 
 def _names(folder: Path) -> list[str]:
     """Every "action/kind" of which there is a model or a card: one without the other is an error later."""
     files = {f"{p.parent.name}/{p.name.split('.')[0]}" for kind in KINDS for p in folder.glob(f"*/{kind}.*")}
-    return sorted(files - {BENEFIT})
+    return sorted(files - {GATE})
 
 
 def _in_zoo(name: str, zoo: Path) -> Path:
@@ -215,7 +215,7 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
         case OnnxSuccess():
             found = (model.probability(arguments),)
         case OnnxGate():
-            found = (model.slower(arguments),)
+            found = (model.p_slowdown(arguments),)
     for name, values in zip(card["outputs"], found, strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)

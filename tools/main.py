@@ -39,7 +39,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, in VHPOP's manner"),
     "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and keep the episodes"),
     "train": ("tailor.tools.commands.learn.train", "make action models from episodes"),
-    "train-benefit": (
+    "train-gate": (
         "tailor.tools.commands.learn.train_gate",
         "learn when not to refine, with the action models that there are",
     ),

@@ -29,10 +29,10 @@ class Controller(Protocol):
         ...
 
 
-class DetourRisk(Protocol):
+class SubgoalRisk(Protocol):
     """What a detour may do to the action that it is made for: run into its ball, say."""
 
-    def __call__(self, detours: Array, action: Array) -> Array:
+    def __call__(self, subgoals: Array, action: Array) -> Array:
         """Risks, shape (n,), 0 to 1, of a detour's parameters, shape (n, p), before an action's, shape (q,)."""
         ...
 
@@ -74,8 +74,8 @@ class Action:
     controller: Controller
     duration_model: str  # "goToPose/duration": path in the robot's model zoo
     success_model: str = ""  # empty: never predicted to fail
-    detour: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
-    detour_risk: DetourRisk | None = None  # that the detour itself spoils this action; None: it cannot
+    subgoal_action: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
+    subgoal_risk: SubgoalRisk | None = None  # that the detour itself spoils this action; None: it cannot
     arguments: Callable[[Array], Array] = unchanged
     spans: Spans | None = None  # `arguments` on intervals, for certificates; None: unknown, unless nothing is changed
     time_limit_factor: float = 3.0  # times the predicted duration

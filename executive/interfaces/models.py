@@ -43,7 +43,7 @@ class RefinementGate(Protocol):
         """Above this risk the greedy choice is kept."""
         ...
 
-    def slower(self, situations: Array) -> Array:
+    def p_slowdown(self, situations: Array) -> Array:
         """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN is invalid."""
         ...
 
@@ -76,9 +76,9 @@ class ModelBounds(Protocol):
 class Models:
     """The loaded action models of one robot, by zoo path ("goToPose/duration").
 
-    `benefit` advises against refinement where it would cost time; None: always refine.
+    `gate` advises against refinement where it would cost time; None: always refine.
     """
 
     durations: Mapping[str, DurationModel]
     successes: Mapping[str, SuccessModel]
-    benefit: RefinementGate | None = None
+    gate: RefinementGate | None = None

@@ -40,7 +40,7 @@ class Verdict:
     """What the tree saw and said; empty where there was nothing to compare."""
 
     situation: tuple[float, ...] = ()  # by SITUATION
-    slower: float = NOT_ASKED  # risk that refining costs time, 0..1
+    p_slowdown: float = NOT_ASKED  # risk that refining costs time, 0..1
     keep_greedy: bool = False
 
 
@@ -49,7 +49,7 @@ def check_gate(model: RefinementGate) -> RefinementGate:
     if model.asks != SITUATION:
         raise UsageError(
             f"the benefit tree asks for {', '.join(model.asks)}, expected {', '.join(SITUATION)}: "
-            "train it again with `tailor train-benefit`"
+            "train it again with `tailor train-gate`"
         )
     return model
 
@@ -66,8 +66,8 @@ def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: Refi
     stretch = sequence.actions[: len(greedy.predicted_s)]
     if model is None or tuple(a.action.name for a in stretch if not a.asserted) not in model.sequences:
         return Verdict(seen)
-    slower = float(model.slower(np.array([seen]))[0])
-    return Verdict(seen, slower, slower > model.threshold) if math.isfinite(slower) else Verdict(seen)
+    p_slowdown = float(model.p_slowdown(np.array([seen]))[0])
+    return Verdict(seen, p_slowdown, p_slowdown > model.threshold) if math.isfinite(p_slowdown) else Verdict(seen)
 
 
 def situation(sequence: ActionSequence, greedy: Choice, refined: Choice) -> tuple[float, ...]:

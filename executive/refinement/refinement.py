@@ -174,7 +174,7 @@ class Refinement:
             return
         self._choice = choice_of(self._judge, candidate)
         if self._alone is not None:
-            self._verdict = judge(self._sequence, self._alone, self._choice, self._models.benefit)
+            self._verdict = judge(self._sequence, self._alone, self._choice, self._models.gate)
 
     def _go_greedy(self, budget: Budget) -> None:
         """Refining is not worth it: search the greedy choice out, as a horizon of one does."""

@@ -73,5 +73,5 @@ def check_made_with(card: Card, installed: Mapping[str, str], path: Path) -> Non
         if found != sha256:
             raise UsageError(
                 f"{path}: was learned when {name} was {sha256[:12]}…, which is {found[:12]} here: train it again "
-                f"with `tailor train-benefit`, or set refinement.benefit_gate = false"
+                f"with `tailor train-gate`, or set refinement.gate = false"
             )

@@ -16,7 +16,7 @@ from tailor.models.export.onnx_graph import Graph
 from tailor.models.export.onnx_trees import add_probability
 from tailor.models.export.publishing import GOLDEN, versions
 from tailor.models.export.zoo_writer import place
-from tailor.models.runtime import BENEFIT
+from tailor.models.runtime import GATE
 from tailor.models.training.gate_training import Pairs, TrainedGate, space
 
 
@@ -43,7 +43,7 @@ def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, about: GateProve
 
 def withdraw_gate(zoo: Path, robot: str) -> bool:
     """Remove a robot's benefit tree, as its action models have changed; whether there was one."""
-    path = zoo / robot / f"{BENEFIT}.onnx"
+    path = zoo / robot / f"{GATE}.onnx"
     there = path.exists()
     for file in (path, card_path(path)):
         file.unlink(missing_ok=True)
@@ -59,7 +59,7 @@ def _exported(trained: TrainedGate, names: tuple[str, ...], card: Card) -> bytes
 
 
 def _card(pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> dict[str, Any]:
-    action, kind = BENEFIT.split("/")
+    action, kind = GATE.split("/")
     columns = space(about.names)
     low, high = pairs.situations.min(axis=0), pairs.situations.max(axis=0)
     content = np.ascontiguousarray(np.column_stack([pairs.situations, pairs.greedy_s, pairs.refined_s]))

@@ -57,6 +57,6 @@ class RefinementReport:
     trace_evaluations: tuple[int, ...] = ()
     trace_best_s: tuple[float, ...] = ()
     situation: tuple[float, ...] = ()  # what a benefit tree sees of both choices; its card names the values
-    slower: float = -1.0  # the tree's risk that refining costs time, 0..1 (paper 6.3.2); -1: it was not asked
+    p_slowdown: float = -1.0  # the tree's risk that refining costs time, 0..1 (paper 6.3.2); -1: it was not asked
     kept_greedy: bool = False  # the tree advised against refining
     gap_pct: float = -1.0  # proven: best_s is at most so much above the models' optimum; -1: not certified

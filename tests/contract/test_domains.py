@@ -53,7 +53,7 @@ def test_declarations_are_complete_and_finite(name):
     for action in domain.actions.values():
         assert action.duration_model.endswith("/duration")
         assert action.success_model == "" or action.success_model.endswith("/success")
-        assert action.detour in ("", *domain.actions)
+        assert action.subgoal_action in ("", *domain.actions)
         assert len({p.name for p in action.parameters}) == len(action.parameters)
         for parameter in action.parameters:
             assert parameter.unit
@@ -150,7 +150,9 @@ def test_scenario_can_be_planned_and_instantiated_from_what_is_believed(name, sc
     sequence = instantiate(plan, domain, belief, drawn)
     assert isinstance(sequence, ActionSequence), sequence
     labels = {v.label for v in sequence.variables if v.value is None}
-    assert labels or any(action.action.detour for action in sequence.actions), "something is open, or may get a subgoal"
+    assert labels or any(action.action.subgoal_action for action in sequence.actions), (
+        "something is open, or may get a subgoal"
+    )
     assert all(math.isfinite(v.lower) and math.isfinite(v.upper) for v in sequence.variables)
 
 

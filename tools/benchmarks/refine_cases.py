@@ -40,7 +40,7 @@ def cases(models: Models, count: int) -> dict[str, list[Case]]:
         name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
         for name, legs in LEGS.items()
     }
-    made["5 free, detour"] = [_detour(library, models, np.random.default_rng([6, i])) for i in range(count)]
+    made["5 free, detour"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
     return made
 
 
@@ -51,7 +51,7 @@ def _waypoints(action: Action, legs: int, rng: np.random.Generator) -> Case:
     return _chain("waypoints", [action] * legs, places)
 
 
-def _detour(library: Mapping[str, Action], models: Models, rng: np.random.Generator) -> Case:
+def _needs_subgoal(library: Mapping[str, Action], models: Models, rng: np.random.Generator) -> Case:
     """An approach of the ball for which assertion finds that it must go round, then the dribble."""
     actions = [library["approachBall"], library["dribbleBall"]]
     while True:

@@ -50,8 +50,7 @@ def run_all(
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
     journals = {
-        variant.name: Journal(store, task, variant, made_of(task, variant.refinement.benefit_gate))
-        for variant in variants
+        variant.name: Journal(store, task, variant, made_of(task, variant.refinement.gate)) for variant in variants
     }
     wanted = []
     for seed in seeds:
@@ -102,7 +101,7 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     pinned: Any = PinnedDomain(domain, pins)
     # a proof of how good a choice is takes time and changes nothing that is measured
     settings = Settings(seed=seed, refinement=replace(variant.refinement, certify_checks=0))
-    models = _models(domain.robot, task.zoo, variant.refinement.benefit_gate)
+    models = _models(domain.robot, task.zoo, variant.refinement.gate)
     context = make_context(pinned, scenario, models, settings, SENDER)
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
@@ -119,7 +118,7 @@ def made_of(task: Task, gated: bool = True) -> list[str]:
     """What an episode depends on beside task, variant and seed: hashes of models and of mind's and body's source."""
     models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
     loaded = [*models.durations.values(), *models.successes.values()]
-    cards = [model.card["sha256"] for model in [*loaded, *([models.benefit] if models.benefit else [])]]
+    cards = [model.card["sha256"] for model in [*loaded, *([models.gate] if models.gate else [])]]
     return [*sorted(cards), source_sha256()]
 
 

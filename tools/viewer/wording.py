@@ -62,7 +62,7 @@ def seen(situation: Situation) -> str:
 
 def advice(report: RefinementReport) -> str:
     """What the benefit tree advised (paper 6.3.2); empty where it was not asked."""
-    if report.slower < 0:
+    if report.p_slowdown < 0:
         return ""
     said = "greedy kept" if report.kept_greedy else "refined"
     return f"{said}: the benefit tree puts the risk that refining costs time at {100 * report.slower:.0f} %"

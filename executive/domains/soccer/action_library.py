@@ -60,8 +60,8 @@ APPROACH_BALL = Action(
     ApproachBall(_approach, robot.BEHIND_BALL_M, BALL_MOVED_M),
     "approachBall/duration",
     "approachBall/success",
-    detour="goToPose",
-    detour_risk=BallContactRisk(_ways),
+    subgoal_action="goToPose",
+    subgoal_risk=BallContactRisk(_ways),
     arguments=behind_goal,
     spans=behind_goal.spans,
 )

@@ -22,26 +22,26 @@ class BallContactRisk:
 
     ways: ArrivalPath  # goToPose's
 
-    def __call__(self, detours: Array, action: Array) -> Array:
+    def __call__(self, subgoals: Array, action: Array) -> Array:
         """Risks, 0 to 1.
 
         Args:
           detours: goToPose's parameters, shape (n, 8).
           action: Those of the approach that follows, shape (8,); its goal is the ball's place.
         """
-        off = self._way(detours) - action[[XG, YG]]
+        off = self._way(subgoals) - action[[XG, YG]]
         nearest = np.sqrt((off**2).sum(axis=2).min(axis=0))
         risk: Array = np.clip((CLEAR_M - nearest) / (CLEAR_M - TOUCHING_M), 0.0, 1.0)
         return risk
 
-    def _way(self, detours: Array) -> Array:
+    def _way(self, subgoals: Array) -> Array:
         """Points, shape (p, n, 2), of ArrivalPath's way that bends to the side where the start lies."""
-        c, s = np.cos(detours[:, PHIG]), np.sin(detours[:, PHIG])
-        dx, dy = (detours[:, [X, Y]] - detours[:, [XG, YG]]).T
+        c, s = np.cos(subgoals[:, PHIG]), np.sin(subgoals[:, PHIG])
+        dx, dy = (subgoals[:, [X, Y]] - subgoals[:, [XG, YG]]).T
         x, aside = c * dx + s * dy + self.ways.run_in_m, c * dy - s * dx
         side = np.where(aside < 0.0, -1.0, 1.0)
         y = np.maximum(np.abs(aside), 1e-9)  # mirrored, so that the bend is to the left
-        radius = np.maximum(self.ways.radius_m, detours[:, VG] / self.ways.bend_radps)
+        radius = np.maximum(self.ways.radius_m, subgoals[:, VG] / self.ways.bend_radps)
         radius = np.maximum(self.ways.tightest_m, np.minimum(radius, self.ways.inside * (x**2 + y**2) / (2 * y)))
         distance = np.maximum(radius, np.hypot(x, radius - y))
         straight = np.sqrt(distance**2 - radius**2)
@@ -50,7 +50,7 @@ class BallContactRisk:
         turned = heading + POINTS * (-heading % (2 * np.pi))
         ahead = np.concatenate([x + straight * np.cos(heading), radius * np.sin(turned)]) - self.ways.run_in_m
         left = side * np.concatenate([y + straight * np.sin(heading), radius * (1 - np.cos(turned))])
-        return np.stack([detours[:, XG] + c * ahead - s * left, detours[:, YG] + s * ahead + c * left], axis=2)
+        return np.stack([subgoals[:, XG] + c * ahead - s * left, subgoals[:, YG] + s * ahead + c * left], axis=2)
 
 
 def _angles(sines: Array, cosines: Array) -> Array:

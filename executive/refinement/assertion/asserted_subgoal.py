@@ -22,19 +22,19 @@ def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
       KeyError: The detour is not in the library, or asks for a quantity that the action's start does not have.
     """
     late = sequence.actions[position]
-    detour = sequence.library[late.action.detour]
+    subgoal_action = sequence.library[late.action.subgoal_action]
     start = _by_quantity(late, places_from(late.action))
-    goal = _free_goal(detour, len(sequence.variables))
+    goal = _free_goal(subgoal_action, len(sequence.variables))
     ends = {variable.quantity: variable.id for variable in goal}
-    reached = set(places_to(detour))
+    reached = set(places_to(subgoal_action))
     early = tuple(
         ends[parameter.quantity] if j in reached else start[parameter.quantity]
-        for j, parameter in enumerate(detour.parameters)
+        for j, parameter in enumerate(subgoal_action.parameters)
     )
     moved = {start[quantity]: identifier for quantity, identifier in ends.items() if quantity in start}
     left = set(places_from(late.action))
     rest = tuple(moved.get(i, i) if j in left else i for j, i in enumerate(late.variables))
-    pair = InstantiatedAction(detour, late.step, early, asserted=True), replace(late, variables=rest)
+    pair = InstantiatedAction(subgoal_action, late.step, early, asserted=True), replace(late, variables=rest)
     actions = (*sequence.actions[:position], *pair, *sequence.actions[position + 1 :])
     return replace(sequence, actions=actions, variables=(*sequence.variables, *goal))
 
@@ -56,11 +56,11 @@ def _by_quantity(instance: InstantiatedAction, places: tuple[int, ...]) -> dict[
     return {instance.action.parameters[j].quantity: instance.variables[j] for j in places}
 
 
-def _free_goal(detour: Action, first_id: int) -> tuple[Variable, ...]:
+def _free_goal(subgoal_action: Action, first_id: int) -> tuple[Variable, ...]:
     """New free variables for the state that the detour leads to."""
     goal: list[Variable] = []
-    for j in places_to(detour):
-        goal.append(_free(detour.parameters[j], first_id + len(goal), f"subgoal{first_id}"))
+    for j in places_to(subgoal_action):
+        goal.append(_free(subgoal_action.parameters[j], first_id + len(goal), f"subgoal{first_id}"))
     return tuple(goal)
 
 

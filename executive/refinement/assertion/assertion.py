@@ -83,8 +83,8 @@ class Assertion:
         """Assert a subgoal, or settle for what is the best anywhere, or give up."""
         instance, depth = self._sequence.actions[self._position], self._depth()
         said = f"{instance.action.name} is predicted to fail (success {1 - least:.2f} at best)"
-        if instance.action.detour not in self._sequence.library:
-            return Failure(f"{said} and names no detour")
+        if instance.action.subgoal_action not in self._sequence.library:
+            return Failure(f"{said} and names no subgoal")
         if depth and not instance.asserted and least <= self._settings.p_fail_settle:
             self._settle(least + SLACK)
             return True
@@ -92,12 +92,12 @@ class Assertion:
             return Failure(f"{said} even after {depth} detours")
         if not depth:
             self._plain = (self._sequence, self._position, least)
-        detoured = with_subgoal(self._sequence, self._position)
-        if self._settings.weigh_detours and not depth:
+        asserted = with_subgoal(self._sequence, self._position)
+        if self._settings.compare_subgoals and not depth:
             args = (self._position, self._models, self._settings, self._rng)
-            self._weighing = SubgoalComparison(self._sequence, detoured, *args)
+            self._weighing = SubgoalComparison(self._sequence, asserted, *args)
         else:
-            self._take(detoured)
+            self._take(asserted)
         return True
 
     def _settle(self, risk: float) -> None:
@@ -126,9 +126,9 @@ class Assertion:
             self._accept(1.0)
         return True
 
-    def _take(self, detoured: ActionSequence) -> None:
+    def _take(self, asserted: ActionSequence) -> None:
         """Go on with a detour, and look at it first: it stands where the current action stood."""
-        self._sequence = detoured
+        self._sequence = asserted
         self._look_at(self._position)
 
     def _depth(self) -> int:

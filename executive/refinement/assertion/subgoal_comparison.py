@@ -32,7 +32,7 @@ class SubgoalComparison:
     def __init__(
         self,
         direct: ActionSequence,
-        detoured: ActionSequence,
+        asserted: ActionSequence,
         position: int,
         models: Models,
         settings: RefinementSettings,
@@ -42,7 +42,7 @@ class SubgoalComparison:
         arrived = frozenset(direct.actions[position - 1].variables) if position else frozenset()
         stretches = (
             (accepting(direct, position, 1.0), position + 1),
-            (accepting(detoured, position + 1, settings.p_fail_settle), position + 2),
+            (accepting(asserted, position + 1, settings.p_fail_settle), position + 2),
         )
         self._solvers = []
         for sequence, end in stretches:
@@ -51,12 +51,12 @@ class SubgoalComparison:
 
     def advance(self, budget: Budget) -> bool | None:
         """Whether the detour costs less than the risk; None when the budget was spent before it is clear."""
-        direct, detour = self._solvers
+        direct, subgoal_action = self._solvers
         for solver in self._solvers:
             solver.advance(budget)
-        if not (direct.finished and detour.finished):
+        if not (direct.finished and subgoal_action.finished):
             return None
-        return detour.value < direct.value
+        return subgoal_action.value < direct.value
 
 
 def accepting(sequence: ActionSequence, position: int, risk: float) -> ActionSequence:

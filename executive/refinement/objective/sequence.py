@@ -91,14 +91,14 @@ class ActionSequence:
     def units(self) -> tuple[tuple[InstantiatedAction, ...], ...]:
         """The actions, each grouped with the detours before it."""
         units: list[tuple[InstantiatedAction, ...]] = []
-        detours: list[InstantiatedAction] = []
+        subgoals: list[InstantiatedAction] = []
         for action in self.actions:
-            detours.append(action)
+            subgoals.append(action)
             if not action.asserted:
-                units.append(tuple(detours))
-                detours = []
-        if detours:
-            units.append(tuple(detours))
+                units.append(tuple(subgoals))
+                subgoals = []
+        if subgoals:
+            units.append(tuple(subgoals))
         return tuple(units)
 
 

@@ -37,7 +37,7 @@ class RefinementSettings:
     p_fail_settle: float = 0.5  # where no start keeps p_fail_max, the least that is found is accepted up to this
     risk_cost_s: float = 6.0  # seconds that a failure costs; on training seeds 3 bumps more balls and 10 gains less
     gain_min_s: float = 0.0  # a smaller predicted gain is not worth leaving the greedy choice for
-    benefit_gate: bool = True  # keep the greedy choice where the robot's benefit tree says so (paper 6.3.2)
+    gate: bool = True  # keep the greedy choice where the robot's benefit tree says so (paper 6.3.2)
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds that a joule is worth (paper 8); needs "<action>/energy" models
     batch: int = 256  # rows that one check of the chain solver asks of a model, about 0.1 ms with ten bagged trees
@@ -47,7 +47,7 @@ class RefinementSettings:
     greedy_checks: int = 6  # batches spent on the first, greedy answer
     assertion_depth: int = 2  # detours in a row before one action
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a detour is made
-    weigh_detours: bool = True  # a detour must pay: compare expected costs, failure priced at risk_cost_s
+    compare_subgoals: bool = True  # a detour must pay: compare expected costs, failure priced at risk_cost_s
     weighing_checks: int = 40  # batches spent on each side of that comparison
     certify_checks: int = 100  # of about 1 ms, spent on proving how good a choice is when it is found; 0: none
     certify_gap_pct: float = 1.0  # above the optimum: near enough to stop

@@ -19,7 +19,7 @@ from tests.support.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
 SOCCER = domains.load("soccer")
 APPROACHING = SOCCER.actions["approachBall"].controller
 GO = APPROACHING.go
-BUMP_RISK = SOCCER.actions["approachBall"].detour_risk
+BUMP_RISK = SOCCER.actions["approachBall"].subgoal_risk
 GOAL = np.array([0.0, 0.0, 0.0, 0.0, 2.0 - robot.BEHIND_BALL_M, 0.0, 0.0, 0.2])  # behind a ball at (2, 0)
 
 
@@ -52,30 +52,30 @@ def test_a_few_centimetres_aside_do_not_swing_the_robot_round_at_its_goal(aside_
     assert abs(omega) < 0.5
 
 
-def detours(*goals: tuple[float, float, float]) -> np.ndarray:
+def subgoals(*goals: tuple[float, float, float]) -> np.ndarray:
     """goToPose's parameters from the origin to goals (x, y, phi)."""
     return np.array([[0.0, 0.0, 0.0, 0.0, *goal, 0.2] for goal in goals])
 
 
 def test_a_way_through_the_ball_is_a_risk_and_one_round_it_is_none() -> None:
     ball_at = np.array([0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
-    through, beside, round_it = BUMP_RISK(detours((3.0, 0.0, 0.0), (3.0, 0.8, 0.0), (1.5, 1.5, 1.57)), ball_at)
+    through, beside, round_it = BUMP_RISK(subgoals((3.0, 0.0, 0.0), (3.0, 0.8, 0.0), (1.5, 1.5, 1.57)), ball_at)
     assert through == 1.0
     assert 0.0 < beside < 1.0
     assert round_it == 0.0
 
 
-def test_detour_that_may_spoil_its_action_costs_what_a_failure_costs() -> None:
+def test_subgoal_that_may_spoil_its_action_costs_what_a_failure_costs() -> None:
     settings = RefinementSettings(arrival_spread=(), risk_cost_s=8.0)
-    risky = replace(APPROACH, detour_risk=lambda rows, action: np.full(len(rows), 0.25 * action[4]))
+    risky = replace(APPROACH, subgoal_risk=lambda rows, action: np.full(len(rows), 0.25 * action[4]))
     start = {"x": -1.0, "y": 0.0, "phi": 0.0, "v": 0.0}
     costs = []
     for approach in (APPROACH, risky):
         given = sequence([approach, DRIBBLE], [start, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}, start])
-        detoured = with_subgoal(given, 0)
-        objective = SequenceObjective(detoured.actions[:1], detoured.variables, MODELS, settings)
+        asserted = with_subgoal(given, 0)
+        objective = SequenceObjective(asserted.actions[:1], asserted.variables, MODELS, settings)
         assert objective.stages[0].predict(np.zeros((1, 4))).failure[0] == 0.0, "alone it spoils nothing"
-        objective = SequenceObjective(detoured.actions[:2], detoured.variables, MODELS, settings)
+        objective = SequenceObjective(asserted.actions[:2], asserted.variables, MODELS, settings)
         costs.append(objective.stages[0].cost(np.zeros((1, 4)))[0])
     assert costs[1] - costs[0] == pytest.approx(0.25 * 1.0 * settings.risk_cost_s)
     assert math.isfinite(costs[0])

@@ -69,7 +69,7 @@ def test_stopping_pays_where_the_robot_would_have_to_go_round_its_goal(x, y, sto
 
 
 @given(places, st.floats(0.0, 1.0), speeds)
-def test_ball_on_the_way_of_a_detour_is_a_certain_bump(start, share, vg):
+def test_ball_on_the_way_of_a_subgoal_is_a_certain_bump(start, share, vg):
     x, y, _ = start
     assume(abs(y) > 0.05 and math.hypot(x + WAYS.run_in_m, y) > 0.3)
     path = WAYS._bent(x, y, 1 if y > 0.0 else -1, WAYS.radius(vg))
@@ -77,10 +77,10 @@ def test_ball_on_the_way_of_a_detour_is_a_certain_bump(start, share, vg):
     # the points that are looked at are not so near to each other that long straights had none far from any
     assume(path.pieces[0][1] < 3.0)
     action = np.array([0.0, 0.0, 0.0, 0.0, ball[0], ball[1], 0.0, 0.0])
-    detour = np.array([[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, vg]])
-    assert BallContactRisk(WAYS)(detour, action)[0] == 1.0
+    subgoal_action = np.array([[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, vg]])
+    assert BallContactRisk(WAYS)(subgoal_action, action)[0] == 1.0
 
 
-def test_bump_risk_knows_the_detours_of_the_domain():
+def test_bump_risk_knows_the_subgoals_of_the_domain():
     soccer = domains.load("soccer")
-    assert soccer.actions["approachBall"].detour_risk.ways == soccer.actions["goToPose"].controller.ways
+    assert soccer.actions["approachBall"].subgoal_risk.ways == soccer.actions["goToPose"].controller.ways

@@ -57,10 +57,10 @@ def test_sweep_splits_an_episode_where_the_approach_has_succeeded():
     assert sweep.simulated_s[:, 1].tolist() == [4.0, 6.0, 10.0]
 
 
-def test_sweep_predicts_detours_as_part_of_the_approach():
+def test_sweep_predicts_subgoals_as_part_of_the_approach():
     sweep = sweep_of(1, np.array([0.0]), 0.2, [[replace(DONE, foreseen=FORESEEN)]], 0.0, 0.0)
     assert sweep.predicted_s[:, 0].tolist() == [5.0, 4.0, 9.0]
-    assert sweep.detoured.tolist() == [True]
+    assert sweep.asserted.tolist() == [True]
 
 
 def test_sweep_leaves_failed_runs_out_and_needs_one_that_is_not():
@@ -140,8 +140,8 @@ def test_ground_is_drawn(asserted, tmp_path):
 
 def test_figure_15_counts_the_starts_at_which_a_subgoal_was_asserted():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
-    detour = replace(approach, asserted=True, foreseen=(("goToPose", True, 2.0), ("approachBall", False, 1.5)))
-    found = {"blind": {1: replace(approach, ball_moved_m=0.2)}, "asserted": {1: detour}}
+    subgoal_action = replace(approach, asserted=True, foreseen=(("goToPose", True, 2.0), ("approachBall", False, 1.5)))
+    found = {"blind": {1: replace(approach, ball_moved_m=0.2)}, "asserted": {1: subgoal_action}}
     row = figure15._summary(found, [1])
     assert (row["n"], row["success_before_pct"], row["success_after_pct"]) == (1, 0.0, 100.0)
     assert (row["predicted_s"], row["took_s"], row["bias_s"]) == (3.5, 4.0, -0.5)

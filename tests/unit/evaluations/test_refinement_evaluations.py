@@ -127,7 +127,7 @@ def test_oracle_tells_ceiling_greedy_and_zero_apart():
     assert row["refined_same_starts_pct"] == pytest.approx(10.0)
 
 
-def test_oracle_chooses_for_the_plan_not_for_detours():
+def test_oracle_chooses_for_the_plan_not_for_subgoals():
     assert subgoal_parameters(DONE) == [("pos2", "phi", -3.0, 3.0)]
     assert len(_values(("pos2", "phi", -np.pi, np.pi), 12)) == 12
     assert _values(("pos2", "v", 0.0, 0.3), 12) == pytest.approx([0.0, 0.15, 0.3])
@@ -136,9 +136,9 @@ def test_oracle_chooses_for_the_plan_not_for_detours():
 def test_assertion_is_counted_as_the_paper_counts_it():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
     bumped = replace(approach, ball_moved_m=0.2)
-    detour = replace(approach, asserted=True, actual_s=(4.4,))
+    subgoal_action = replace(approach, asserted=True, actual_s=(4.4,))
     before = {1: approach, 2: bumped, 3: approach, 4: approach}
-    after = {1: approach, 2: detour, 3: detour, 4: replace(detour, actual_s=(4.8,))}
+    after = {1: approach, 2: subgoal_action, 3: subgoal_action, 4: replace(subgoal_action, actual_s=(4.8,))}
     row = figure16.summary(before, after)
     assert row["success_before_pct"] == 75.0
     assert row["success_after_pct"] == 100.0

@@ -103,7 +103,7 @@ def test_too_few_pairs_or_an_unknown_learner_are_refused() -> None:
 
 
 def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
-    assert main(["train-benefit", "agilo", "--seed", "999900", "--episodes", "101"]) == 2
+    assert main(["train-gate", "agilo", "--seed", "999900", "--episodes", "101"]) == 2
     assert "fresh ones judge" in capsys.readouterr().err
 
 
@@ -126,37 +126,37 @@ def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes
     monkeypatch.setattr("tailor.tools.evaluations.trials.run_all", run_all)
     shutil.copytree(runtime.ZOO / "agilo", tmp_path / "agilo")
     words = ["agilo", "--episodes", "300", "--zoo", str(tmp_path), "--learner", "tree"]
-    assert main(["train-benefit", *words]) == 0
+    assert main(["train-gate", *words]) == 0
     assert "slower episodes" in capsys.readouterr().out
-    assert [(v.refinement.horizon, v.refinement.benefit_gate) for v in ran] == [(1, False), (2, False)]
-    tree = load_models("agilo", str(tmp_path), gated=True).benefit
+    assert [(v.refinement.horizon, v.refinement.gate) for v in ran] == [(1, False), (2, False)]
+    tree = load_models("agilo", str(tmp_path), gated=True).gate
     assert tree.sequences == {KIND}  # the detour is left out
     assert tree.card["episodes"]["seed"] < tree.card["episodes"]["seed"] + 300 <= 1_000_000
     assert "refinement/benefit" not in tree.card["models"]
     again = tree.card["command"].split()[1:]
     assert main([*again, "--zoo", str(tmp_path)]) == 0  # the card's command makes the same bytes
-    assert load_models("agilo", str(tmp_path), gated=True).benefit.card["sha256"] == tree.card["sha256"]
+    assert load_models("agilo", str(tmp_path), gated=True).gate.card["sha256"] == tree.card["sha256"]
 
 
 def test_a_published_tree_says_what_its_learner_said(zoo: Path, trained: TrainedGate) -> None:
-    tree = load_models("agilo", str(zoo), gated=True).benefit
+    tree = load_models("agilo", str(zoo), gated=True).gate
     fresh = pairs(1).situations
-    assert tree.slower(fresh) == pytest.approx(trained.trees.risk(fresh), abs=1e-6)
+    assert tree.p_slowdown(fresh) == pytest.approx(trained.trees.risk(fresh), abs=1e-6)
     assert tree.sequences == {KIND}
-    assert np.isnan(tree.slower(np.full((1, len(SITUATION)), np.nan)))[0]
+    assert np.isnan(tree.p_slowdown(np.full((1, len(SITUATION)), np.nan)))[0]
 
 
 def test_a_zoo_without_a_tree_has_none_and_a_gate_that_is_off_loads_none(zoo: Path) -> None:
-    assert load_models("powercube", gated=True).benefit is None
-    assert load_models("agilo", str(zoo), gated=False).benefit is None
+    assert load_models("powercube", gated=True).gate is None
+    assert load_models("agilo", str(zoo), gated=False).gate is None
 
 
 def test_a_tree_that_was_learned_with_other_models_is_refused(zoo: Path) -> None:
     card = read_card(card_path(tree_of(zoo)))
     write_card(card_path(tree_of(zoo)), {**card, "models": {**card["models"], "dribbleBall/duration": "0" * 64}})
-    with pytest.raises(UsageError, match=r"learned when dribbleBall/duration was 0{12}.*train-benefit.*benefit_gate"):
+    with pytest.raises(UsageError, match=r"learned when dribbleBall/duration was 0{12}.*train-gate.*gate"):
         load_models("agilo", str(zoo), gated=True)
-    assert load_models("agilo", str(zoo), gated=False).benefit is None
+    assert load_models("agilo", str(zoo), gated=False).gate is None
     assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 1
 
 
@@ -194,7 +194,7 @@ def test_models_commands_know_the_tree(zoo: Path, capsys) -> None:
 
 def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
     assert withdraw_gate(zoo, "agilo")
-    assert load_models("agilo", str(zoo), gated=True).benefit is None
+    assert load_models("agilo", str(zoo), gated=True).gate is None
     assert not withdraw_gate(zoo, "agilo")
 
 
@@ -202,11 +202,11 @@ def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(z
     console = Console(record=True, width=200)
     train._withdraw(argparse.Namespace(zoo=zoo, robot="agilo"), console)
     assert not tree_of(zoo).exists()
-    assert "`tailor train-benefit agilo` makes it" in console.export_text()
+    assert "`tailor train-gate agilo` makes it" in console.export_text()
 
 
 def gated_order(zoo: Path, gate: bool = True) -> ExecutiveConfig:
-    settings = Settings(seed=4, refinement=RefinementSettings(benefit_gate=gate))
+    settings = Settings(seed=4, refinement=RefinementSettings(gate=gate))
     return ExecutiveConfig("soccer", "approach-dribble", settings, str(zoo))
 
 
@@ -214,10 +214,10 @@ def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_witho
     with_tree = provenance(order := gated_order(zoo), build_context(order, "ab" * 16))
     without = provenance(order := gated_order(zoo, gate=False), build_context(order, "ab" * 16))
     assert with_tree["models"]["refinement/benefit"] == read_card(card_path(tree_of(zoo)))["sha256"]
-    assert rebuild_context(with_tree).models.benefit is not None
-    assert rebuild_context(without).models.benefit is None
-    del without["order"]["settings"]["refinement"]["benefit_gate"]  # recorded before there were trees
-    assert rebuild_context(without).models.benefit is None
+    assert rebuild_context(with_tree).models.gate is not None
+    assert rebuild_context(without).models.gate is None
+    del without["order"]["settings"]["refinement"]["gate"]  # recorded before there were trees
+    assert rebuild_context(without).models.gate is None
     withdraw_gate(zoo, "agilo")
     with pytest.raises(UsageError, match="refinement/benefit is missing"):
         rebuild_context(with_tree)

@@ -16,7 +16,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, LIBRARY, MODELS, ConeSuccess, NeverSucceeds, sequence
 
-HARD = RefinementSettings(weigh_detours=False, risk_cost_s=6.0)  # the paper's: a threshold decides
+HARD = RefinementSettings(compare_subgoals=False, risk_cost_s=6.0)  # the paper's: a threshold decides
 SETTINGS = replace(HARD, arrival_spread=(), p_fail_assert=0.05, risk_cost_s=0.0)
 TARGET = {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
 
@@ -48,17 +48,17 @@ def test_one_value_that_succeeds_is_enough():
     assert names(asserted(approach(3.0, (-3.0, 3.0)))) == ["approachBall", "dribbleBall"]
 
 
-def test_approach_that_fails_for_every_angle_gets_a_detour_with_a_free_goal():
+def test_approach_that_fails_for_every_angle_gets_a_subgoal_with_a_free_goal():
     given = approach(3.0, (-0.3, 0.3))
     result = asserted(given)
     assert names(result) == ["goToPose", "approachBall", "dribbleBall"]
-    detour, late, dribble = result.actions
-    assert detour.asserted
+    subgoal_action, late, dribble = result.actions
+    assert subgoal_action.asserted
     assert not late.asserted
-    assert detour.variables[:4] == given.actions[0].variables[:4]
-    assert detour.variables[4:] == late.variables[:4] == (12, 13, 14, 15)
+    assert subgoal_action.variables[:4] == given.actions[0].variables[:4]
+    assert subgoal_action.variables[4:] == late.variables[:4] == (12, 13, 14, 15)
     assert late.variables[4:] == dribble.variables[:4] == given.actions[0].variables[4:]
-    goal = [result.variables[i] for i in detour.variables[4:]]
+    goal = [result.variables[i] for i in subgoal_action.variables[4:]]
     assert [(v.lower, v.upper, v.free) for v in goal] == [(p.lower, p.upper, True) for p in GO.parameters[4:]]
 
 
@@ -75,7 +75,7 @@ def test_refinement_puts_the_subgoal_where_success_is_predicted():
     assert MODELS.successes["goToPose/success"].probability(arguments)[0] >= 0.95
 
 
-def test_detour_does_not_count_in_the_horizon():
+def test_subgoal_does_not_count_in_the_horizon():
     result = asserted(approach(3.0, (-0.3, 0.3)))
     assert [action.action.name for action in result.within(1)] == ["goToPose", "approachBall"]
     assert len(result.within(2)) == 3
@@ -88,12 +88,12 @@ def test_only_actions_in_the_horizon_are_looked_at():
     assert names(asserted(given)) == ["dribbleBall", "goToPose", "approachBall"]
 
 
-def test_action_without_a_detour_fails_with_a_reason():
-    lonely = replace(APPROACH, detour="")
+def test_action_without_a_subgoal_fails_with_a_reason():
+    lonely = replace(APPROACH, subgoal_action="")
     failure = asserted(approach(3.0, (-0.3, 0.3), (lonely, DRIBBLE)))
     assert isinstance(failure, Failure)
     assert "approachBall" in failure.reason
-    assert "no detour" in failure.reason
+    assert "no subgoal" in failure.reason
 
 
 def test_hopeless_action_fails_after_the_bounded_depth():
@@ -103,10 +103,12 @@ def test_hopeless_action_fails_after_the_bounded_depth():
     assert "after 2 detours" in failure.reason
 
 
-def test_detour_that_is_itself_predicted_to_fail_ends():
+def test_subgoal_that_is_itself_predicted_to_fail_ends():
     """A detour with a success model of its own is looked at too; the depth bounds the whole unit."""
     wary = replace(GO, success_model="goToPose/success")
-    given = replace(approach(3.0, (-0.3, 0.3)), library=LIBRARY | {"goToPose": replace(wary, detour="goToPose")})
+    given = replace(
+        approach(3.0, (-0.3, 0.3)), library=LIBRARY | {"goToPose": replace(wary, subgoal_action="goToPose")}
+    )
     models = Models(MODELS.durations, {"goToPose/success": NeverSucceeds()})
     assert isinstance(asserted(given, models=models), Failure)
 
@@ -162,9 +164,9 @@ FROM_THE_SIDE = sequence(
 
 
 @pytest.mark.parametrize(("price_s", "expected"), [(1.0, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
-def test_detour_must_pay_when_it_is_weighed(price_s, expected):
+def test_subgoal_must_pay_when_it_is_weighed(price_s, expected):
     """An approach that fails in three of ten tries: a cheap failure is risked, a dear one is driven around."""
-    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=price_s)
+    settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=price_s)
     result = asserted(FROM_THE_SIDE, settings, PLAIN)
     assert names(result) == expected
     refinement = Refinement(result, PLAIN, settings, np.random.default_rng(0))
@@ -173,7 +175,7 @@ def test_detour_must_pay_when_it_is_weighed(price_s, expected):
 
 
 def test_weighing_goes_on_where_the_budget_stopped_it():
-    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=100.0)
+    settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=100.0)
     sliced = Assertion(FROM_THE_SIDE, PLAIN, settings, np.random.default_rng(0))
     results = [sliced.advance(CheckBudget(3)) for _ in range(60)]
     assert results[0] is None
@@ -201,7 +203,7 @@ def test_unsure_model_is_settled_with_instead_of_given_up():
     assert refinement.choice.valid
 
 
-def test_detour_that_buys_no_certainty_is_not_made():
+def test_subgoal_that_buys_no_certainty_is_not_made():
     unsure = Models(MODELS.durations, {"goToPose/success": AtBest(0.86)})
     result = asserted(approach(-1.0, (-0.3, 0.3)), models=unsure)
     assert names(result) == ["approachBall", "dribbleBall"]
@@ -226,10 +228,10 @@ def test_arrival_beside_the_subgoal_is_not_driven_around_again():
     assert refinement.choice.valid
 
 
-def test_detour_is_weighed_even_where_no_start_is_certain():
+def test_subgoal_is_weighed_even_where_no_start_is_certain():
     """A model that is never surer than 86 % still tells a good start from a bad one."""
     unsure = Models({"goToPose/duration": TwoSecondsAndTheWay()}, {"goToPose/success": AtBest(0.86)})
-    settings = replace(SETTINGS, weigh_detours=True, risk_cost_s=20.0, p_fail_assert=0.2)
+    settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=20.0, p_fail_assert=0.2)
     behind = sequence(
         [APPROACH], [{"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}]
     )

@@ -94,11 +94,13 @@ def test_watch_asks_for_no_more_than_the_values_with_a_tolerance():
     assert 0 < domain.asked <= len(watched) < len(sequence.variables)
 
 
-def test_a_detour_is_not_watched():
+def test_a_subgoal_is_not_watched():
     plan, domain = paper_plan(), ShiftingDomain()
     pattern = Pattern(plan, domain, None)
     sequence = pattern.sequence(START)
     first = sequence.actions[0]
-    detour = InstantiatedAction(replace(first.action, name="goToPose"), first.step, first.variables, asserted=True)
-    alone = replace(sequence, actions=(detour,))
+    subgoal_action = InstantiatedAction(
+        replace(first.action, name="goToPose"), first.step, first.variables, asserted=True
+    )
+    alone = replace(sequence, actions=(subgoal_action,))
     assert not BeliefMonitor(pattern, alone).moved({**START, "ball": {"x": 9.0, "y": 9.0}})

@@ -30,13 +30,13 @@ class Advisor:
     threshold: float = 0.5
     heard: list[tuple[float, ...]] = dataclasses.field(default_factory=list)
 
-    def slower(self, situations):
+    def p_slowdown(self, situations):
         self.heard.extend(map(tuple, situations.tolist()))
         return np.full(len(situations), self.probability)
 
 
-def searched(benefit, slices: int = 1, horizon: int = 2) -> Refinement:
-    models = dataclasses.replace(MODELS, benefit=benefit)
+def searched(gate, slices: int = 1, horizon: int = 2) -> Refinement:
+    models = dataclasses.replace(MODELS, gate=gate)
     settings = RefinementSettings(horizon=horizon, arrival_spread=())
     search = Refinement(approach_dribble((3.0, 0.0, 0.0)), models, settings, np.random.default_rng(3))
     while not search.finished:
@@ -50,13 +50,13 @@ def test_a_tree_that_fears_a_loss_keeps_the_greedy_choice_searched_out_as_a_hori
     alone = searched(None, horizon=1).choice
     assert kept.choice.predicted_s[0] == pytest.approx(alone.predicted_s[0], abs=0.02)
     verdict = kept.report().verdict
-    assert (verdict.slower, verdict.keep_greedy) == (0.9, True)
+    assert (verdict.p_slowdown, verdict.keep_greedy) == (0.9, True)
 
 
 def test_a_tree_that_fears_nothing_changes_nothing() -> None:
     free, refined = searched(None), searched(Advisor(0.5))
     assert refined.choice == free.choice
-    assert refined.report().verdict.slower == 0.5
+    assert refined.report().verdict.p_slowdown == 0.5
     assert not refined.report().verdict.keep_greedy
 
 
@@ -69,7 +69,7 @@ def test_a_tree_is_not_asked_about_sequences_that_it_was_not_learned_for() -> No
 def test_a_tree_that_gives_no_number_is_not_obeyed() -> None:
     search = searched(Advisor(float("nan")))
     assert search.choice == searched(None).choice
-    assert search.report().verdict.slower == -1
+    assert search.report().verdict.p_slowdown == -1
 
 
 def test_nothing_is_asked_when_nothing_is_looked_ahead() -> None:
@@ -106,10 +106,12 @@ def test_an_angle_is_compared_the_short_way_round() -> None:
 
 
 def test_why_says_what_the_tree_advised() -> None:
-    report = RefinementReport(0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, slower=0.62, kept_greedy=True)
+    report = RefinementReport(
+        0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, p_slowdown=0.62, kept_greedy=True
+    )
     assert advice(report) == "greedy kept: the benefit tree puts the risk that refining costs time at 62 %"
-    assert advice(dataclasses.replace(report, slower=0.1, kept_greedy=False)).startswith("refined: ")
-    assert advice(dataclasses.replace(report, slower=-1.0)) == ""
+    assert advice(dataclasses.replace(report, p_slowdown=0.1, kept_greedy=False)).startswith("refined: ")
+    assert advice(dataclasses.replace(report, p_slowdown=-1.0)) == ""
 
 
 DONE = Outcome(1, "h2", True, 10.0, "achieved", (), (), (), (), False, 0.0, (), ())

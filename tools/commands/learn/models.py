@@ -14,7 +14,7 @@ from rich.table import Column, Table
 from tailor.executive.composition import load_models, required_ranges
 from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
-from tailor.models.runtime import BENEFIT, ZOO, OnnxGate, OnnxModel, load_model
+from tailor.models.runtime import GATE, ZOO, OnnxGate, OnnxModel, load_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.terminal import table_console
 
@@ -77,12 +77,12 @@ def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
     from tailor.tools.learning.model_rules import DISTILLED, rules, tree_number
 
     if isinstance(model, OnnxGate):
-        return _benefit_rules(model.card)
+        return _gate_rules(model.card)
     tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
     return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
 
 
-def _benefit_rules(card: Card) -> str:
+def _gate_rules(card: Card) -> str:
     head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that say nearly the same"
     kept = f"above {100 * card['threshold']:.0f} % the greedy choice is kept"
     return "\n\n".join([f"{head}; {kept}", *card["rules"]])
@@ -175,8 +175,8 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
     failed = {}
     for name in names:
         try:
-            if name.endswith(f"/{BENEFIT}"):  # sound only with the action models that it was learned with
-                load_models(name.removesuffix(f"/{BENEFIT}"), str(arguments.zoo), gated=True)
+            if name.endswith(f"/{GATE}"):  # sound only with the action models that it was learned with
+                load_models(name.removesuffix(f"/{GATE}"), str(arguments.zoo), gated=True)
             model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
         except UsageError as error:

@@ -84,7 +84,7 @@ def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
     from tailor.models.export.gate_publishing import withdraw_gate
 
     if withdraw_gate(arguments.zoo, arguments.robot):
-        again = f"tailor train-benefit {arguments.robot}"
+        again = f"tailor train-gate {arguments.robot}"
         console.print(
             f"removed {arguments.robot}/refinement/benefit, learned with the models before; `{again}` makes it"
         )

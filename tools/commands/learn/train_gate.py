@@ -26,12 +26,12 @@ DEFAULT_SEED = 700_000
 PRICE = "of improvement that fewer slower episodes may cost, in percentage points (default: %(default)s)"
 EPILOG = """\
 examples:
-  tailor train-benefit agilo
-  tailor train-benefit agilo --episodes 300 --zoo out/zoo
+  tailor train-gate agilo
+  tailor train-gate agilo --episodes 300 --zoo out/zoo
 
 The tree judges the choices of the action models that are in the zoo now, so train it after them; `tailor train`
 removes one that was learned with other models. Broken off, the same command goes on. `tailor evaluate benefit` says
-what the tree is worth on fresh episodes; [refinement] benefit_gate = false switches it off."""
+what the tree is worth on fresh episodes; [refinement] gate = false switches it off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +95,7 @@ def train(arguments: argparse.Namespace) -> tuple[Path, dict[str, Any]]:
 
     check_learner(arguments.learner, arguments.episodes)  # told before an hour of runs, not after
     domain = gathering.domain_of(arguments.robot)
-    settings = RefinementSettings(benefit_gate=False)
+    settings = RefinementSettings(gate=False)
     zoo = "" if arguments.zoo == ZOO else str(arguments.zoo)
     found = gathered(Task(domain, arguments.scenario, zoo=zoo), settings, arguments)
     trained = train_gate(found.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
@@ -180,6 +180,6 @@ def _sequences(outcomes: Any) -> tuple[tuple[str, ...], ...]:
 
 def _command(arguments: argparse.Namespace) -> str:
     return (
-        f"tailor train-benefit {arguments.robot} --scenario {arguments.scenario} --episodes {arguments.episodes} "
+        f"tailor train-gate {arguments.robot} --scenario {arguments.scenario} --episodes {arguments.episodes} "
         f"--seed {arguments.seed} --learner {arguments.learner} --price {arguments.price:g}"
     )

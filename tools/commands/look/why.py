@@ -136,7 +136,7 @@ def _told(reason: Reason) -> dict[str, Any]:
             "solver": report.solver,
             "evaluations": report.evaluations,
             "checks": report.checks,
-            "slower": report.slower if report.slower >= 0 else None,
+            "p_slowdown": report.p_slowdown if report.p_slowdown >= 0 else None,
             "kept_greedy": report.kept_greedy,
             "gap_pct": report.gap_pct if report.gap_pct >= 0 else None,
         },

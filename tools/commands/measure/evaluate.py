@@ -32,7 +32,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "table3": ("tailor.tools.evaluations.refinement.table3", "refined against greedy subgoals, paired"),
     "letters": ("tailor.tools.evaluations.arm.letters", "Table 3's arm: letters by stopping, greedy and refined hands"),
     "table4": ("tailor.tools.evaluations.refinement.table4", "refinement by horizon over four waypoints"),
-    "benefit": ("tailor.tools.evaluations.refinement.gate", "when not to refine: a tree that predicts slower episodes"),
+    "gate": ("tailor.tools.evaluations.refinement.gate", "when not to refine: a tree that predicts slower episodes"),
     "energy": (
         "tailor.tools.evaluations.refinement.energy",
         "time against energy: what a joule's worth in seconds changes",

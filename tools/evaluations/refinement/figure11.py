@@ -110,7 +110,7 @@ def _row(sweep: Sweep) -> dict[str, Any]:
         "mae_s": float(np.nanmean(np.abs(sweep.predicted_s[2] - sweep.simulated_s[2]))),
         **dict(zip(("bias_approach_s", "bias_dribble_s", "bias_s"), sweep.bias_s, strict=True)),
         "correlation": sweep.correlation,
-        "detours_pct": 100 * float(np.mean(sweep.detoured)),
+        "asserted_pct": 100 * float(np.mean(sweep.asserted)),
     }
 
 

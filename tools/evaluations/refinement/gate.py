@@ -58,14 +58,14 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
       UsageError: No benefit tree in the zoo.
     """
     base = settings or RefinementSettings()
-    tree = load_models(ROBOT, arguments.zoo, gated=True).benefit
+    tree = load_models(ROBOT, arguments.zoo, gated=True).gate
     if tree is None:
-        raise UsageError(f"no benefit tree for {ROBOT}, expected one: `tailor train-benefit {ROBOT}` makes it")
-    plain = replace(base, benefit_gate=False)
+        raise UsageError(f"no benefit tree for {ROBOT}, expected one: `tailor train-gate {ROBOT}` makes it")
+    plain = replace(base, gate=False)
     variants = [
         Variant("h1", replace(plain, horizon=1)),
         Variant("h2", replace(plain, horizon=2)),
-        Variant("gated", replace(base, horizon=2, benefit_gate=True)),
+        Variant("gated", replace(base, horizon=2, gate=True)),
     ]
     task = Task(gathering.domain_of(ROBOT), SCENARIO, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
@@ -111,7 +111,7 @@ def advised(refined: list[Outcome], tree: RefinementGate) -> NDArray[np.bool_]:
     kept = np.zeros(len(refined), np.bool_)
     asked = [place for place, outcome in enumerate(refined) if outcome.situation]
     if asked:
-        kept[asked] = tree.slower(np.array([refined[place].situation for place in asked])) > tree.threshold
+        kept[asked] = tree.p_slowdown(np.array([refined[place].situation for place in asked])) > tree.threshold
     return kept
 
 

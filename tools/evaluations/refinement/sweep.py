@@ -24,7 +24,7 @@ class Sweep:
     simulated_s: Array  # (3, n) mean of the repeats
     least_s: Array  # (3, n) of the repeats
     most_s: Array  # (3, n)
-    detoured: NDArray[np.bool_]  # (n,) whether the executive asserted a subgoal there
+    asserted: NDArray[np.bool_]  # (n,) whether the executive asserted a subgoal there
     greedy_rad: float  # what greedy chooses at this start, and what refinement chooses
     refined_rad: float
 
@@ -68,8 +68,8 @@ def sweep_of(
     filled = np.where(missing[:, :, None], np.inf, took)  # so that no slice is all NaN
     mean, least, most = (of(filled, axis=2) for of in (np.nanmean, np.nanmin, np.nanmax))
     tables = [np.where(missing, np.nan, table) for table in (mean, least, most)]
-    detoured = np.array([any(foreseen[1] for foreseen in some[0].foreseen) for some in runs])
-    return Sweep(seed, angles, v, predicted, *tables, detoured, greedy_rad, refined_rad)
+    asserted = np.array([any(foreseen[1] for foreseen in some[0].foreseen) for some in runs])
+    return Sweep(seed, angles, v, predicted, *tables, asserted, greedy_rad, refined_rad)
 
 
 def _foreseen_s(run: Outcome) -> tuple[float, float, float]:

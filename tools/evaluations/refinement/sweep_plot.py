@@ -62,8 +62,8 @@ def _draw_curves(axis: Any, sweep: Sweep, number: int) -> None:
     axis.plot(angles, _round(sweep.simulated_s[number]), color=SIMULATED, linewidth=1.6, label="simulated")
     axis.plot(angles, _round(predicted), color=MODEL, linewidth=2.2, label="predicted by the models")
     axis.plot(
-        sweep.angles[sweep.detoured],
-        predicted[sweep.detoured],
+        sweep.angles[sweep.asserted],
+        predicted[sweep.asserted],
         "o",
         markerfacecolor="none",
         color=MODEL,

@@ -30,8 +30,8 @@ class ChoicePanel {
       report.greedy === null || report.best === null
         ? ""
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
-    const slower = report.slower === null ? "" : `risks time (${(100 * report.slower).toFixed(0)} %)`;
-    const advice = slower && `, ${report.keptGreedy ? "greedy kept, refining" : "refined, which"} ${slower}`;
+    const risk = report.pSlowdown === null ? "" : `risks time (${(100 * report.pSlowdown).toFixed(0)} %)`;
+    const advice = risk && `, ${report.keptGreedy ? "greedy kept, refining" : "refined, which"} ${risk}`;
     const gap = report.gap === null ? "" : `, within ${report.gap.toFixed(1)} % of the models' optimum`;
     return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}${advice}`;
   }
