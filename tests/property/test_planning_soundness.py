@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.planning import FlawOrder, Settings, validate
-from tailor.executive.planning.plans.action_effects import progress
+from tailor.executive.planning.plans.action_effects import apply_action
 from tailor.executive.planning.plans.state import Objects, holds
 from tests.support.planning_problems import read, solve
 
@@ -65,7 +65,7 @@ def solvable(domain, problem):
         for action, names in actions:
             binding = dict(zip((p.name for p in action.parameters), names, strict=True))
             if all(holds(condition.formula, binding, state, objects) for condition in action.conditions):
-                after = progress(domain, problem, state, (action.name, *names))
+                after = apply_action(domain, problem, state, (action.name, *names))
                 if after not in seen:
                     seen.add(after)
                     pending.append(after)

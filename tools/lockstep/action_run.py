@@ -23,8 +23,8 @@ PERIOD_NS = 100_000_000  # 10 Hz
 LIMIT_S = 40.0  # an action that takes longer has failed
 BODIES = {"soccer": "tailor.simnodes.agilo.body:AgiloBody", "arm": "tailor.simnodes.powercube.body:PowerCubeBody"}
 SAMPLERS = {
-    "soccer": "tailor.tools.lockstep.samplers.soccer:SoccerTrials",
-    "arm": "tailor.tools.lockstep.samplers.arm:ArmTrials",
+    "soccer": "tailor.tools.lockstep.samplers.soccer:SoccerSampler",
+    "arm": "tailor.tools.lockstep.samplers.arm:ArmSampler",
 }
 
 

@@ -65,7 +65,7 @@ def advice(report: RefinementReport) -> str:
     if report.p_slowdown < 0:
         return ""
     said = "greedy kept" if report.kept_greedy else "refined"
-    return f"{said}: the benefit tree puts the risk that refining costs time at {100 * report.slower:.0f} %"
+    return f"{said}: the benefit tree puts the risk that refining costs time at {100 * report.p_slowdown:.0f} %"
 
 
 def proven(report: RefinementReport | None) -> str:

@@ -40,7 +40,7 @@ from pathlib import Path
 from tailor.executive.replay import replay
 from tailor.tools.commands.look import verify
 runs = verify.RecordedRuns(Path(sys.argv[1]))
-context = verify.recompose(runs.runs[0].provenance)
+context = verify.rebuild_context(runs.runs[0].provenance)
 before = set(sys.modules)
 assert sum(1 for _ in replay(context, runs.ticks(runs.runs[0]))) > 50
 print(*sorted(set(sys.modules) - before))

@@ -226,7 +226,8 @@ def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_witho
 def test_a_run_that_was_advised_verifies_bit_for_bit(zoo: Path, tmp_path: Path, monkeypatch) -> None:
     fearful = read_card(card_path(tree_of(zoo)))
     write_card(card_path(tree_of(zoo)), {**fearful, "threshold": 0.0})  # always keeps greedy
-    monkeypatch.setattr(renew, "Order", lambda *words: dataclasses.replace(ExecutiveConfig(*words), zoo=str(zoo)))
+    configured = ExecutiveConfig
+    monkeypatch.setattr(renew, "ExecutiveConfig", lambda *words: dataclasses.replace(configured(*words), zoo=str(zoo)))
     renew.record(renew.Golden("soccer", "approach-dribble", 2), tmp_path / "run.mcap")
     runs = RecordedRuns(tmp_path / "run.mcap")
     said = [m.message for m in _reports(tmp_path / "run.mcap")]

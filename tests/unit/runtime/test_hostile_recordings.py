@@ -151,7 +151,7 @@ def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):
 
 def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch):
     """A recording of 0.2 MB can hold 2.5 GB of zeros."""
-    monkeypatch.setattr(recorded_run, "MOST_BYTES", 10_000)
+    monkeypatch.setattr(recorded_run, "MAX_BYTES", 10_000)
     with pytest.raises(UsageError, match="more than 10000 bytes of messages"):
         RecordedRuns(GOLDEN)
 

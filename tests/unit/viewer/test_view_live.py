@@ -119,7 +119,7 @@ def test_the_server_listens_on_this_machine_alone() -> None:
 
 
 def test_too_many_pages_are_refused(monkeypatch) -> None:
-    monkeypatch.setattr(server, "MOST_PAGES", 1)
+    monkeypatch.setattr(server, "MAX_PAGES", 1)
     with serving("page", Feed(), 0) as port, events(port) as lines:
         next(lines)
         next_rows(lines)
