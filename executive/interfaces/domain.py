@@ -34,6 +34,27 @@ class Scenario:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class LabelQuery:
+    """Query for the range of one quantity of one label of a plan.
+
+    Attributes:
+      quantity: As declared by Parameter.quantity, e.g. "x" or "phi".
+      label: PDDL object, e.g. "pos2".
+      holds: Ground predicates over the label that are linked from the initial state, in the order of the plan's links.
+      achieved: Those that are linked from earlier actions, in the same order.
+      belief: The domain's belief state.
+      scenario: Places and settings of the task.
+    """
+
+    quantity: str
+    label: str
+    holds: tuple[Fact, ...]
+    achieved: tuple[Fact, ...]
+    belief: Belief
+    scenario: Scenario
+
+
 class Domain(Protocol):
     """All that the executive is told about a robot and its tasks. Every function is pure."""
 
@@ -68,19 +89,19 @@ class Domain(Protocol):
         """The abstract state of now: what can be observed is read off the belief, the rest remembered."""
         ...
 
-    def value(
-        self,
-        quantity: str,
-        label: str,
-        holds: tuple[Fact, ...],
-        achieved: tuple[Fact, ...],
-        belief: Belief,
-        scenario: Scenario,
-    ) -> Interval | None:
-        """What the predicates over `label` say about a quantity of it (Algorithm 2, line 10).
+    def value(self, query: LabelQuery) -> Interval | None:
+        """Range of a quantity of a label, as its predicates restrict it (Algorithm 2, line 10).
 
-        `holds` are predicates linked from the initial state, `achieved` those linked from earlier actions. None: they
-        say nothing, and the parameter's default range stands. An empty intersection raises `Conflict`.
+        Args:
+          query: Quantity, label, the predicates over the label, belief and scenario.
+
+        Returns:
+          The intersection of the ranges that the predicates give, in the unit of the parameters with this quantity.
+          A range of one point binds the variable. None if no predicate restricts it: the default range of the
+          parameter applies.
+
+        Raises:
+          Conflict: The intersection is empty, or a value that the predicates need is not in the belief.
         """
         ...
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from tailor.executive.interfaces.action import Parameter
-from tailor.executive.interfaces.domain import Conflict, Domain, Scenario
+from tailor.executive.interfaces.domain import Conflict, Domain, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Belief, Fact, Interval
 from tailor.executive.planning import Plan
 from tailor.executive.refinement.objective.sequence import (
@@ -97,7 +97,8 @@ class Pattern:
 
     def _said(self, slot: _Slot, belief: Belief) -> Interval | None:
         quantity = slot.parameter.quantity
-        return self._domain.value(quantity, slot.label, slot.holds, slot.achieved, belief, self._scenario)
+        query = LabelQuery(quantity, slot.label, slot.holds, slot.achieved, belief, self._scenario)
+        return self._domain.value(query)
 
     def _made(self, identifier: int, belief: Belief) -> Variable:
         slot = self._slots[identifier]

@@ -102,12 +102,12 @@ class LineDomain:
     def anchor(self, belief, scenario, remembered):
         return frozenset(f for f in remembered if belief.shift != CLOSED or f[0] != "place")
 
-    def value(self, quantity, label, holds, achieved, belief, scenario):
-        if quantity != "x":
+    def value(self, query):
+        if query.quantity != "x":
             return None
-        if ("at", label) in holds:
-            return Interval(belief.x, belief.x)
-        x = scenario.places[label]["x"] + belief.shift
+        if ("at", query.label) in query.holds:
+            return Interval(query.belief.x, query.belief.x)
+        x = query.scenario.places[query.label]["x"] + query.belief.shift
         return Interval(x, x)
 
     def message(self, command, stamp_ns):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from tailor.executive.interfaces.domain import Domain, Scenario
-from tailor.executive.interfaces.values import Belief, Fact, Interval
+from tailor.executive.interfaces.domain import Domain, LabelQuery
+from tailor.executive.interfaces.values import Interval
 
 Pins = Mapping[tuple[str, str], float]  # (label, quantity) -> value
 
@@ -21,18 +21,10 @@ class PinnedDomain:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._inner, name)
 
-    def value(
-        self,
-        quantity: str,
-        label: str,
-        holds: tuple[Fact, ...],
-        achieved: tuple[Fact, ...],
-        belief: Belief,
-        scenario: Scenario,
-    ) -> Interval | None:
+    def value(self, query: LabelQuery) -> Interval | None:
         """The inner domain's answer, or the pin where that is no single value."""
-        said = self._inner.value(quantity, label, holds, achieved, belief, scenario)
-        pin = self._pins.get((label, quantity))
+        said = self._inner.value(query)
+        pin = self._pins.get((query.label, query.quantity))
         if pin is None or (said is not None and said.lower == said.upper):
             return said
         return Interval(pin, pin)

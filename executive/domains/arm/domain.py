@@ -11,7 +11,7 @@ from tailor.executive.domains.arm.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Axis, Scenario
+from tailor.executive.interfaces.domain import Axis, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Fact, Interval
 from tailor.schemas.messages import JointCommand, Message, Sample
 
@@ -53,17 +53,9 @@ class ArmDomain:
         """What was drawn cannot be seen: the abstract state is what is remembered."""
         return remembered
 
-    def value(
-        self,
-        quantity: str,
-        label: str,
-        holds: tuple[Fact, ...],
-        achieved: tuple[Fact, ...],
-        belief: ArmBelief,
-        scenario: Scenario,
-    ) -> Interval | None:
-        """See arm.meaning."""
-        return predicates.value(quantity, label, holds, belief, scenario)
+    def value(self, query: LabelQuery) -> Interval | None:
+        """See arm.predicates."""
+        return predicates.value(query)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
         """Joint velocities; the driver closes the current loop."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tailor.executive.domains.arm.belief import ArmBelief, Joints, ahead
-from tailor.executive.interfaces.domain import Scenario
-from tailor.executive.interfaces.values import Fact, Interval
+from tailor.executive.domains.arm.belief import Joints, ahead
+from tailor.executive.interfaces.domain import LabelQuery
+from tailor.executive.interfaces.values import Interval
 
 
-def value(quantity: str, label: str, holds: tuple[Fact, ...], belief: ArmBelief, scenario: Scenario) -> Interval | None:
+def value(query: LabelQuery) -> Interval | None:
     """See tailor.executive.interfaces.domain.Domain.value.
 
     `at` says where the arm will be when the next action begins, `next` where the scenario put the waypoint. The
@@ -17,12 +17,13 @@ def value(quantity: str, label: str, holds: tuple[Fact, ...], belief: ArmBelief,
     it does for the last.
     """
     known: Mapping[str, float] = {}
-    if ("at", label) in holds:
-        known = named(*ahead(belief))
-    elif any(fact[0] == "next" and fact[2] == label for fact in holds):
-        known = scenario.places[label]
-    if quantity in known:
-        return Interval(known[quantity], known[quantity])
+    if ("at", query.label) in query.holds:
+        known = named(*ahead(query.belief))
+    elif any(fact[0] == "next" and fact[2] == query.label for fact in query.holds):
+        known = query.scenario.places[query.label]
+    if query.quantity in known:
+        exact = known[query.quantity]
+        return Interval(exact, exact)
     return Interval(-known["fastest"], known["fastest"]) if "fastest" in known else None
 
 

@@ -11,7 +11,7 @@ from tailor.executive.domains.soccer.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.belief import SoccerBelief
 from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Axis, Scenario
+from tailor.executive.interfaces.domain import Axis, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Fact, Interval
 from tailor.schemas.messages import Message, Sample, VelocityCommand
 
@@ -67,20 +67,12 @@ class SoccerDomain:
         return pose.x, pose.y, pose.phi, belief.v, belief.omega, ball_x, ball_y, pose_sigma, ball_sigma
 
     def anchor(self, belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-        """See soccer.meaning."""
+        """See soccer.predicates."""
         return predicates.anchor(belief, scenario, remembered)
 
-    def value(
-        self,
-        quantity: str,
-        label: str,
-        holds: tuple[Fact, ...],
-        achieved: tuple[Fact, ...],
-        belief: SoccerBelief,
-        scenario: Scenario,
-    ) -> Interval | None:
-        """See soccer.meaning."""
-        return predicates.value(quantity, label, holds, achieved, belief, scenario)
+    def value(self, query: LabelQuery) -> Interval | None:
+        """See soccer.predicates."""
+        return predicates.value(query)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
         """Translational and rotational velocity."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.action_library import AT_BALL_MPS
 from tailor.executive.domains.soccer.belief import SoccerBelief
-from tailor.executive.interfaces.domain import Conflict, Scenario
+from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Fact, Interval
 
 BEFORE_AHEAD_M = (0.15, 0.70)  # a ball there, in the robot's frame, is `atball`: dribbling can begin
@@ -16,47 +16,38 @@ BEFORE_LEFT_M = 0.25
 ARRIVED_M = 0.35  # a ball within this of the target is there
 
 
-def value(
-    quantity: str,
-    label: str,
-    holds: tuple[Fact, ...],
-    achieved: tuple[Fact, ...],
-    belief: SoccerBelief,
-    scenario: Scenario,
-) -> Interval | None:
-    """See tailor.executive.interfaces.domain.Domain.value."""
-    result: Interval | None = None
-    for fact in (*holds, *achieved):
-        said = _said(quantity, label, fact, fact in holds, belief, scenario.places)
-        if said is not None:
-            result = said if result is None else _both(quantity, label, result, said)
-    return result
+def value(query: LabelQuery) -> Interval | None:
+    """Range of a quantity of a label; see tailor.executive.interfaces.domain.Domain.value."""
+    intersection: Interval | None = None
+    for fact in (*query.holds, *query.achieved):
+        interval = _interval_of(query, fact)
+        if interval is not None:
+            intersection = interval if intersection is None else _intersected(query, intersection, interval)
+    return intersection
 
 
-def _said(
-    quantity: str,
-    label: str,
-    fact: Fact,
-    holding: bool,
-    belief: SoccerBelief,
-    places: Mapping[str, Mapping[str, float]],
-) -> Interval | None:
-    """What one predicate says about one quantity of one of its labels."""
-    name = fact[0]
-    if name == "atball" and not holding:
-        return Interval(0.0, AT_BALL_MPS) if quantity == "v" else None
-    known: Mapping[str, float] = {}
+def _interval_of(query: LabelQuery, fact: Fact) -> Interval | None:
+    """Range that one predicate gives the queried quantity; None if it gives none."""
+    if fact[0] == "atball" and fact not in query.holds:
+        return Interval(0.0, AT_BALL_MPS) if query.quantity == "v" else None
+    exact = _exact_values(query, fact).get(query.quantity)
+    return None if exact is None else Interval(exact, exact)
+
+
+def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
+    """Values by quantity that a predicate takes from the belief or from the scenario."""
+    name, holding = fact[0], fact in query.holds
     if name == "robot" and holding:
-        known = _robot(belief)
-    elif name == "ball" and holding:
-        known = _ball(belief)
-    elif name == "atball":
-        known = {**_robot(belief), **_ball(belief)}
-    elif name == "final":
-        known = {"v": 0.0, **places[label]}
-    elif name == "route" and fact[2] == label:
-        known = places[label]
-    return Interval(known[quantity], known[quantity]) if quantity in known else None
+        return _robot(query.belief)
+    if name == "ball" and holding:
+        return _ball(query.belief)
+    if name == "atball":
+        return {**_robot(query.belief), **_ball(query.belief)}
+    if name == "final":
+        return {"v": 0.0, **query.scenario.places[query.label]}
+    if name == "route" and fact[2] == query.label:
+        return query.scenario.places[query.label]
+    return {}
 
 
 def _robot(belief: SoccerBelief) -> dict[str, float]:
@@ -71,12 +62,11 @@ def _ball(belief: SoccerBelief) -> dict[str, float]:
     return {"x": seen[0], "y": seen[1]}
 
 
-def _both(quantity: str, label: str, a: Interval, b: Interval) -> Interval:
+def _intersected(query: LabelQuery, a: Interval, b: Interval) -> Interval:
     lower, upper = max(a.lower, b.lower), min(a.upper, b.upper)
     if lower > upper:
-        raise Conflict(
-            f"{quantity} of {label} cannot be in [{a.lower:g}, {a.upper:g}] and in [{b.lower:g}, {b.upper:g}]"
-        )
+        ranges = f"[{a.lower:g}, {a.upper:g}] and in [{b.lower:g}, {b.upper:g}]"
+        raise Conflict(f"{query.quantity} of {query.label} cannot be in {ranges}")
     return Interval(lower, upper)
 
 

@@ -11,7 +11,7 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer import robot
-from tailor.executive.interfaces.domain import Conflict, Scenario
+from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
 from tailor.tools.lockstep.action_run import new_body, newest
@@ -29,7 +29,7 @@ def believe(x=0.0, y=1.0, phi=0.0, v=0.0, ball=(3.0, 0.0)):
 
 
 def value(quantity, label, holds=(), achieved=(), belief=None, scenario=SCENARIO):
-    return SOCCER.value(quantity, label, holds, achieved, belief or believe(), scenario)
+    return SOCCER.value(LabelQuery(quantity, label, holds, achieved, belief or believe(), scenario))
 
 
 def test_example_of_the_paper_gets_its_values():

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tailor.executive.interfaces.domain import LabelQuery
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
@@ -104,15 +105,18 @@ def test_pin_binds_what_is_free_and_nothing_else():
     class Inner:
         name = "inner"
 
-        def value(self, quantity, label, *rest):
-            return {"x": Interval(1.0, 1.0), "v": Interval(0.0, 0.3)}.get(quantity)
+        def value(self, query):
+            return {"x": Interval(1.0, 1.0), "v": Interval(0.0, 0.3)}.get(query.quantity)
 
     domain = PinnedDomain(Inner(), {("pos2", "v"): 0.1, ("pos2", "x"): 5.0, ("pos2", "phi"): 2.0})
-    rest = ((), (), None, None)
-    assert domain.value("v", "pos2", *rest) == Interval(0.1, 0.1)
-    assert domain.value("phi", "pos2", *rest) == Interval(2.0, 2.0)
-    assert domain.value("x", "pos2", *rest) == Interval(1.0, 1.0)
-    assert domain.value("v", "pos3", *rest) == Interval(0.0, 0.3)
+
+    def value(quantity, label):
+        return domain.value(LabelQuery(quantity, label, (), (), None, None))
+
+    assert value("v", "pos2") == Interval(0.1, 0.1)
+    assert value("phi", "pos2") == Interval(2.0, 2.0)
+    assert value("x", "pos2") == Interval(1.0, 1.0)
+    assert value("v", "pos3") == Interval(0.0, 0.3)
     assert domain.name == "inner"
 
 

@@ -34,9 +34,10 @@ class ShiftingDomain:
     )
     asked: int = 0
 
-    def value(self, quantity, label, holds, achieved, belief, scenario):
+    def value(self, query):
+        quantity, belief = query.quantity, query.belief
         self.asked += 1
-        for fact in holds:
+        for fact in query.holds:
             if fact[0] == "ball" and belief["ball"] is None:
                 raise Conflict("the ball has not been seen")
             known = belief.get(fact[0])

@@ -42,14 +42,15 @@ class PaperDomain:
     )
     asked: list[Any] = field(default_factory=list)
 
-    def value(self, quantity, label, holds, achieved, belief, scenario):
-        self.asked.append((quantity, label, holds, achieved))
-        said = [KNOWN[fact[0]][quantity] for fact in holds if quantity in KNOWN[fact[0]]]
+    def value(self, query):
+        quantity = query.quantity
+        self.asked.append((query.label, query.holds, query.achieved))
+        said = [KNOWN[fact[0]][quantity] for fact in query.holds if quantity in KNOWN[fact[0]]]
         if len(set(said)) > 1:
-            raise Conflict(f"{quantity} of {label} cannot be {said}")
+            raise Conflict(f"{quantity} of {query.label} cannot be {said}")
         if said:
             return Interval(said[0], said[0])
-        if quantity == "v" and any(fact[0] == "atball" for fact in achieved):
+        if quantity == "v" and any(fact[0] == "atball" for fact in query.achieved):
             return Interval(0.0, 0.3)
         return None
 
@@ -93,7 +94,7 @@ def test_shared_label_and_quantity_is_one_variable():
 def test_domain_is_asked_with_the_causal_links_of_the_label():
     domain = PaperDomain()
     instantiate(paper_plan(), domain, None, None)
-    asked = {label: (holds, achieved) for _, label, holds, achieved in domain.asked}
+    asked = {label: (holds, achieved) for label, holds, achieved in domain.asked}
     assert asked["pos2"] == ((("ball", "pos2"),), (("atball", "pos2"),))
     assert asked["pos3"] == ((("final", "pos3"),), (("atball", "pos3"),))
 
@@ -108,9 +109,9 @@ def test_contradicting_predicates_fail_with_the_step_and_the_reason():
 
 def test_range_outside_the_parameters_range_fails():
     class TooFast(PaperDomain):
-        def value(self, quantity, label, holds, achieved, belief, scenario):
-            said = super().value(quantity, label, holds, achieved, belief, scenario)
-            return Interval(1.0, 2.0) if (quantity, label) == ("v", "pos2") else said
+        def value(self, query):
+            said = super().value(query)
+            return Interval(1.0, 2.0) if (query.quantity, query.label) == ("v", "pos2") else said
 
     failure = instantiate(paper_plan(), TooFast(), None, None)
     assert isinstance(failure, Failure)
@@ -120,9 +121,9 @@ def test_range_outside_the_parameters_range_fails():
 @pytest.mark.parametrize(("lower", "upper", "wraps"), [(-PI, PI, True), (2.5, 3.5, False), (-10.0, 10.0, True)])
 def test_angle_wraps_only_when_the_whole_turn_is_free(lower, upper, wraps):
     class Sector(PaperDomain):
-        def value(self, quantity, label, holds, achieved, belief, scenario):
-            said = super().value(quantity, label, holds, achieved, belief, scenario)
-            return Interval(lower, upper) if (quantity, label) == ("phi", "pos2") else said
+        def value(self, query):
+            said = super().value(query)
+            return Interval(lower, upper) if (query.quantity, query.label) == ("phi", "pos2") else said
 
     sequence = instantiate(paper_plan(), Sector(), None, None)
     assert isinstance(sequence, ActionSequence)
@@ -142,4 +143,4 @@ def test_binding_keeps_bound_variables_and_other_ids():
 def test_what_must_not_hold_says_nothing_of_values():
     domain = PaperDomain()
     instantiate(paper_plan((Link(0, Literal(("robot", "pos2"), positive=False), 1),)), domain, None, None)
-    assert ("robot", "pos2") not in {fact for _, _, holds, _ in domain.asked for fact in holds}
+    assert ("robot", "pos2") not in {fact for _, holds, _ in domain.asked for fact in holds}
