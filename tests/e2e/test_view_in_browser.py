@@ -11,8 +11,8 @@ import pytest
 
 from tailor.schemas import messages as m
 from tailor.tools.viewer import timeline as story_module
+from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.explainer import Explainer
-from tailor.tools.viewer.feed import Feed
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -227,7 +227,7 @@ def test_both_colour_schemes_have_readable_ink(browser: Browser, soccer: str) ->
 def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) -> None:
     rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
     half = len(rows) // 2
-    feed = Feed()
+    feed = EventBroadcast()
     with serving(page("live", [], live=True), feed, 0) as port:
         feed.publish(rows[:half])
         opened(browser, f"http://127.0.0.1:{port}/")
@@ -238,7 +238,7 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
         assert at(browser) == 0, "whoever looks at the past is left there"
         browser.press("l")
         assert at(browser) == pytest.approx(rows[-1].at_s, abs=0.01)
-    again = Feed()
+    again = EventBroadcast()
     again.publish(rows[:5])
     with serving(page("live", [], live=True), again, port):
         browser.wait(f"Math.abs(Number(document.querySelector('footer input').max) - {rows[4].at_s}) < 0.01")
@@ -247,7 +247,7 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
 
 def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> None:
     rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
-    feed = Feed()
+    feed = EventBroadcast()
     with serving(page("live", [], live=True), feed, 0) as port:
         opened(browser, f"http://127.0.0.1:{port}/")
 

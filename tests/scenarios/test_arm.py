@@ -10,14 +10,14 @@ import pytest
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
-from tailor.tools.writing.lockstep import Hand, ListenedBody, write
 from tailor.tools.writing.measures import waypoint_errors_rad
+from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
 
 MODELS = Models(*load_robot("powercube"))
-BODY = ListenedBody()
-REFINED = Hand("refined", RefinementSettings())
-GREEDY = Hand("greedy", replace(RefinementSettings(), horizon=1))
-STOPPING = Hand("stopping", RefinementSettings(), stops=True)
+BODY = RecordedBody()
+REFINED = WritingMode("refined", RefinementSettings())
+GREEDY = WritingMode("greedy", replace(RefinementSettings(), horizon=1))
+STOPPING = WritingMode("stopping", RefinementSettings(), stops=True)
 
 
 def written(text, hand, seed=3):

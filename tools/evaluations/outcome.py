@@ -52,12 +52,14 @@ class Outcome:
     predicted_s: tuple[float, ...]
     actual_s: tuple[float, ...]
     asserted: bool  # whether any detour was made
-    ball_moved_m: float  # how far the ball had moved when the approach ended; 0 without an approach
+    disturbance_m: float  # how far the ball had moved when the approach ended; 0 without an approach
     free: tuple[tuple[str, str, float, float, float], ...]  # first choice: label, quantity, lower, upper, value
     bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value
     greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
     refined_cost_s: float = float("nan")
-    foreseen: tuple[tuple[str, bool, float], ...] = ()  # first choice: action, whether a detour, predicted seconds
+    predicted_actions: tuple[
+        tuple[str, bool, float], ...
+    ] = ()  # first choice: action, whether asserted, predicted seconds
     situation: tuple[float, ...] = ()  # what a benefit tree sees of the first choice (tailor.executive.refinement.gate)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.tools.evaluations.report import shown
-from tailor.tools.figures.page import page, table
+from tailor.tools.figures.report_page import page, table
 
 ROWS_MAX = 6
 # What an evaluation is judged by, of all that its page tells.

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.tools.cli.number_checks import processes
-from tailor.tools.figures.page import image, page, table
+from tailor.tools.figures.report_page import image, page, table
 
 Row = Mapping[str, Any]
 WIDE = 9  # columns that still fit a screen
@@ -44,7 +44,7 @@ def configure_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--domain", default="", help="only where the evaluation is of that domain, e.g. soccer")
 
 
-def tell(report: Report, as_json: bool, folder: Path | None) -> None:
+def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
     """Print the report, and write its page when a folder is given."""
     said = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
     text = json.dumps({**said, "remarks": list(report.remarks)}, indent=1)

@@ -16,7 +16,7 @@ from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
 from tailor.tools.writing.measures import pen_m
-from tailor.tools.writing.track import Written
+from tailor.tools.writing.writing_track import WritingTrack
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ MAX_HEIGHT_INCHES = 4.0  # of one hand
 MARGIN = 0.25  # m or rad around the waypoints
 
 
-def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
+def draw_letters(rows: Sequence[Sequence[WritingTrack]], path: Path) -> None:
     """Draw a grid: one row for each hand, one column for each letter, all in joint space to one scale."""
     count = len(rows[0])
     figure = Figure(figsize=(CELL_INCHES * count + 1.2, CELL_INCHES * 1.3 * len(rows)), layout="constrained")
@@ -44,7 +44,7 @@ def draw_letters(rows: Sequence[Sequence[Written]], path: Path) -> None:
     _finish(figure, axes, lines, path, GRID)
 
 
-def draw_words(rows: Sequence[Written], path: Path, in_joints: bool = False) -> None:
+def draw_words(rows: Sequence[WritingTrack], path: Path, in_joints: bool = False) -> None:
     """Draw one text by several hands below each other, at the scale of the page in metres, or in joint space."""
     place, unit = ((lambda angles: angles), "rad") if in_joints else (pen_m, "m")
     page = place(rows[0].waypoints)
@@ -62,7 +62,7 @@ def draw_words(rows: Sequence[Written], path: Path, in_joints: bool = False) -> 
     _finish(figure, axes, lines, path, GRID / 2)
 
 
-def _draw(axis: Any, said: Written, line: Array, points: Array) -> LineCollection:
+def _draw(axis: Any, said: WritingTrack, line: Array, points: Array) -> LineCollection:
     """One piece of writing on one axis; returns its line, for the scale of colours."""
     speed = np.linalg.norm(said.velocities, axis=1)
     segments = np.stack((line[:-1], line[1:]), axis=1)

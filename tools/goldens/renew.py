@@ -22,7 +22,7 @@ from tailor.tools.commands.run.sim import make_world
 from tailor.tools.goldens.changes import changes, outcome
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.run_recording import LockstepRecording
-from tailor.tools.lockstep.run_writer import RunTape
+from tailor.tools.lockstep.run_writer import RunWriter
 from tailor.tools.recordings.comparison import compared_run
 
 FOLDER = Path(__file__).resolve().parents[2] / "tests" / "data" / "golden"
@@ -56,7 +56,7 @@ def record(golden: Golden, path: Path) -> None:
     context = build_context(order, SENDER)
     _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
     world = make_world(context.domain.robot, golden.scenario, golden.seed)
-    tape = RunTape(path, context, {**provenance(order, context), "machine": platform_fingerprint()}, compact=True)
+    tape = RunWriter(path, context, {**provenance(order, context), "machine": platform_fingerprint()}, compact=True)
     recording = LockstepRecording(tape)
     run_lockstep(
         context,

@@ -7,13 +7,13 @@ from tailor.executive.replay import RecordedTick
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
-from tailor.tools.lockstep.run_writer import RunTape
+from tailor.tools.lockstep.run_writer import RunWriter
 
 
 class LockstepRecording:
     """Its two methods are handed to episodes.run_episode."""
 
-    def __init__(self, tape: RunTape) -> None:
+    def __init__(self, tape: RunWriter) -> None:
         self._tape = tape
         self._carried: dict[int, bytes] = {}  # by id of the reading as the core gets it in the coming tick
 

@@ -26,7 +26,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.schemas.typesystem import ros_type
 
 
-class RunTape:
+class RunWriter:
     """One executive's run; messages bear the times of its ticks."""
 
     def __init__(self, path: Path, context: Context, made_of: Mapping[str, Any], compact: bool = False) -> None:

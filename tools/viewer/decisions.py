@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Provenance, RefinementReport, Subgoals, TickReport
-from tailor.tools.viewer.recorded import Timed
+from tailor.tools.viewer.recorded_messages import Timed
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,9 @@ from tailor.executive.core.context import Context
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
 from tailor.schemas.messages import Subgoals
+from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
-from tailor.tools.viewer.rows import Fields, number
 
 STREAM = 5  # of the seed, and the one after it; the executive's own draws come from others
 

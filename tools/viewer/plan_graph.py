@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tailor.executive import planning
 from tailor.schemas.messages import PlanReport
-from tailor.tools.viewer.rows import Fields
+from tailor.tools.viewer.event_fields import Fields
 
 
 def plan_graph(message: PlanReport) -> Fields:

@@ -8,7 +8,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.viewer.feed import Feed
+from tailor.tools.viewer.broadcast import EventBroadcast
 
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here
@@ -18,7 +18,7 @@ BEAT_S = 2.0  # a comment so often tells a page that has gone
 
 
 @contextmanager
-def serving(document: str, feed: Feed, port: int) -> Iterator[int]:
+def serving(document: str, feed: EventBroadcast, port: int) -> Iterator[int]:
     """Serve while this lasts; yields the port (a free one for port 0).
 
     Raises:
@@ -42,7 +42,7 @@ def serving(document: str, feed: Feed, port: int) -> Iterator[int]:
 
 class _Handler(BaseHTTPRequestHandler):
     document: bytes
-    feed: Feed
+    feed: EventBroadcast
     timeout = 10  # of a socket that neither takes nor gives
 
     def do_GET(self) -> None:

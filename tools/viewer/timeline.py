@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
-from tailor.tools.viewer import rows
-from tailor.tools.viewer.about import about
+from tailor.tools.viewer import event_fields
+from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.plan_graph import plan_graph
-from tailor.tools.viewer.rows import Fields
+from tailor.tools.viewer.run_facts import about
 
 STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.
@@ -60,29 +60,29 @@ class RunTimeline:
             case m.ExecStatus():
                 return self._status(at_s, message)
             case m.SimTruth():
-                return self._path(at_s, "truth", rows.truth(message))
+                return self._path(at_s, "truth", event_fields.truth(message))
             case m.Odometry():
-                return self._path(at_s, "odom", rows.odometry(message))
+                return self._path(at_s, "odom", event_fields.odometry(message))
             case m.PoseEstimate():
-                return self._path(at_s, "seen", rows.seen(message))
+                return self._path(at_s, "seen", event_fields.seen(message))
             case m.TickReport():
-                return [("tick", rows.tick(message))]
+                return [("tick", event_fields.tick(message))]
             case m.ActionFinished():
-                return [("finished", rows.finished(message))]
+                return [("finished", event_fields.finished(message))]
             case m.Subgoals():
                 return self._subgoals(message)
             case m.RefinementReport():
-                return [("refinement", rows.refinement(message))]
+                return [("refinement", event_fields.refinement(message))]
             case m.PlanReport():
                 return [("plan", plan_graph(message))]
             case m.DriverState():
-                return self._changed("driver", rows.driver(message))
+                return self._changed("driver", event_fields.driver(message))
             case m.EStop():
                 return [("estop", {"stop": message.stop})]
         if isinstance(message, SILENT):
             return []
         topic = key.rpartition("/")[2]
-        return self._paced(at_s, f"series {topic}", rows.numbers(message))
+        return self._paced(at_s, f"series {topic}", event_fields.numbers(message))
 
     def _provenance(self, message: m.Provenance) -> list[tuple[str, Fields]]:
         if self._last.get("provenance") == message.json:
@@ -104,12 +104,12 @@ class RunTimeline:
             self._last["action"] = action
             told.append(("action", {"index": action[0], "action": action[1]}))
         belief = {
-            "elapsed": rows.number(message.action_elapsed_s),
-            "predicted": rows.number(message.action_predicted_s),
-            "values": [rows.number(value) for value in message.belief],
+            "elapsed": event_fields.number(message.action_elapsed_s),
+            "predicted": event_fields.number(message.action_predicted_s),
+            "values": [event_fields.number(value) for value in message.belief],
         }
         told += self._paced(at_s, "belief", belief)
-        robot = rows.believed(self._names, message.belief)
+        robot = event_fields.believed(self._names, message.belief)
         return told + (self._path(at_s, "believed", robot) if robot else [])
 
     def _path(self, at_s: float, source: str, robot: Fields) -> list[tuple[str, Fields]]:
@@ -117,7 +117,7 @@ class RunTimeline:
         return self._paced(at_s, source, {**robot, "index": self._action[0]})
 
     def _subgoals(self, message: m.Subgoals) -> list[tuple[str, Fields]]:
-        told = [("subgoals", rows.subgoals(message))]
+        told = [("subgoals", event_fields.subgoals(message))]
         explained = self._explainer.fields(message) if self._explainer is not None else None
         return told + ([("why", explained)] if explained else [])
 

@@ -6,33 +6,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.executive.domains.arm.robot import PEN_M
-from tailor.tools.writing.track import Written
+from tailor.tools.writing.writing_track import WritingTrack
 
 Array = NDArray[np.float64]
 GRID_S = 0.02  # of the joint states
 SMOOTHING = 5  # of them: set-points come every 0.1 s, and their corners are not the arm's
 
 
-def waypoint_errors_rad(said: Written) -> Array:
+def waypoint_errors_rad(said: WritingTrack) -> Array:
     """How far the arm was from each waypoint when it was to pass it, shape (w,)."""
     count = min(len(said.waypoints), len(said.arrivals_s))
     at = [np.interp(said.arrivals_s[:count], said.times_s, said.angles[:, joint]) for joint in (0, 1)]
     return np.linalg.norm(np.stack(at, axis=1) - said.waypoints[:count], axis=1)
 
 
-def rms_jerk(said: Written) -> float:
+def rms_jerk(said: WritingTrack) -> float:
     """Root of the mean squared jerk of both joints together, rad/s³, from velocities averaged over 0.1 s."""
     return float(np.sqrt((_jerk(said) ** 2).sum(axis=1).mean()))
 
 
-def roughness(said: Written) -> float:
+def roughness(said: WritingTrack) -> float:
     """Logarithm of the dimensionless jerk: ln(T³ / v_max² · ∫|jerk|² dt), no unit; less is smoother at any speed."""
     square = float((_jerk(said) ** 2).sum() * GRID_S)
     fastest = float(np.linalg.norm(said.velocities, axis=1).max())
     return float(np.log(said.duration_s**3 / fastest**2 * square))
 
 
-def _jerk(said: Written) -> Array:
+def _jerk(said: WritingTrack) -> Array:
     """rad/s³, shape (n, 2), every GRID_S."""
     times = np.arange(0.0, said.duration_s, GRID_S)
     joints = []

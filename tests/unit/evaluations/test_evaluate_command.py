@@ -11,7 +11,7 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.overview import write_overview
-from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.main import main
 
 CALLS: list[str] = []
@@ -32,7 +32,7 @@ def module(name, domains, run):
     def really_run(arguments):
         CALLS.append(name)
         assert getattr(arguments, "places", []) == []
-        tell(Report(name, f"The {name} one", [{"scenario": name, "n": 3}]), arguments.json, arguments.report)
+        publish_report(Report(name, f"The {name} one", [{"scenario": name, "n": 3}]), arguments.json, arguments.report)
         return run()
 
     made.configure, made.run = configure, really_run
@@ -113,7 +113,7 @@ def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, ca
 
 def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     rows = [{"scenario": f"row-{k}"} for k in range(10)]
-    tell(Report("first", "The first one", rows), True, tmp_path)
+    publish_report(Report("first", "The first one", rows), True, tmp_path)
     text = write_overview(tmp_path, ["first"]).read_text()
     assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
 
@@ -126,6 +126,8 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
 
 
 def test_what_is_no_number_is_null_in_json(capsys):
-    tell(Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None)
+    publish_report(
+        Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None
+    )
     said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]

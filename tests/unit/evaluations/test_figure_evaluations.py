@@ -18,7 +18,7 @@ from tailor.tools.evaluations.refinement import figure11
 from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
 from tailor.tools.evaluations.refinement.sweep import sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
-from tailor.tools.evaluations.watched import watch
+from tailor.tools.evaluations.traced_runs import trace_run
 from tailor.tools.figures.track import Point, Track
 from tests.unit.evaluations.test_refinement_evaluations import DONE
 
@@ -58,14 +58,14 @@ def test_sweep_splits_an_episode_where_the_approach_has_succeeded():
 
 
 def test_sweep_predicts_subgoals_as_part_of_the_approach():
-    sweep = sweep_of(1, np.array([0.0]), 0.2, [[replace(DONE, foreseen=FORESEEN)]], 0.0, 0.0)
+    sweep = sweep_of(1, np.array([0.0]), 0.2, [[replace(DONE, predicted_actions=FORESEEN)]], 0.0, 0.0)
     assert sweep.predicted_s[:, 0].tolist() == [5.0, 4.0, 9.0]
     assert sweep.asserted.tolist() == [True]
 
 
 def test_sweep_leaves_failed_runs_out_and_needs_one_that_is_not():
-    failed = replace(DONE, achieved=False, foreseen=FORESEEN)
-    done = replace(DONE, foreseen=FORESEEN)
+    failed = replace(DONE, achieved=False, predicted_actions=FORESEEN)
+    done = replace(DONE, predicted_actions=FORESEEN)
     sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[failed, done], [failed, failed]], 0.0, 0.0)
     assert sweep.simulated_s[2, 0] == 10.0
     assert np.isnan(sweep.simulated_s[:, 1]).all()
@@ -74,24 +74,24 @@ def test_sweep_leaves_failed_runs_out_and_needs_one_that_is_not():
 
 
 def test_sweep_leaves_out_a_run_that_reached_its_goal_without_an_approach():
-    aborted = replace(DONE, outcomes=("aborted", "done"), foreseen=FORESEEN)
-    done = replace(DONE, foreseen=FORESEEN)
+    aborted = replace(DONE, outcomes=("aborted", "done"), predicted_actions=FORESEEN)
+    done = replace(DONE, predicted_actions=FORESEEN)
     sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[aborted], [done]], 0.0, 0.0)
     assert np.isnan(sweep.simulated_s[:, 0]).all()
 
 
 def test_duration_between_two_angles_wraps_round_the_circle():
     angles = np.linspace(-math.pi, math.pi, 4, endpoint=False)
-    runs = [[replace(DONE, duration_s=s, foreseen=FORESEEN)] for s in (8.0, 20.0, 20.0, 10.0)]
+    runs = [[replace(DONE, duration_s=s, predicted_actions=FORESEEN)] for s in (8.0, 20.0, 20.0, 10.0)]
     sweep = sweep_of(1, angles, 0.2, runs, 0.0, 0.0)
     assert sweep.simulated_at(0.75 * math.pi) == pytest.approx(9.0)
 
 
 def test_an_angle_that_is_forced_is_the_one_that_is_taken(tmp_path):
-    watched, _ = watch(Task("soccer", "approach-dribble"), figure11._pinned(1.0, 0.2, 0), TRAINING_SEED)
+    watched, _ = trace_run(Task("soccer", "approach-dribble"), figure11._pinned(1.0, 0.2, 0), TRAINING_SEED)
     told = {(label, quantity): value for label, quantity, value in watched.outcome.bound}
     assert (told["pos2", "phi"], told["pos2", "v"]) == (1.0, 0.2)
-    assert [name for name, *_ in watched.outcome.foreseen][-2:] == ["approachBall", "dribbleBall"]
+    assert [name for name, *_ in watched.outcome.predicted_actions][-2:] == ["approachBall", "dribbleBall"]
     sweep = sweep_of(1, np.array([-1.0, 1.0]), 0.2, [[watched.outcome]] * 2, 0.0, 0.0)
     draw_sweep(sweep, [watched.track] * 3, tmp_path / "sweep.png")
     assert (tmp_path / "sweep.png").stat().st_size > 10_000
@@ -99,7 +99,7 @@ def test_an_angle_that_is_forced_is_the_one_that_is_taken(tmp_path):
 
 def test_other_noise_is_another_run_from_the_same_start():
     task, plain = Task("soccer", "approach-dribble"), Variant("h2")
-    first, again, other = (watch(task, v, TRAINING_SEED)[0] for v in (plain, plain, replace(plain, noise=500_000)))
+    first, again, other = (trace_run(task, v, TRAINING_SEED)[0] for v in (plain, plain, replace(plain, noise=500_000)))
     assert first.outcome == again.outcome
     assert first.track.points != other.track.points
     assert (first.track.points[0].x, first.track.points[0].ball_x) == pytest.approx(
@@ -112,7 +112,7 @@ def asserted():
     """The first approach with a subgoal before it."""
     _, asserting = variants()
     for seed in range(TRAINING_SEED, TRAINING_SEED + 40):
-        watched, context = watch(assertion_task(""), asserting, seed)
+        watched, context = trace_run(assertion_task(""), asserting, seed)
         ground = subgoal_map_of(watched.subgoals[0], context) if watched.subgoals else None
         if ground is not None:
             return watched, ground
@@ -128,7 +128,7 @@ def test_ground_is_valid_exactly_where_the_approach_is_predicted_to_succeed(asse
 
 def test_the_chosen_subgoal_costs_what_was_predicted_for_it(asserted):
     watched, ground = asserted
-    assert sum(ground.chosen_s) == pytest.approx(sum(s for *_, s in watched.outcome.foreseen[:2]), abs=0.02)
+    assert sum(ground.chosen_s) == pytest.approx(sum(s for *_, s in watched.outcome.predicted_actions[:2]), abs=0.02)
     assert ground.start == pytest.approx((watched.track.points[0].x, watched.track.points[0].y), abs=0.25)
 
 
@@ -140,8 +140,10 @@ def test_ground_is_drawn(asserted, tmp_path):
 
 def test_figure_15_counts_the_starts_at_which_a_subgoal_was_asserted():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
-    subgoal_action = replace(approach, asserted=True, foreseen=(("goToPose", True, 2.0), ("approachBall", False, 1.5)))
-    found = {"blind": {1: replace(approach, ball_moved_m=0.2)}, "asserted": {1: subgoal_action}}
+    subgoal_action = replace(
+        approach, asserted=True, predicted_actions=(("goToPose", True, 2.0), ("approachBall", False, 1.5))
+    )
+    found = {"blind": {1: replace(approach, disturbance_m=0.2)}, "asserted": {1: subgoal_action}}
     row = figure15._summary(found, [1])
     assert (row["n"], row["success_before_pct"], row["success_after_pct"]) == (1, 0.0, 100.0)
     assert (row["predicted_s"], row["took_s"], row["bias_s"]) == (3.5, 4.0, -0.5)

@@ -13,7 +13,7 @@ from tailor.tools.evaluations.live.bus_run import episode_of
 from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Task, Variant, outcome_of
-from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.evaluations.task_runs import run_task
 from tests.unit.evaluations.test_refinement_evaluations import DONE
 
 MARGIN_PCT = 5.0
@@ -31,12 +31,12 @@ def drawn(rng, factor, count=20):
 
 
 def test_what_is_heard_of_a_run_measures_as_the_run_itself():
-    episode, context = run_episode_of(Task("soccer", "approach-dribble"), Variant("h2"), 700_000)
+    episode, context = run_task(Task("soccer", "approach-dribble"), Variant("h2"), 700_000)
     heard = episode_of(episode.messages, episode.result)
     own, other = (outcome_of(e, context.domain, "h2", 1) for e in (episode, heard))
     assert other.duration_s == pytest.approx(own.duration_s, abs=1e-6)
-    assert (other.actions, other.actual_s, other.free, other.ball_moved_m) == (
-        own.actions, own.actual_s, own.free, own.ball_moved_m,
+    assert (other.actions, other.actual_s, other.free, other.disturbance_m) == (
+        own.actions, own.actual_s, own.free, own.disturbance_m,
     )  # fmt: skip
 
 

@@ -14,15 +14,15 @@ from tailor.executive.interfaces.values import Interval
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.assertion import figure15, figure16
-from tailor.tools.evaluations.comparison import compare, share_interval
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.evaluations.refinement import figure1, figure11, gate, oracle, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.oracle import _judged, _values, subgoal_parameters
-from tailor.tools.evaluations.trials import paired
+from tailor.tools.evaluations.task_runs import paired
 
 DONE = Outcome(
     seed=1,
@@ -35,7 +35,7 @@ DONE = Outcome(
     predicted_s=(4.0, 5.0),
     actual_s=(4.0, 6.0),
     asserted=False,
-    ball_moved_m=0.0,
+    disturbance_m=0.0,
     free=(("pos2", "phi", -3.0, 3.0, 0.5), ("subgoal12", "x", -3.0, 3.0, 1.0)),
     bound=(("pos1", "x", 0.0),),
     greedy_cost_s=11.0,
@@ -139,7 +139,7 @@ def test_oracle_chooses_for_the_plan_not_for_subgoals():
 
 def test_assertion_is_counted_as_the_paper_counts_it():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
-    bumped = replace(approach, ball_moved_m=0.2)
+    bumped = replace(approach, disturbance_m=0.2)
     subgoal_action = replace(approach, asserted=True, actual_s=(4.4,))
     before = {1: approach, 2: bumped, 3: approach, 4: approach}
     after = {1: approach, 2: subgoal_action, 3: subgoal_action, 4: replace(subgoal_action, actual_s=(4.8,))}
@@ -211,7 +211,7 @@ def test_oracles_choice_is_executed_again_with_other_noise(monkeypatch):
 
     monkeypatch.setattr(oracle, "run_all", run_all)
     free = [("pos2", "phi", -np.pi, np.pi)]
-    (one,) = oracle.consult(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
+    (one,) = oracle.simulate_choices(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
     again = [variant for variant in asked if variant.name.startswith("again")]
     assert {round(variant.pins[0][2], 9) for variant in again} == {0.0}
     assert len({variant.noise for variant in again}) == len(again) == 3

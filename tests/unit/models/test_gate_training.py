@@ -27,7 +27,7 @@ from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.goldens import renew
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import RecordedRuns
-from tailor.tools.viewer.recorded import timed
+from tailor.tools.viewer.recorded_messages import timed
 
 KIND = ("approachBall", "dribbleBall")
 TURNED = SITUATION.index("turned_rad")
@@ -111,7 +111,7 @@ def made_up(seed: int, variant: str, greedy_s: float, refined_s: float, situatio
     duration_s = greedy_s if variant == "h1" else refined_s
     told = (("goToPose", True, 2.0), (KIND[0], False, 3.0), (KIND[1], False, 5.0))
     seen = tuple(situation) if variant == "h2" else ()
-    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (), foreseen=told,
+    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (), predicted_actions=told,
                    situation=seen)  # fmt: skip
 
 
@@ -123,7 +123,7 @@ def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes
         rows = list(zip(seeds, known.greedy_s, known.refined_s, known.situations, strict=True))
         return {v.name: {row[0]: made_up(row[0], v.name, *row[1:]) for row in rows} for v in variants}
 
-    monkeypatch.setattr("tailor.tools.evaluations.trials.run_all", run_all)
+    monkeypatch.setattr("tailor.tools.evaluations.task_runs.run_all", run_all)
     shutil.copytree(runtime.ZOO / "agilo", tmp_path / "agilo")
     words = ["agilo", "--episodes", "300", "--zoo", str(tmp_path), "--learner", "tree"]
     assert main(["train-gate", *words]) == 0

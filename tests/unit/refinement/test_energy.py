@@ -13,7 +13,7 @@ from tailor.models.episodes.manifest import write_manifest
 from tailor.models.runtime import load_robot
 from tailor.schemas.messages import JointState, Odometry, SimTruth
 from tailor.tools.evaluations.outcome import Task, Variant
-from tailor.tools.evaluations.trials import run_one
+from tailor.tools.evaluations.task_runs import run_one
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.samplers.drive_work import MASS_KG, joint_work_j, wheel_work_j
 

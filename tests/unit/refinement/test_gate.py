@@ -14,7 +14,7 @@ from tailor.tools.commands.learn.train_gate import pairs_of
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.refinement import gate as judging
 from tailor.tools.evaluations.refinement import gate_ceiling
-from tailor.tools.viewer.wording import advice
+from tailor.tools.viewer.explanation_text import advice
 from tests.support.synthetic_models import MODELS, approach_dribble
 
 KIND = ("approachBall", "dribbleBall")

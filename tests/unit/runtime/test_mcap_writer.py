@@ -381,10 +381,10 @@ def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones
 
 
 def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_path, full_disk):
-    from tailor.tools.lockstep.run_writer import RunTape
+    from tailor.tools.lockstep.run_writer import RunWriter
     from tests.support.toy_domain import line_context
 
-    tape = RunTape(tmp_path / "run.mcap", line_context(), {})
+    tape = RunWriter(tmp_path / "run.mcap", line_context(), {})
     full_disk(True)
     with pytest.raises(OSError, match="No space left on device"):
         tape.close()

@@ -7,14 +7,14 @@ from tailor.executive.domains.arm.robot import PEN_M
 from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, JointState, Parameter, Subgoals
 from tailor.tools.figures.letters import draw_letters, draw_words
 from tailor.tools.writing.measures import pen_m, rms_jerk, roughness, waypoint_errors_rad
-from tailor.tools.writing.track import Written, written
+from tailor.tools.writing.writing_track import WritingTrack, writing_track
 
 TIMES = np.arange(0.0, 4.0, 0.02)
 
 
 def moving(angles, velocities, waypoints=((0.0, 0.0),), arrivals=(3.9,), text="I"):
     zero = np.zeros(len(arrivals))
-    return Written(
+    return WritingTrack(
         "hand", text, "achieved", TIMES, angles, velocities, np.array(waypoints), np.array(arrivals), zero, 1.0
     )
 
@@ -31,7 +31,7 @@ def test_jerk_of_a_circle_is_its_rate_cubed():
 
 def test_roughness_does_not_depend_on_how_fast_a_motion_is():
     slow, fast = swinging(1.0), swinging(1.0)
-    fast = Written(
+    fast = WritingTrack(
         "hand", "I", "", TIMES / 2, fast.angles, 2 * fast.velocities, fast.waypoints, fast.arrivals_s / 2,
         fast.predicted_s, 1.0,
     )  # fmt: skip
@@ -63,7 +63,7 @@ def test_a_run_is_cut_from_its_first_reach_to_its_last_waypoint():
     joints = ("lift", "pan")  # another order than ours
     states = [JointState(k * second // 10, joints, (1.0, 0.1 * k), (0.0, 1.0), (0.0, 0.0)) for k in range(60)]
     finished = [ActionFinished(3 * second, 1, "reach", 0, "done", "", 1.9, 2.0)]
-    said = written(
+    said = writing_track(
         "hand", "I", [*states, status(0, ""), status(second, "reach"), *finished, status(4 * second, "", "achieved"),
                       Subgoals(0, 1, 2, (goal(0.3, 0.4),))]
     )  # fmt: skip
@@ -75,7 +75,7 @@ def test_a_run_is_cut_from_its_first_reach_to_its_last_waypoint():
 
 
 def test_a_run_that_never_began_is_empty():
-    said = written("hand", "I", [status(0, "")])
+    said = writing_track("hand", "I", [status(0, "")])
     assert said.duration_s == 0.0
     assert not said.pen_down().any()
 

@@ -10,7 +10,7 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import MESSAGES
-from tailor.tools.viewer.rows import numbers
+from tailor.tools.viewer.event_fields import numbers
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 
@@ -80,7 +80,7 @@ def test_only_the_executives_robot_is_told_of_once_it_is_known() -> None:
 
 def test_a_ball_that_was_never_seen_is_not_drawn() -> None:
     names = ("x (m)", "y (m)", "phi (rad)", "v (m/s)", "ball_x (m)", "ball_y (m)", "ball_sigma (m)")
-    from tailor.tools.viewer.rows import believed
+    from tailor.tools.viewer.event_fields import believed
 
     assert "ball" not in believed(names, (0, 0, 0, 0, 0, 0, -1))
     assert believed(names, (0, 0, 0, 0, 1, 2, 0.1))["ball"] == [1, 2]

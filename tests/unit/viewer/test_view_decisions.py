@@ -8,8 +8,8 @@ import pytest
 
 from tailor.schemas import messages as m
 from tailor.tools.viewer.decisions import acted_on, decisions_of, in_force
-from tailor.tools.viewer.recorded import Timed
-from tailor.tools.viewer.wording import proven
+from tailor.tools.viewer.explanation_text import proven
+from tailor.tools.viewer.recorded_messages import Timed
 from tests.support import synthetic_run
 
 BEGIN = m.Subgoals(0, 5, 2, ())

@@ -13,9 +13,9 @@ from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Subgoals
 from tailor.tools.viewer.explainer import Explainer, fields_of
+from tailor.tools.viewer.explanation_text import durations, nearness
 from tailor.tools.viewer.explanations.explanation import explain, sequence_of
 from tailor.tools.viewer.explanations.longer_search import best_cost
-from tailor.tools.viewer.wording import durations, nearness
 from tests.support import synthetic_run
 from tests.support.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribble
 

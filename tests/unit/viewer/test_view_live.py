@@ -17,8 +17,8 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.viewer import server
-from tailor.tools.viewer.feed import WAITING, Feed
-from tailor.tools.viewer.listening import Listener
+from tailor.tools.viewer.broadcast import WAITING, EventBroadcast
+from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support.patience import PATIENCE_S
@@ -63,7 +63,7 @@ def get(port: int, path: str, host: str = "127.0.0.1") -> int:
 
 
 def test_a_newcomer_gets_what_was_and_what_comes() -> None:
-    feed = Feed()
+    feed = EventBroadcast()
     feed.publish([tick(0.0)])
     with feed.subscribe() as page:
         feed.publish([tick(0.1)])
@@ -74,7 +74,7 @@ def test_a_newcomer_gets_what_was_and_what_comes() -> None:
 
 
 def test_old_ticks_are_forgotten_and_old_events_are_not() -> None:
-    feed = Feed(keep_s=10)
+    feed = EventBroadcast(keep_s=10)
     feed.publish([Event(0.0, "plan", {}), tick(0.0)])
     for k in range(200):
         feed.publish([tick(k)])
@@ -86,7 +86,7 @@ def test_old_ticks_are_forgotten_and_old_events_are_not() -> None:
 
 
 def test_a_page_that_does_not_read_is_let_go_and_holds_up_nobody() -> None:
-    feed = Feed()
+    feed = EventBroadcast()
     with feed.subscribe() as page:
         for k in range(2 * WAITING):
             feed.publish([tick(k)])
@@ -94,7 +94,7 @@ def test_a_page_that_does_not_read_is_let_go_and_holds_up_nobody() -> None:
 
 
 def test_the_server_serves_the_page_and_its_events_and_nothing_else() -> None:
-    feed = Feed()
+    feed = EventBroadcast()
     with serving("<p>page</p>", feed, 0) as port:
         assert get(port, "/") == 200
         assert get(port, "/etc/passwd") == 404
@@ -107,20 +107,20 @@ def test_the_server_serves_the_page_and_its_events_and_nothing_else() -> None:
 
 
 def test_a_page_elsewhere_that_had_its_name_point_here_gets_nothing() -> None:
-    with serving("page", Feed(), 0) as port:
+    with serving("page", EventBroadcast(), 0) as port:
         assert get(port, "/", host="evil.example:80") == 403
         assert get(port, "/events", host="evil.example") == 403
         assert get(port, "/", host=f"localhost:{port}") == 200
 
 
 def test_the_server_listens_on_this_machine_alone() -> None:
-    with serving("page", Feed(), 0) as port, socket.socket() as other:
+    with serving("page", EventBroadcast(), 0) as port, socket.socket() as other:
         other.bind(("127.0.0.2", port))  # free: nobody listens at every address
 
 
 def test_too_many_pages_are_refused(monkeypatch) -> None:
     monkeypatch.setattr(server, "MAX_PAGES", 1)
-    with serving("page", Feed(), 0) as port, events(port) as lines:
+    with serving("page", EventBroadcast(), 0) as port, events(port) as lines:
         next(lines)
         next_rows(lines)
         assert get(port, "/events") == 503
@@ -128,16 +128,16 @@ def test_too_many_pages_are_refused(monkeypatch) -> None:
 
 def test_a_port_in_use_is_told_in_one_line() -> None:
     with (
-        serving("page", Feed(), 0) as port,
+        serving("page", EventBroadcast(), 0) as port,
         pytest.raises(UsageError, match=f"--port {port}"),
-        serving("", Feed(), port),
+        serving("", EventBroadcast(), port),
     ):
         pass
 
 
 def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
-    intake, feed = IngestQueue(), Feed()
-    listener = Listener(intake, RunTimeline(), feed)
+    intake, feed = IngestQueue(), EventBroadcast()
+    listener = BusListener(intake, RunTimeline(), feed)
     intake.put(raw(status()))
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
     listener.look()
@@ -149,12 +149,12 @@ def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
 
 
 def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
-    intake, feed = IngestQueue(), Feed()
+    intake, feed = IngestQueue(), EventBroadcast()
     good = raw(status())
     intake.put(Raw(good.key, good.payload[:-9], good.attachment, good.encoding, True, 1))
     intake.put(Raw("exec/status", b"hello", None, "text/plain", True, 1))
     intake.put(Raw(good.key, good.payload, good.attachment, good.encoding, False, 1))
     intake.put(raw(status(), sender="cd" * 16))
-    Listener(intake, RunTimeline(), feed, sender="ab").look()
+    BusListener(intake, RunTimeline(), feed, sender="ab").look()
     with feed.subscribe() as page:
         assert json.loads(page.next(0)) == []

@@ -142,7 +142,7 @@ def gathered(task: Task, settings: RefinementSettings, arguments: argparse.Names
       UsageError: Seeds that are kept for evaluations.
     """
     from tailor.tools.evaluations.outcome import FIRST_SEED, Variant
-    from tailor.tools.evaluations.trials import run_all
+    from tailor.tools.evaluations.task_runs import run_all
 
     end = arguments.seed + arguments.episodes
     if not 0 <= arguments.seed < end <= FIRST_SEED:
@@ -171,7 +171,7 @@ def pairs_of(outcomes: Sequence[tuple[Outcome, Outcome]]) -> Pairs:
 def _sequences(outcomes: Any) -> tuple[tuple[str, ...], ...]:
     """The kinds of sequences that were compared: names of actions within the horizon, detours left out."""
     kinds = {
-        tuple(name for name, asserted, _ in outcome.foreseen if not asserted)[:2]
+        tuple(name for name, asserted, _ in outcome.predicted_actions if not asserted)[:2]
         for outcome in outcomes
         if outcome.situation
     }

@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         _show(a, b, told)
     if arguments.plot:
-        from tailor.tools.figures.comparison import draw_comparison
+        from tailor.tools.figures.comparison_plot import draw_comparison
 
         draw_comparison(a, b, arguments.plot)
     return 0 if told["equal"] else 1

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from tailor.tools.figures.paths import draw_paths
-from tailor.tools.figures.recorded import recorded_track
+from tailor.tools.figures.recorded_track import recorded_track
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -26,7 +26,7 @@ from tailor.tools.recordings.differences import ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 
 if TYPE_CHECKING:
-    from tailor.tools.lockstep.run_writer import RunTape
+    from tailor.tools.lockstep.run_writer import RunWriter
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def verify(
-    runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape | None = None, proofs: bool = True
+    runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunWriter | None = None, proofs: bool = True
 ) -> Verdict:
     """Compare one run with what today's core makes of it, up to the first difference.
 
@@ -111,7 +111,7 @@ def verify(
 
 
 def _compared(
-    comparison: RunComparison, runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunTape | None
+    comparison: RunComparison, runs: RecordedRuns, run: RecordedRun, context: Context, tape: RunWriter | None
 ) -> Difference | None:
     """The first difference."""
     difference = None
@@ -126,13 +126,13 @@ def _compared(
 
 
 def _verify_onto(path: Path, runs: RecordedRuns) -> Verdict:
-    from tailor.tools.lockstep.run_writer import RunTape  # it brings the live shell, and with it the bus
+    from tailor.tools.lockstep.run_writer import RunWriter  # it brings the live shell, and with it the bus
 
     if path.exists():
         raise UsageError(f"--output {path}: there is such a file already, expected a new one")
     run = runs.runs[0]
     context = rebuild_context(run.provenance)
-    tape = RunTape(path, context, {**run.provenance, "machine": platform_fingerprint()})
+    tape = RunWriter(path, context, {**run.provenance, "machine": platform_fingerprint()})
     try:
         return verify(runs, run, context, tape)
     finally:

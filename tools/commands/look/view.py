@@ -14,11 +14,11 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.viewer.broadcast import EventBroadcast
+from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.explainer import Explainer
-from tailor.tools.viewer.feed import Feed
-from tailor.tools.viewer.listening import Listener
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.recorded import recorded_rows
+from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.timeline import RunTimeline
 
@@ -57,7 +57,7 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     output: Path = arguments.output or recording.with_suffix(".html")
     console = Console(stderr=True)
     with console.status(f"reading {recording}"):
-        rows = recorded_rows(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
+        rows = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     try:
@@ -73,11 +73,11 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     endpoint = endpoint_of(arguments)
     os.nice(NICENESS)
     stop = stop_on_signals()
-    feed = Feed()
+    feed = EventBroadcast()
     with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
-        listener = Listener(intake, RunTimeline(explainer, arguments.robot), feed, arguments.sender)
+        listener = BusListener(intake, RunTimeline(explainer, arguments.robot), feed, arguments.sender)
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
         subscribe_all.undeclare()

@@ -17,11 +17,11 @@ from rich.markup import escape
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.decisions import Decision, acted_on, decisions_of, in_force
+from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import Explainer, fields_of
+from tailor.tools.viewer.explanation_text import advice, durations, effort, in_words, nearness, proven, seen
 from tailor.tools.viewer.explanations.explanation import Explanation
-from tailor.tools.viewer.recorded import timed
-from tailor.tools.viewer.rows import number
-from tailor.tools.viewer.wording import advice, durations, effort, in_words, nearness, proven, seen
+from tailor.tools.viewer.recorded_messages import timed
 
 NAMED = 3  # actions of a sequence; a word that the arm writes has dozens
 
@@ -150,7 +150,7 @@ def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     from tailor.tools.figures.alternatives import (
         draw_alternatives,  # with matplotlib: only who wants a picture waits for it
     )
-    from tailor.tools.figures.page import image, page
+    from tailor.tools.figures.report_page import image, page
 
     if output.suffix == ".png":
         draw_alternatives(explained, output)

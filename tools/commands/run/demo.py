@@ -13,9 +13,9 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import Deployment, order_of
 from tailor.tools.cli.live_status import screen
-from tailor.tools.figures.page import write_paths_page
 from tailor.tools.figures.paths import draw_paths
-from tailor.tools.figures.recorded import recorded_track
+from tailor.tools.figures.recorded_track import recorded_track
+from tailor.tools.figures.report_page import write_paths_page
 from tailor.tools.figures.track import Track
 from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 

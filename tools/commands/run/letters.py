@@ -20,15 +20,15 @@ from tailor.tools.cli.deployment import Deployment, order_of
 from tailor.tools.cli.live_status import screen
 from tailor.tools.figures.letters import draw_words
 from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
-from tailor.tools.writing.lockstep import Hand, ListenedBody, write
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
-from tailor.tools.writing.track import PERIOD_S, Written, written
+from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_track import PERIOD_S, WritingTrack, writing_track
 
 REFINED = RefinementSettings()
 HANDS = (
-    Hand("stopping", REFINED, stops=True),
-    Hand("greedy", replace(REFINED, horizon=1)),
-    Hand("refined", REFINED),
+    WritingMode("stopping", REFINED, stops=True),
+    WritingMode("greedy", replace(REFINED, horizon=1)),
+    WritingMode("refined", REFINED),
 )
 
 
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if all(said.result == "achieved" for said in rows) else 1
 
 
-def summary(rows: Sequence[Written]) -> Table:
+def summary(rows: Sequence[WritingTrack]) -> Table:
     """How long each hand took, how well it kept to the waypoints, and how smooth it was."""
     table = Table(title=f"{rows[0].text} by the arm")
     for column in ("hand", "took", "predicted", "worst waypoint", "current", "roughness", "result"):
@@ -82,15 +82,15 @@ def summary(rows: Sequence[Written]) -> Table:
     return table
 
 
-def _in_lockstep(text: str, hands: Sequence[Hand], seed: int) -> list[Written]:
+def _in_lockstep(text: str, hands: Sequence[WritingMode], seed: int) -> list[WritingTrack]:
     from tailor.executive.interfaces.models import Models
     from tailor.models.runtime import load_robot
 
-    models, body = Models(*load_robot(ListenedBody.robot)), ListenedBody()
+    models, body = Models(*load_robot(RecordedBody.robot)), RecordedBody()
     return [write(text, hand, models, seed, body) for hand in hands]
 
 
-def _live(text: str, hands: Sequence[Hand], seed: int, folder: Path) -> list[Written]:
+def _live(text: str, hands: Sequence[WritingMode], seed: int, folder: Path) -> list[WritingTrack]:
     """As many as were not interrupted."""
     stop, rows = stop_on_signals(), []
     for hand in hands:
@@ -103,7 +103,7 @@ def _live(text: str, hands: Sequence[Hand], seed: int, folder: Path) -> list[Wri
     return rows
 
 
-def _run_once(text: str, hand: Hand, seed: int, recording: Path, stop: Stop) -> None:
+def _run_once(text: str, hand: WritingMode, seed: int, recording: Path, stop: Stop) -> None:
     scenario = f"{'stops' if hand.stops else 'word'}-{text}"
     order = order_of("arm", Deployment(scenario=scenario))
     order = replace(order, settings=replace(order.settings, seed=seed, refinement=hand.refinement))
@@ -112,17 +112,17 @@ def _run_once(text: str, hand: Hand, seed: int, recording: Path, stop: Stop) -> 
         run_system(LaunchConfig(order, free_endpoint(), recording, once=True), shown, stop)
 
 
-def recorded(title: str, text: str, path: Path) -> Written:
+def recorded(title: str, text: str, path: Path) -> WritingTrack:
     """What a recording says was written; raises UsageError if it is none."""
     kept = []
     for line, message in open_recording(path).decoded():
         truth = isinstance(message, JointState) and not line.key.endswith("/joint_states")
         if not isinstance(message, Rejected) and not truth:
             kept.append(message)
-    return written(title, text, kept)
+    return writing_track(title, text, kept)
 
 
-def _draw(rows: Sequence[Written], folder: Path) -> list[str]:
+def _draw(rows: Sequence[WritingTrack], folder: Path) -> list[str]:
     """In joint space, as the paper's Figure 13 (b), and at the scale of the page."""
     joints, page = folder / f"{rows[0].text}-joints.png", folder / f"{rows[0].text}-page.png"
     draw_words(rows, joints, in_joints=True)

@@ -19,23 +19,23 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
-from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED
-from tailor.tools.evaluations.report import Report, configure_report, tell
+from tailor.tools.evaluations.paired_comparison import compare
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.figures.letters import draw_letters
-from tailor.tools.writing.lockstep import Hand, ListenedBody, write
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
-from tailor.tools.writing.track import Written
+from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_track import WritingTrack
 
 DOMAINS = ("arm",)
 ALL_AHEAD = 9  # more actions than a letter has
 BASE = RefinementSettings()
 GREEDY = replace(BASE, horizon=1)
-HANDS = (Hand("stopping", BASE, stops=True), Hand("greedy", GREEDY), Hand("refined", BASE))
+HANDS = (WritingMode("stopping", BASE, stops=True), WritingMode("greedy", GREEDY), WritingMode("refined", BASE))
 ORACLES = (
-    Hand("oracle, greedy", GREEDY),
-    Hand("oracle, refined", BASE),
-    Hand("oracle, all ahead", replace(BASE, horizon=ALL_AHEAD)),
+    WritingMode("oracle, greedy", GREEDY),
+    WritingMode("oracle, refined", BASE),
+    WritingMode("oracle, all ahead", replace(BASE, horizon=ALL_AHEAD)),
 )
 PAPER = "paper: 4-5 actions, n = 4: 10.6 s greedy, 10.0 s refined, 5.7 %, p = 0.08"
 SHOWN = "FTAS"  # in the picture
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; 0 when refinement gains significantly."""
     rows, plots = evaluate(arguments)
     remarks = [PAPER, "an oracle chooses by the controller's own duration instead of a learned model"]
-    tell(Report("letters", "Table 3, arm: letters", rows, remarks, plots), arguments.json, arguments.report)
+    publish_report(Report("letters", "Table 3, arm: letters", rows, remarks, plots), arguments.json, arguments.report)
     refined = next(row for row in rows if row["hand"] == "refined")
     return 0 if refined["p_value"] < 0.01 and refined["improvement_pct"] > 0 else 1
 
@@ -174,7 +174,7 @@ def _mean(some: Sequence[Figures], field: str) -> float:
     return float(np.mean([getattr(figures, field) for figures in some]))
 
 
-def _measured(hand: Hand, key: Key, zoo: str) -> Figures:
+def _measured(hand: WritingMode, key: Key, zoo: str) -> Figures:
     said = _write(hand, *key, zoo)
     actual_s = np.diff(said.arrivals_s, prepend=0.0)
     return Figures(
@@ -188,15 +188,15 @@ def _measured(hand: Hand, key: Key, zoo: str) -> Figures:
     )
 
 
-def _write(hand: Hand, letter: str, seed: int, zoo: str) -> Written:
+def _write(hand: WritingMode, letter: str, seed: int, zoo: str) -> WritingTrack:
     models = Models({"reach/duration": PerfectReach()}, {}) if hand in ORACLES else _models(zoo)
-    return write(letter, hand, models, seed, ListenedBody())
+    return write(letter, hand, models, seed, RecordedBody())
 
 
 @lru_cache(maxsize=2)
 def _models(zoo: str) -> Models:
     """Loaded once a process."""
-    return Models(*load_robot(ListenedBody.robot, Path(zoo) if zoo else None))
+    return Models(*load_robot(RecordedBody.robot, Path(zoo) if zoo else None))
 
 
 def _picture(folder: Path, zoo: str) -> dict[str, Path]:

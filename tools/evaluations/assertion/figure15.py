@@ -18,11 +18,11 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_task, succeeded, variants
 from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
-from tailor.tools.evaluations.comparison import share_interval
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import run_all
-from tailor.tools.evaluations.watched import watch
+from tailor.tools.evaluations.paired_comparison import share_interval
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import run_all
+from tailor.tools.evaluations.traced_runs import trace_run
 
 REMARKS = (
     "Above: predicted seconds by the subgoal's place, heading and speed there being the best of all; blank places are "
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure15-{seed}.png"
             plots[f"search space of the subgoal and both runs, start {seed}"] = _draw(task, seed, ground, path)
     title = "Figure 15: the search space of an asserted subgoal"
-    tell(Report("figure15", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(Report("figure15", title, rows, REMARKS, plots), arguments.json, arguments.report)
     return 0 if rows[0]["success_after_pct"] > rows[0]["success_before_pct"] else 1
 
 
@@ -69,14 +69,14 @@ def _summary(found: Mapping[str, Mapping[int, Outcome]], seeds: Sequence[int]) -
     before, after = (sum(succeeded(found[name][seed]) for seed in seeds) for name in ("blind", "asserted"))
     n = len(seeds)
     reached = [found["asserted"][seed] for seed in seeds if succeeded(found["asserted"][seed])]
-    off = [sum(s for *_, s in outcome.foreseen) - approached_s(outcome) for outcome in reached]
+    off = [sum(s for *_, s in outcome.predicted_actions) - approached_s(outcome) for outcome in reached]
     return {
         "start": "all asserted",
         "n": n,
         "success_before_pct": 100 * before / n,
         "success_after_pct": 100 * after / n,
         "ci95_after": share_interval(after, n),
-        "predicted_s": float(np.mean([sum(s for *_, s in outcome.foreseen) for outcome in reached])),
+        "predicted_s": float(np.mean([sum(s for *_, s in outcome.predicted_actions) for outcome in reached])),
         "took_s": float(np.mean([approached_s(outcome) for outcome in reached])),
         "bias_s": float(np.mean(off)),
     }
@@ -86,7 +86,7 @@ def _looked_at(
     task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
 ) -> tuple[dict[str, Any], SubgoalMap | None]:
     """One start with a subgoal; the ground is None where two detours were made in a row."""
-    watched, context = watch(task, _asserting(), seed)
+    watched, context = trace_run(task, _asserting(), seed)
     ground = subgoal_map_of(watched.subgoals[0], context)
     before, after = found["blind"][seed], found["asserted"][seed]
     row = {
@@ -94,10 +94,10 @@ def _looked_at(
         "n": 1,
         "success_before_pct": 100.0 * succeeded(before),
         "success_after_pct": 100.0 * succeeded(after),
-        "predicted_s": sum(s for *_, s in after.foreseen),
+        "predicted_s": sum(s for *_, s in after.predicted_actions),
         "took_s": approached_s(after) if succeeded(after) else float("nan"),
-        "ball_moved_before_m": before.ball_moved_m,
-        "ball_moved_after_m": after.ball_moved_m,
+        "ball_moved_before_m": before.disturbance_m,
+        "ball_moved_after_m": after.disturbance_m,
     }
     if ground is not None:
         row |= {
@@ -112,7 +112,7 @@ def _looked_at(
 def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     tracks = []
     for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
-        watched, _ = watch(task, variant, seed)
+        watched, _ = trace_run(task, variant, seed)
         said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.ball_moved_m:.2f} m"
         tracks.append(replace(watched.track, title=f"{title} ({said})"))
     first = tracks[0].points[0]

@@ -10,11 +10,11 @@ from typing import Any
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.comparison import compare, share_interval
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.plots import draw_shares
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
 
 GOAL = "(atball pos2)"  # the approach alone
@@ -36,7 +36,9 @@ def run(arguments: argparse.Namespace) -> int:
     plots = {}
     if arguments.report is not None:
         plots["success of approaches"] = draw_shares(row, arguments.report / "figure16.png")
-    tell(Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots), arguments.json, arguments.report)
+    publish_report(
+        Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots), arguments.json, arguments.report
+    )
     return 0 if row["success_after_pct"] >= 98 and row["needless_pct"] <= 10 else 1
 
 
@@ -65,7 +67,7 @@ def succeeded(outcome: Outcome) -> bool:
     first = next(
         (how for name, how in zip(outcome.actions, outcome.outcomes, strict=True) if name == "approachBall"), ""
     )
-    return first == "done" and outcome.ball_moved_m <= COLLIDED_M
+    return first == "done" and outcome.disturbance_m <= COLLIDED_M
 
 
 def approached_s(outcome: Outcome) -> float:

@@ -8,7 +8,7 @@ from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTrut
 from tailor.tools.lockstep.run import Run
 
 
-class Unseen:
+class NullScreen:
     """A screen that nobody looks at; see tailor.tools.cli.live_status.Screen."""
 
     def tell(self, line: str) -> None:

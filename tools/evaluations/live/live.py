@@ -26,11 +26,11 @@ from tailor.schemas.messages import Message
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of
-from tailor.tools.evaluations.live.bus_run import Unseen, episode_of
+from tailor.tools.evaluations.live.bus_run import NullScreen, episode_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import made_of, run_all
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import dependencies, run_all
 from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 
 OTHER_NOISE = 500_000  # from one lock-step run of a start to the next
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         starts = {name: starts_of(runs, repeats) for name, runs in found.items()}
         plots["durations and differences"] = draw_agreement(starts, MARGIN_PCT, arguments.report / "live.png")
     title = f"Live over the bus against lock-step: {arguments.scenario}"
-    tell(Report("live", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(Report("live", title, rows, REMARKS, plots), arguments.json, arguments.report)
     live = rows[0]
     alike = min(live["p_value"], live["p_rank"]) > 0.05
     return 0 if alike and live["achieved_pct"] >= live["achieved_lockstep_pct"] - 5 else 1
@@ -99,7 +99,7 @@ def _lockstep(task: Task, arguments: argparse.Namespace, seeds: Sequence[int]) -
 def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop: Stop) -> dict[int, Outcome]:
     """The live outcomes by seed; those of earlier runs are taken from the store."""
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
-    journal = Journal(arguments.store, task, Variant(LIVE, refinement), made_of(task))
+    journal = Journal(arguments.store, task, Variant(LIVE, refinement), dependencies(task))
     missing = [seed for seed in seeds if seed not in journal.known]
     for seed in track(missing, "live", transient=True):
         order = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
@@ -125,7 +125,7 @@ def run_live(order: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> Ou
         kept.mkdir(parents=True, exist_ok=True)
         recording = kept / f"{order.scenario}-h{order.settings.refinement.horizon}-{seed}.mcap"
         recording.unlink(missing_ok=True)
-        unseen = Unseen()
+        unseen = NullScreen()
         result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), unseen, stop)
         episode = episode_of(_messages(recording), result or "failed: stopped")
     return outcome_of(episode, domains.load(order.domain), LIVE, seed)

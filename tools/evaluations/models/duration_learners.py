@@ -16,7 +16,7 @@ from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and tell; exit code 0."""
     rows = [row for action in arguments.actions for row in _rows(action, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
-    tell(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)
+    publish_report(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)
     return 0
 
 

@@ -14,7 +14,7 @@ from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append(_row("WEKA J48", predicted.astype(float), 0.5, observed))
     ratio = f"a missed failure costs {learners.COST_RATIO:g} false alarms"
     remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; {ratio}; fresh runs"]
-    tell(Report("failure-learners", "Failure learners", rows, remarks), arguments.json, arguments.report)
+    publish_report(Report("failure-learners", "Failure learners", rows, remarks), arguments.json, arguments.report)
     return 0
 
 

@@ -14,7 +14,7 @@ from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
 N_I = 5
@@ -42,7 +42,9 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
     remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
     plots = _plots(rows, test, arguments.report) if arguments.report else {}
-    tell(Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots), arguments.json, arguments.report
+    )
     errors = [row["mae_s"] for row in rows[:3]]
     return 0 if errors == sorted(errors, reverse=True) else 1
 

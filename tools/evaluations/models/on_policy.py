@@ -18,7 +18,7 @@ from tailor.models.training.calibration import MIN_POLICY_EPISODES
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models.learned import configure_learned
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import Policy, actions, models_hash, run_policy
 
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
     ]
-    tell(Report("on-policy", "One on-policy round", rows, remarks), arguments.json, arguments.report)
+    publish_report(Report("on-policy", "One on-policy round", rows, remarks), arguments.json, arguments.report)
     return 0
 
 

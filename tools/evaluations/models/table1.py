@@ -14,7 +14,7 @@ from tailor.models.runtime import OnnxDuration, load_robot
 from tailor.models.training import scores
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 
 # robot, action -> training episodes, mean duration and MAE in seconds (paper Table 1, simulated where there are both)
 PAPER: dict[tuple[str, str], tuple[float, float, float]] = {  # episodes, mean duration, MAE
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     rows = [row(model, arguments) for model in models]
     plots = _plots(models, arguments) if arguments.report else {}
     remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs, other noise"]
-    tell(Report("table1", "Table 1: duration models", rows, remarks, plots), arguments.json, arguments.report)
+    publish_report(Report("table1", "Table 1: duration models", rows, remarks, plots), arguments.json, arguments.report)
     known = [r for r in rows if r["paper_mae_s"] is not None]
     return 0 if all(r["relative_pct"] <= r["paper_relative_pct"] for r in known) else 1
 

@@ -14,7 +14,7 @@ from tailor.models.training import scores
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned
-from tailor.tools.evaluations.report import Report, tell
+from tailor.tools.evaluations.report import Report, publish_report
 
 PAPER = {"fail_fail": 51.0, "fail_success": 10.0, "success_fail": 1.0, "success_success": 38.0, "accuracy_pct": 89.0}
 
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
         "cells: predicted_observed, percent of runs",
         "floor_accuracy_pct: how often the same task ends as it mostly does, over repeated runs with other noise",
     ]
-    tell(Report("table2", "Table 2: failure models", rows, remarks), arguments.json, arguments.report)
+    publish_report(Report("table2", "Table 2: failure models", rows, remarks), arguments.json, arguments.report)
     return 0 if all(r["accuracy_pct"] >= 93 and r["success_fail"] <= 1 for r in rows[:-1]) else 1
 
 

@@ -15,10 +15,10 @@ from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, finite
-from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.evaluations.paired_comparison import compare
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
 
@@ -57,14 +57,14 @@ def run(arguments: argparse.Namespace) -> int:
     found = dict(zip(jobs, costs, strict=True))
     rows = [_row(weight, arguments.weights[0], seeds, found) for weight in arguments.weights]
     remarks = [f"{arguments.scenario}: paired with weight {arguments.weights[0]:g}; energy is the work of the wheels"]
-    tell(Report("energy", "Time against energy", rows, remarks), arguments.json, arguments.report)
+    publish_report(Report("energy", "Time against energy", rows, remarks), arguments.json, arguments.report)
     return 0 if rows[-1]["energy_saved_pct"] > 0 and rows[-1]["energy_p"] < 0.05 else 1
 
 
 def cost_of(task: Task, weight: float, seed: int) -> Cost:
     """Run one episode with a joule worth so many seconds."""
     variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
-    episode, _ = run_episode_of(task, variant, seed)
+    episode, _ = run_task(task, variant, seed)
     return Cost(episode.achieved, episode.duration_s, energy_j(episode, task.domain))
 
 

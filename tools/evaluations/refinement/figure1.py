@@ -15,16 +15,16 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.watched import Watched, watch_all
+from tailor.tools.evaluations.paired_comparison import compare
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.traced_runs import TracedRun, trace_all
 from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.track import Track
 
 MODES = (("greedy", 1), ("refined", 2))  # the paper's h
 SLOW_MPS = 0.1  # below it the robot stands, turns on the spot, or shuffles
-Found = Mapping[tuple[str, int], Watched]
+Found = Mapping[tuple[str, int], TracedRun]
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     task = Task("soccer", "approach-dribble", "", arguments.zoo)
     variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]
-    found = watch_all(task, variants, seeds, arguments.jobs, "figure 1")
+    found = trace_all(task, variants, seeds, arguments.jobs, "figure 1")
     rows = [_row(name, horizon, found, seeds) for name, horizon in MODES]
     rows += [_example(name, horizon, found[name, s]) for s in seeds[: arguments.drawn] for name, horizon in MODES]
     plots = {} if arguments.report is None else _draw(found, seeds[: arguments.drawn], arguments.report)
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         "was free to choose; * target.",
         f"slow_s: how long the robot was slower than {SLOW_MPS} m/s between its start and the end",
     ]
-    tell(
+    publish_report(
         Report("figure1", "Figure 1: greedy and refined", rows, remarks, plots),
         arguments.json,
         arguments.report,
@@ -79,7 +79,7 @@ def _row(name: str, horizon: int, found: Found, seeds: Sequence[int]) -> dict[st
     }
 
 
-def _example(name: str, horizon: int, watched: Watched) -> dict[str, Any]:
+def _example(name: str, horizon: int, watched: TracedRun) -> dict[str, Any]:
     outcome = watched.outcome
     figures = {key: measure(watched.track) for key, measure in MEASURES.items()}
     predicted = {"predicted_s": sum(outcome.predicted_s)}

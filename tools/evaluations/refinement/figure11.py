@@ -19,9 +19,9 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.sweep import Sweep, sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import run_all
-from tailor.tools.evaluations.watched import watch
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import run_all
+from tailor.tools.evaluations.traced_runs import trace_run
 
 PLACE = "pos2"  # where the ball is
 OTHER_NOISE = 500_000  # from one repeat to the next
@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure11-{sweep.seed}.png"
             plots[f"predicted and simulated durations, start {sweep.seed}"] = _draw(task, sweep, path)
     title = "Figure 11: durations over the angle of approach"
-    tell(Report("figure11", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(Report("figure11", title, rows, REMARKS, plots), arguments.json, arguments.report)
     return 0 if rows[-1]["simulated_at_model_best_s"] < rows[-1]["simulated_at_greedy_s"] else 1
 
 
@@ -129,7 +129,7 @@ def _draw(task: Task, sweep: Sweep, path: Path) -> Path:
     )
     tracks = []
     for title, phi in choices:
-        track = watch(task, _pinned(phi, sweep.v, 0), sweep.seed)[0].track
+        track = trace_run(task, _pinned(phi, sweep.v, 0), sweep.seed)[0].track
         tracks.append(replace(track, title=f"{title}, {math.degrees(phi):.0f}°"))
     draw_sweep(sweep, tracks, path)
     return path

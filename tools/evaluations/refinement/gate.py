@@ -17,11 +17,11 @@ from tailor.executive.interfaces.models import RefinementGate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.comparison import compare, share_interval
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.refinement.gate_ceiling import foreknown
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.learning import gathering
 
 PAPER = "paper: 87 % right, improvement 6.6 % without and 8.6 % with the tree"
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
     if arguments.luck:
         remarks.append("foreknown: by one who knows how the same start went four times with other noise")
-    tell(Report("benefit", "When not to refine", [row], remarks), arguments.json, arguments.report)
+    publish_report(Report("benefit", "When not to refine", [row], remarks), arguments.json, arguments.report)
     better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
     return 0 if better else 1
 

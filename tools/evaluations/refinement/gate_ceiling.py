@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.outcome import Task, Variant
-from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.task_runs import run_all
 
 LUCK = 10_000_000  # between the noise of one run and the next; far from all other seeds
 RUNS = 5  # of every start, both ways

@@ -15,7 +15,7 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
-from tailor.tools.evaluations.trials import run_all
+from tailor.tools.evaluations.task_runs import run_all
 
 Free = tuple[str, str, float, float]  # label, quantity, lower, upper
 AGAIN = 3  # times that the oracle's choice is executed again
@@ -38,7 +38,7 @@ def subgoal_parameters(outcome: Outcome) -> list[Free]:
     return [(label, quantity, lo, hi) for label, quantity, lo, hi, _ in outcome.free if not label.startswith("subgoal")]
 
 
-def consult(
+def simulate_choices(
     task: Task,
     free: Sequence[Free],
     seeds: Sequence[int],

@@ -68,16 +68,16 @@ def sweep_of(
     filled = np.where(missing[:, :, None], np.inf, took)  # so that no slice is all NaN
     mean, least, most = (of(filled, axis=2) for of in (np.nanmean, np.nanmin, np.nanmax))
     tables = [np.where(missing, np.nan, table) for table in (mean, least, most)]
-    asserted = np.array([any(foreseen[1] for foreseen in some[0].foreseen) for some in runs])
+    asserted = np.array([any(predicted_actions[1] for predicted_actions in some[0].predicted_actions) for some in runs])
     return Sweep(seed, angles, v, predicted, *tables, asserted, greedy_rad, refined_rad)
 
 
 def _foreseen_s(run: Outcome) -> tuple[float, float, float]:
     """Predicted at the outset: approach with detours, what comes after, sum."""
-    names = [name for name, _, _ in run.foreseen]
+    names = [name for name, _, _ in run.predicted_actions]
     if "approachBall" not in names:
         return float("nan"), float("nan"), float("nan")
-    seconds = [s for _, _, s in run.foreseen]
+    seconds = [s for _, _, s in run.predicted_actions]
     end = names.index("approachBall") + 1
     return sum(seconds[:end]), sum(seconds[end:]), sum(seconds)
 

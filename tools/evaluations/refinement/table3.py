@@ -12,14 +12,14 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.arm import letters
-from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare
 from tailor.tools.evaluations.plots import draw_pairs
 from tailor.tools.evaluations.refinement.baselines import against_oracle, bias_s
-from tailor.tools.evaluations.refinement.oracle import consult, subgoal_parameters
+from tailor.tools.evaluations.refinement.oracle import simulate_choices, subgoal_parameters
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import paired, run_all
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import paired, run_all
 
 # word on the command line -> domain, scenario, profile of the body, what the paper reports (means at h = 1 and 2, gain)
 SCENARIOS = {
@@ -69,7 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.report is not None:
             plots[f"{name}: greedy and refined"] = draw_pairs(*durations, arguments.report / f"table3-{name}.png")
     remarks = [f"paper, {name}: {SCENARIOS[name][3]}" for name in scenarios] + REMARKS
-    tell(Report("table3", "Table 3: subgoal refinement", rows, remarks, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("table3", "Table 3: subgoal refinement", rows, remarks, plots), arguments.json, arguments.report
+    )
     each = [row for row in rows if "least_pct" not in row]  # not those over several models
     return 0 if all(row["p_value"] < 0.001 and row["improvement_pct"] > 0 for row in each) else 1
 
@@ -102,7 +104,7 @@ def evaluate(
     row = {"scenario": name + (" (degraded)" if arguments.degraded else ""), **_told(greedy, refined)}
     if arguments.oracle:
         example = next(outcome for outcome in greedy.values() if outcome.achieved)
-        judged = consult(
+        judged = simulate_choices(
             task, subgoal_parameters(example), seeds[: arguments.oracle], base, arguments.points, arguments.jobs,
             arguments.store,
         )  # fmt: skip

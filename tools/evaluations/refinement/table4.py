@@ -10,12 +10,12 @@ from typing import Any
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.comparison import compare
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare
 from tailor.tools.evaluations.plots import draw_horizons
 from tailor.tools.evaluations.refinement.baselines import bias_s
-from tailor.tools.evaluations.report import Report, configure_report, tell
-from tailor.tools.evaluations.trials import paired, run_all
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.task_runs import paired, run_all
 
 # word on the command line -> domain, scenario, horizons, the paper's improvements of each over the one before
 SCENARIOS = {"soccer": ("soccer", "waypoints", (1, 2, 3, 4), "10.6 %, 0.7 %, 0.2 %")}
@@ -43,7 +43,9 @@ def run(arguments: argparse.Namespace) -> int:
     plots = {}
     if arguments.report is not None:
         plots["improvement by horizon"] = draw_horizons(rows, arguments.report / "table4.png")
-    tell(Report("table4", "Table 4: effect of the horizon", rows, remarks, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("table4", "Table 4: effect of the horizon", rows, remarks, plots), arguments.json, arguments.report
+    )
     return 0 if _as_promised(rows) else 1
 
 

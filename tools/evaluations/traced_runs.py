@@ -11,12 +11,12 @@ from rich.progress import track
 from tailor.executive.core.context import Context
 from tailor.schemas.messages import Message, Subgoals
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
-from tailor.tools.evaluations.trials import run_episode_of
+from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.figures.track import Track, track_of
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
+class TracedRun:
     """One episode: what came of it, its path, and the choices in the order in which they were made."""
 
     outcome: Outcome
@@ -24,17 +24,17 @@ class Watched:
     subgoals: tuple[Subgoals, ...]
 
 
-def watch(task: Task, variant: Variant, seed: int) -> tuple[Watched, Context]:
+def trace_run(task: Task, variant: Variant, seed: int) -> tuple[TracedRun, Context]:
     """Run an episode and keep what figures are drawn from."""
-    episode, context = run_episode_of(task, variant, seed)
+    episode, context = run_task(task, variant, seed)
     messages: Sequence[Message] = episode.messages
     outcome = outcome_of(episode, context.domain, variant.name, seed)
-    return Watched(outcome, track_of(variant.name, messages), tuple(episode.subgoals)), context
+    return TracedRun(outcome, track_of(variant.name, messages), tuple(episode.subgoals)), context
 
 
-def watch_all(
+def trace_all(
     task: Task, variants: Sequence[Variant], seeds: Sequence[int], jobs: int, title: str
-) -> dict[tuple[str, int], Watched]:
+) -> dict[tuple[str, int], TracedRun]:
     """Every variant at every seed, by name and seed."""
     wanted = [(variant, seed) for seed in seeds for variant in variants]
     running = Parallel(n_jobs=jobs, return_as="generator")(
@@ -44,5 +44,5 @@ def watch_all(
     return {(variant.name, seed): watched for (variant, seed), watched in zip(wanted, found, strict=True)}
 
 
-def _watched(task: Task, variant: Variant, seed: int) -> Watched:
-    return watch(task, variant, seed)[0]
+def _watched(task: Task, variant: Variant, seed: int) -> TracedRun:
+    return trace_run(task, variant, seed)[0]

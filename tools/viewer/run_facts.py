@@ -6,7 +6,7 @@ from typing import Any
 
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
-from tailor.tools.viewer.rows import Fields
+from tailor.tools.viewer.event_fields import Fields
 
 # What the page draws as lines; the executive's shell keeps to them (architecture.md, "One tick").
 TIMES_MS = {"period": 100, "budget": 60, "end": 80}

@@ -43,7 +43,7 @@ class Subscription:
             return None
 
 
-class Feed:
+class EventBroadcast:
     """Keeps the run so far and hands on what comes."""
 
     def __init__(self, keep_s: float = KEEP_S) -> None:

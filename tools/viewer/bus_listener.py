@@ -13,15 +13,15 @@ from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import type_of
-from tailor.tools.viewer.feed import Feed
-from tailor.tools.viewer.recorded import EXECUTIVE
+from tailor.tools.viewer.broadcast import EventBroadcast
+from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 LOOK_NS = 50_000_000  # so often the page moves
 ENCODING = "application/cdr;"
 
 
-class Listener:
+class BusListener:
     """Turns what has arrived into rows.
 
     Args:
@@ -31,7 +31,7 @@ class Listener:
       sender: Leave out executives whose id does not begin with this.
     """
 
-    def __init__(self, intake: IngestQueue, story: RunTimeline, feed: Feed, sender: str = "") -> None:
+    def __init__(self, intake: IngestQueue, story: RunTimeline, feed: EventBroadcast, sender: str = "") -> None:
         self._intake = intake
         self._story = story
         self._feed = feed

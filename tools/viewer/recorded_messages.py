@@ -45,6 +45,6 @@ def timed(path: Path, sender: str = "") -> Iterator[Timed]:
         raise UsageError(f"{path}: no message that can be shown, expected a recording of a run")
 
 
-def recorded_rows(path: Path, story: RunTimeline, sender: str = "") -> list[Event]:
+def recorded_events(path: Path, story: RunTimeline, sender: str = "") -> list[Event]:
     """All rows of a recording."""
     return [row for t in timed(path, sender) for row in story.tell(max(0.0, t.at_s), t.key, t.message)]

@@ -15,11 +15,11 @@ from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.tools.lockstep.run import SENDER, run_lockstep
-from tailor.tools.writing.track import Written, written
+from tailor.tools.writing.writing_track import WritingTrack, writing_track
 
 
 @dataclass(frozen=True, slots=True)
-class Hand:
+class WritingMode:
     """A way to write: with or without a halt at every waypoint, and how subgoals are refined."""
 
     name: str
@@ -27,7 +27,7 @@ class Hand:
     stops: bool = False
 
 
-class ListenedBody(PowerCubeBody):
+class RecordedBody(PowerCubeBody):
     """The arm's body, with an ear on its sensors."""
 
     def __init__(self) -> None:
@@ -46,7 +46,7 @@ class ListenedBody(PowerCubeBody):
         return readings
 
 
-def write(text: str, hand: Hand, models: Models, seed: int, body: ListenedBody) -> Written:
+def write(text: str, hand: WritingMode, models: Models, seed: int, body: RecordedBody) -> WritingTrack:
     """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
     scenario, start = domains.seeded_scenario("arm", f"{'stops' if hand.stops else 'word'}-{text}", seed)
     # a proof of how good a choice is takes time and changes nothing that is measured
@@ -56,4 +56,4 @@ def write(text: str, hand: Hand, models: Models, seed: int, body: ListenedBody) 
     body.command((0.0, 0.0))
     body.advance(round(0.2e9))  # until the last state is out
     told = [message for message in episode.messages if not isinstance(message, JointState)]  # the truth is one, too
-    return written(hand.name, text, [*body.heard, *told])
+    return writing_track(hand.name, text, [*body.heard, *told])

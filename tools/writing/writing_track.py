@@ -17,7 +17,7 @@ PERIOD_S = 0.1  # an action is done one period before its waypoint
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WritingTrack:
     """One run of the arm, from the start of its first reach until it rests at the last waypoint.
 
     Attributes:
@@ -61,7 +61,7 @@ class Written:
         return down
 
 
-def written(title: str, text: str, messages: Iterable[Message]) -> Written:
+def writing_track(title: str, text: str, messages: Iterable[Message]) -> WritingTrack:
     """Collect what was written from a run's messages, in whatever order its topics came."""
     kept = list(messages)
     statuses = [m for m in kept if isinstance(m, ExecStatus)]
@@ -72,7 +72,7 @@ def written(title: str, text: str, messages: Iterable[Message]) -> Written:
     states.sort(key=lambda state: state.stamp_ns)
     currents = [m for m in kept if isinstance(m, MotorCurrents) and begun_ns < m.stamp_ns <= ended_ns]
     plan = next((m for m in kept if isinstance(m, Subgoals)), None)
-    return Written(
+    return WritingTrack(
         title=title,
         text=text,
         result=next((s.result for s in reversed(statuses) if s.result), ""),

@@ -50,7 +50,7 @@ def run_all(
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
     journals = {
-        variant.name: Journal(store, task, variant, made_of(task, variant.refinement.gate)) for variant in variants
+        variant.name: Journal(store, task, variant, dependencies(task, variant.refinement.gate)) for variant in variants
     }
     wanted = []
     for seed in seeds:
@@ -73,11 +73,11 @@ def run_all(
 
 def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
     """One episode, in lock-step with the same core as live."""
-    episode, context = run_episode_of(task, variant, seed)
+    episode, context = run_task(task, variant, seed)
     return outcome_of(episode, context.domain, variant.name, seed)
 
 
-def run_episode_of(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
+def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     """One episode with all that was said in it, and the context that it ran in.
 
     The variant's `noise` is added to the seed of the body's noise alone: the same start, other luck.
@@ -114,7 +114,7 @@ def _models(robot: str, zoo: str, gated: bool) -> Models:
     return load_models(robot, zoo, gated)
 
 
-def made_of(task: Task, gated: bool = True) -> list[str]:
+def dependencies(task: Task, gated: bool = True) -> list[str]:
     """What an episode depends on beside task, variant and seed: hashes of models and of mind's and body's source."""
     models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
     loaded = [*models.durations.values(), *models.successes.values()]
