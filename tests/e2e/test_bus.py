@@ -12,7 +12,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
 from tests.support.bus_system import free_endpoint
-from tests.support.patience import in_one_try_of, wait_until
+from tests.support.patience import wait_until
+from tests.support.stalls import repeat_on_stall
 
 ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
 
@@ -146,4 +147,4 @@ def test_clients_are_back_within_a_second_of_their_router():
                     wait_until(heard, "traffic")
                     assert time.monotonic() - began < 1.0
 
-    in_one_try_of(3, back)
+    repeat_on_stall(3, back)

@@ -11,7 +11,8 @@ from tailor.runtime.processes.child import tailor
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, TickReport, VelocityCommand
 from tests.support.bus_system import ROOT, bus_system, free_endpoint
-from tests.support.patience import PATIENCE_S, gone, in_one_try_of, wait_until
+from tests.support.patience import PATIENCE_S, gone, wait_until
+from tests.support.stalls import repeat_on_stall
 
 OWN = shlex.join(tailor("plan", "--links"))  # our own command, as anybody's vhpop
 LIMIT_S = 1.5  # for a planner that hangs
@@ -95,7 +96,7 @@ def test_a_planner_that_hangs_costs_its_limit_but_no_tick_and_leaves_no_process(
         assert (folder / "vhpop.pids").exists(), "it was killed before it hung"
         assert all(gone(int(pid)) for pid in (folder / "vhpop.pids").read_text().split())
 
-    in_one_try_of(3, waited_without_missing_a_tick)
+    repeat_on_stall(3, waited_without_missing_a_tick)
 
 
 @pytest.mark.slow

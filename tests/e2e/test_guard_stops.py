@@ -9,7 +9,8 @@ import pytest
 
 from tailor.schemas.messages import DriverState
 from tests.support.bus_system import driving, guarded_robot, moving, outputs
-from tests.support.patience import in_one_try_of, wait_until
+from tests.support.patience import wait_until
+from tests.support.stalls import repeat_on_stall
 
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period of the executive
 
@@ -48,7 +49,7 @@ def test_robot_stops_within_300_ms_after_executive_is_killed(system, kills):
     _, endpoint, start, trace = system
     phases = random.Random(1)
     times = [
-        in_one_try_of(3, lambda: killed_in_motion(start, endpoint, trace, phases.uniform(0.15, 0.35)))
+        repeat_on_stall(3, lambda: killed_in_motion(start, endpoint, trace, phases.uniform(0.15, 0.35)))
         for _ in range(kills)
     ]
     print(
@@ -71,7 +72,7 @@ def test_a_pause_of_a_tick_does_not_stop_the_robot(system):
         rest_after(trace, began_s)
         assert stopped_s is None
 
-    in_one_try_of(5, survived)
+    repeat_on_stall(5, survived)
 
 
 def test_a_pause_of_two_seconds_stops_the_robot_for_good(system):
@@ -91,7 +92,7 @@ def test_a_pause_of_two_seconds_stops_the_robot_for_good(system):
         assert at_rest_s - paused_s <= LIMIT_S
         return speed
 
-    assert in_one_try_of(3, stopped) == 0.0, "no backlog is executed, and nobody armed again"
+    assert repeat_on_stall(3, stopped) == 0.0, "no backlog is executed, and nobody armed again"
 
 
 def test_a_second_executive_cannot_move_the_robot(system):
@@ -114,5 +115,5 @@ def test_a_second_executive_cannot_move_the_robot(system):
         wait_until(moving(trace, 0.0), "robot at rest")
         assert speed == 0.25, "the first one still drives"
 
-    in_one_try_of(3, refused)
+    repeat_on_stall(3, refused)
     assert {v for _, v in outputs(trace)} <= {0.0, 0.25}

@@ -15,7 +15,8 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Odometry, Provenance
 from tests.support.bus_system import bus_system
-from tests.support.patience import PATIENCE_S, in_one_try_of, wait_until
+from tests.support.patience import PATIENCE_S, wait_until
+from tests.support.stalls import repeat_on_stall
 
 
 @pytest.fixture
@@ -78,7 +79,7 @@ def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
             assert recording.account.damaged_chunks == 0
             assert (killed_ns - last_ns) / 1e9 <= 1.0
 
-        in_one_try_of(3, killed)
+        repeat_on_stall(3, killed)
 
 
 def test_a_selection_keeps_only_what_it_names(robot, tmp_path):

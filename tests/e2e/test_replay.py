@@ -17,7 +17,8 @@ from tailor.schemas.codec import decode
 from tailor.schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
 from tests.support.bus_system import ROOT, bus_system, free_endpoint
-from tests.support.patience import PATIENCE_S, in_one_try_of, wait_until
+from tests.support.patience import PATIENCE_S, wait_until
+from tests.support.stalls import repeat_on_stall
 from tests.unit.tools.test_comparison import Script
 
 DRIVER, EXECUTIVE = "cd" * 16, "ab" * 16
@@ -130,7 +131,7 @@ def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
             assert "a driver is live" in said  # a simulator that was held up for half a second was not heard
             assert commands() == []
 
-        in_one_try_of(3, spared)
+        repeat_on_stall(3, spared)
         commands = heard(session, ["cmd_vel", "arm_request"])
         run(recording, endpoint, "--drive", "--rate", "8")
         wait_until(commands, "commands of --drive")

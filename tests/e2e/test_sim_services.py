@@ -6,7 +6,8 @@ import time
 import pytest
 
 from tests.support.bus_system import driving, guarded_robot, moving, outputs
-from tests.support.patience import in_one_try_of, wait_until
+from tests.support.patience import wait_until
+from tests.support.stalls import repeat_on_stall
 
 
 @pytest.fixture
@@ -81,7 +82,7 @@ def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
         assert speed == 0.5
         assert last.x > first.x
 
-    in_one_try_of(3, drives_on)
+    repeat_on_stall(3, drives_on)
 
 
 def test_things_can_be_placed_while_the_world_runs(system):

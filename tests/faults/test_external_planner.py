@@ -9,7 +9,8 @@ from tailor.runtime.processes.external_planner import MAX_ANSWER_BYTES, External
 from tailor.schemas import codec
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 from tests.faults.test_planner_process import LIMIT_S, POLL_LIMIT_S, program
-from tests.support.patience import PATIENCE_S, gone, in_one_try_of
+from tests.support.patience import PATIENCE_S, gone
+from tests.support.stalls import repeat_on_stall
 
 
 def request(number=7):
@@ -17,7 +18,7 @@ def request(number=7):
 
 
 def asked(command, limit_s=LIMIT_S):
-    return in_one_try_of(3, lambda: polled(command, limit_s))
+    return repeat_on_stall(3, lambda: polled(command, limit_s))
 
 
 def polled(command, limit_s):

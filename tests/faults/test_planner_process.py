@@ -10,8 +10,9 @@ import pytest
 from tailor.executive.planning import PlanTextError, parse_plan, validate
 from tailor.runtime.processes.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from tailor.schemas.errors import UsageError
-from tests.support.patience import PATIENCE_S, first_line, gone, in_one_try_of, is_alive
+from tests.support.patience import PATIENCE_S, first_line, gone, is_alive
 from tests.support.planning_problems import DATA, own, printed
+from tests.support.stalls import repeat_on_stall
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMIT_S = 30.0  # for those that end by themselves
@@ -48,7 +49,7 @@ def run_without_blocking(command, limit_s=LIMIT_S, longest_s=POLL_LIMIT_S):
         assert longest < longest_s
         return child, answer
 
-    return in_one_try_of(3, attempt)
+    return repeat_on_stall(3, attempt)
 
 
 def test_a_planner_that_behaves_well_gets_its_plan_parsed_and_validated(tmp_path):
@@ -72,7 +73,7 @@ time.sleep(60)"""
         assert len(pids) == 2
         return child, answer, pids
 
-    child, answer, pids = in_one_try_of(3, both_started)
+    child, answer, pids = repeat_on_stall(3, both_started)
     assert answer.outcome == "timeout"
     assert all(gone(pid) for pid in pids)
     assert gone(child.pid)

@@ -1,4 +1,4 @@
-"""How much of a processor a piece of work needs, however busy the machine that measures it."""
+"""Measures how much CPU time a piece of work needs, however busy the machine is."""
 
 import gc
 import time
@@ -6,21 +6,19 @@ from collections.abc import Callable
 
 from tailor.runtime.gc_freeze import gc_frozen
 
-TRIES = 3  # what other processes take from the caches only ever adds: the least of several tries is the nearest
+REPETITIONS = 3  # other processes evict caches, which only adds CPU time: as in timeit, the minimum is the measurement
 
 
-def least_cpu_s(work: Callable[[], object], enough_s: float) -> float:
-    """The least CPU seconds of up to three tries; the first below `enough_s` ends it.
+def min_cpu_s(work: Callable[[], object]) -> float:
+    """Minimum CPU time of three repetitions of `work`, in seconds; all three are always made.
 
     The test runner's own objects are kept out of the garbage collections that are measured with the work.
     """
     gc.collect()
-    least_s = float("inf")
+    measured_s = []
     with gc_frozen():
-        for _ in range(TRIES):
+        for _ in range(REPETITIONS):
             began_s = time.process_time()
             work()
-            least_s = min(least_s, time.process_time() - began_s)
-            if least_s < enough_s:
-                break
-    return least_s
+            measured_s.append(time.process_time() - began_s)
+    return min(measured_s)

@@ -1,33 +1,24 @@
-"""Patience with a busy machine: waits for conditions instead of times, always bounded, and more than one try."""
+"""Waits for conditions instead of times, always bounded."""
 
 import select
 import time
-from contextlib import suppress
 
-PATIENCE_S = 90.0  # a process needs two seconds to start, and a machine may be busy with ten others; only failures wait
+PATIENCE_S = 90.0  # a process starts in 2 s, and a busy machine runs ten others; only failures wait
 
 
 def wait_until(condition, what="condition", timeout_s=PATIENCE_S):
-    """What the condition gives as soon as it is true; fails the test after `timeout_s`."""
+    """Value of the condition as soon as it is true; fails the test after `timeout_s`."""
     ends = time.monotonic() + timeout_s
     while time.monotonic() < ends:
-        if found := condition():
-            return found
+        if value := condition():
+            return value
         time.sleep(0.005)
     raise AssertionError(f"{what}: not within {timeout_s} s")
 
 
-def in_one_try_of(tries, attempt):
-    """What the first attempt gives that holds. A stalled machine spoils one of them; a broken program spoils all."""
-    for _ in range(tries - 1):
-        with suppress(AssertionError):
-            return attempt()
-    return attempt()
-
-
 def first_line(stream):
-    """The first line that a process writes to its pipe."""
-    assert select.select([stream], [], [], PATIENCE_S)[0], f"nothing said within {PATIENCE_S} s"
+    """First line that a process writes to its pipe."""
+    assert select.select([stream], [], [], PATIENCE_S)[0], f"no line within {PATIENCE_S} s"
     return stream.readline()
 
 
