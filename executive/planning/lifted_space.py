@@ -10,13 +10,13 @@ from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground_plans.extraction import Frame
-from tailor.executive.planning.lifted.achieving import refine_condition
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
 from tailor.executive.planning.lifted.measures import LiftedMeasures
-from tailor.executive.planning.lifted.resolving import refine_threat
+from tailor.executive.planning.lifted.open_conditions import refine_condition
 from tailor.executive.planning.lifted.task import LiftedTask
+from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.settings import Settings, rankings_for

@@ -12,10 +12,10 @@ from tailor.executive.planning.flaws.ranking import Rank, Ranking
 from tailor.executive.planning.ground.ground_formula import World
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.extraction import extract
-from tailor.executive.planning.ground_plans.ground_estimates import GroundEstimates
-from tailor.executive.planning.ground_plans.ground_flaws import GroundFlaws
+from tailor.executive.planning.ground_plans.flaw_measures import GroundFlaws
 from tailor.executive.planning.ground_plans.open_conditions import refine_open
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, initial_plan
+from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimates
 from tailor.executive.planning.ground_plans.threats import refine_threat
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.settings import Settings, rankings_for

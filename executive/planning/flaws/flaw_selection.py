@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.planning.flaws.flaw_orders import Criterion
 from tailor.executive.planning.ground.additive_heuristic import Value
-from tailor.executive.planning.structures.cells import cells_of
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.refinable import Refinable
 
 P = TypeVar("P", bound=Refinable)

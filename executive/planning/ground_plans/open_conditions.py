@@ -12,8 +12,8 @@ from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.new_steps import new_step_plans, opened_by
 from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
 from tailor.executive.planning.ground_plans.threat_detection import Spanned, threats_to
-from tailor.executive.planning.structures.cells import without
 from tailor.executive.planning.structures.connectives import Every, Some
+from tailor.executive.planning.structures.linked_list import without
 from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
 

@@ -6,8 +6,8 @@ from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition, negation
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat, new
-from tailor.executive.planning.structures.cells import without
 from tailor.executive.planning.structures.connectives import conjunction
+from tailor.executive.planning.structures.linked_list import without
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:

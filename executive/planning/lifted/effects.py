@@ -9,7 +9,7 @@ from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Spa
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.grounding import MAX_WAYS
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
-from tailor.executive.planning.lifted.lowering import Lowering, Names
+from tailor.executive.planning.lifted.lifter import Lowering, Names
 from tailor.executive.planning.pddl.language import Action, When
 from tailor.executive.planning.structures.connectives import FALSE, TRUE, conjunction, disjunction
 

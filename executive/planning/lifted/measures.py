@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from tailor.executive.planning.flaws.ranking import Estimate
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
-from tailor.executive.planning.lifted.achieving import initial_achievers, new_achievers, old_achievers
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula, LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
-from tailor.executive.planning.lifted.resolving import choices, separations
+from tailor.executive.planning.lifted.open_conditions import initial_achievers, new_achievers, old_achievers
 from tailor.executive.planning.lifted.task import LiftedTask
-from tailor.executive.planning.structures.cells import cells_of
+from tailor.executive.planning.lifted.threats import choices, separations
 from tailor.executive.planning.structures.connectives import Every, Some
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.makespan import makespan_estimate
 
 

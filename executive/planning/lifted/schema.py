@@ -12,7 +12,7 @@ from tailor.executive.planning.ground.durations import duration_range, ticks_of
 from tailor.executive.planning.ground.ground_formula import Facts, World
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
 from tailor.executive.planning.lifted.formula import Equality
-from tailor.executive.planning.lifted.lowering import Lowering
+from tailor.executive.planning.lifted.lifter import Lowering
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 

@@ -15,7 +15,7 @@ from tailor.executive.planning.ground.ground_formula import Facts, World
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
-from tailor.executive.planning.lifted.lowering import Lowering
+from tailor.executive.planning.lifted.lifter import Lowering
 from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.structures.orderings import FIRST

@@ -9,8 +9,8 @@ from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.links import links_of, orderings_for
 from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.plans.schedule import closure, levels
 from tailor.executive.planning.plans.validator import validate
-from tailor.executive.planning.structures.schedule import closure, levels
 
 
 def suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) -> Plan | None:

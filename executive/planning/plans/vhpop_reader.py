@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
-from tailor.executive.planning.structures.schedule import levels
+from tailor.executive.planning.plans.schedule import levels
 from tailor.schemas.errors import UsageError
 
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that

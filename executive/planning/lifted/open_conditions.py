@@ -20,9 +20,9 @@ from tailor.executive.planning.lifted.lifted_plan import (
 )
 from tailor.executive.planning.lifted.schema import Schema
 from tailor.executive.planning.lifted.task import Achiever, LiftedTask, Placed
-from tailor.executive.planning.lifted.threatening import threatened, threatened_by_step
-from tailor.executive.planning.structures.cells import without
+from tailor.executive.planning.lifted.threat_detection import threatened, threatened_by_step
 from tailor.executive.planning.structures.connectives import Some
+from tailor.executive.planning.structures.linked_list import without
 from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
 MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second

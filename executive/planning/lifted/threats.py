@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from tailor.executive.planning.lifted.formula import of_step
 from tailor.executive.planning.lifted.lifted_plan import LiftedPlan, LiftedThreat, opened
 from tailor.executive.planning.lifted.task import LiftedTask
-from tailor.executive.planning.lifted.threatening import is_threat
-from tailor.executive.planning.structures.cells import without
+from tailor.executive.planning.lifted.threat_detection import is_threat
+from tailor.executive.planning.structures.linked_list import without
 
 
 def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> list[LiftedPlan]:
