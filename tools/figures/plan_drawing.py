@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from tailor.executive.planning import GOAL, Plan
-from tailor.executive.planning.plans.vhpop_text import atom, number
+from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 
 _COLUMN, _ROW, _WIDTH, _HEIGHT, _MARGIN = 330, 84, 190, 40, 30  # pixels; literals stand between the columns
 _LINE = 11  # pixels from one literal to the next
@@ -33,7 +33,7 @@ def _links(plan: Plan) -> dict[tuple[int, int], list[str]]:
 
 
 def _labels(plan: Plan) -> dict[int, str]:
-    return {_START: "initial state", **{s.id: f"{s.id} {atom(s.action)}" for s in plan.steps}, GOAL: "goal"}
+    return {_START: "initial state", **{s.id: f"{s.id} {format_atom(s.action)}" for s in plan.steps}, GOAL: "goal"}
 
 
 def to_dot(plan: Plan) -> str:
@@ -65,7 +65,7 @@ def to_svg(plan: Plan) -> str:
     width = max(x for x, _ in places.values()) + _WIDTH + _MARGIN
     top = min([0.0] + [arrow.top - _MARGIN for arrow in arrows])
     height = max([y + _HEIGHT for _, y in places.values()] + [arrow.bottom for arrow in arrows]) + _MARGIN - top
-    times = {step.id: number(step.start) for step in plan.steps}
+    times = {step.id: format_number(step.start) for step in plan.steps}
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height:g}" '

@@ -11,10 +11,9 @@ from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.step_effects import StepEffects
-from tailor.executive.planning.structures.orderings import FIRST, GOAL, Closure, Orderings
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
-GOAL_STEP = -1  # what links and orderings call the goal; the initial state is step 0
 new = tuple.__new__  # makes a named tuple of a plain one in half the time of its constructor, a Python function
 
 

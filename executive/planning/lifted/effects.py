@@ -114,8 +114,8 @@ def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list
 def _losing(winner: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
     """How an add effect leaves a delete of `literal` alone: it adds another fact, or its guards of one span fail."""
     pairs = _differing(literal, winner.literal)
-    apart = disjunction(equality(a, b, False) for a, b in pairs)
-    same = conjunction(equality(a, b, True) for a, b in pairs)
+    apart: LiftedFormula = disjunction(equality(a, b, False) for a, b in pairs)
+    same: LiftedFormula = conjunction(equality(a, b, True) for a, b in pairs)
     spans: dict[Span, list[Guard]] = {} if winner.guards else {(winner.moment, winner.moment): []}
     for guard in winner.guards:
         spans.setdefault(guard.span, []).append(guard)

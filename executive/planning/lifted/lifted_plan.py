@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tailor.executive.planning.ground_plans.partial_plan import GOAL_STEP
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.effects import Guard
 from tailor.executive.planning.lifted.formula import AnyOf, Equality, LiftedFormula, LiftedLiteral, of_step
 from tailor.executive.planning.lifted.schema import Schema
 from tailor.executive.planning.lifted.task import LiftedTask, Placed
 from tailor.executive.planning.structures.connectives import FALSE, Some, conjuncts
-from tailor.executive.planning.structures.orderings import GOAL, Closure, Orderings
+from tailor.executive.planning.structures.orderings import GOAL, GOAL_STEP, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 
@@ -78,7 +77,8 @@ def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> L
     An equality binds at once: None when that contradicts.
     """
     cell, count, bindings = plan.open, plan.open_count, plan.bindings
-    for part in reversed(conjuncts(formula)):
+    parts: tuple[LiftedFormula, ...] = conjuncts(formula)
+    for part in reversed(parts):
         if isinstance(part, Equality):
             bound = bindings.equated(*part)
             if bound is None:

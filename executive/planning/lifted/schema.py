@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
+from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import Facts, World
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
-from tailor.executive.planning.lifted.formula import Equality
+from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
 from tailor.executive.planning.lifted.lifter import Lowering
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
@@ -64,11 +65,10 @@ def _schemata(
 ) -> Iterator[Schema]:
     """The schemata of one action: one, or one for each choice of the parameters that its duration depends on."""
     durative = world.temporal
-    lowered = [
-        (part, span_of(condition.when, durative))
-        for condition in action.conditions
-        for part in conjuncts(lowering.lowered(condition.formula, names))
-    ]
+    lowered: list[tuple[LiftedFormula, Span]] = []
+    for condition in action.conditions:
+        parts: tuple[LiftedFormula, ...] = conjuncts(lowering.lowered(condition.formula, names))
+        lowered += [(part, span_of(condition.when, durative)) for part in parts]
     if any(part == FALSE for part, _ in lowered):
         return
     conditions = tuple((part, span) for part, span in lowered if not isinstance(part, Equality))

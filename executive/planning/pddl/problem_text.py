@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.vhpop_text import atom, number
 
 
 def format_problem(problem: Problem) -> str:
@@ -36,6 +36,6 @@ def _object(item: Typed, typed: bool) -> str:
 
 
 def _initial(problem: Problem) -> Iterator[str]:
-    yield from map(atom, problem.initial)
-    yield from (f"(= {atom(function)} {number(value)})" for function, value in problem.values.items())
-    yield from (f"(at {number(timed.time_s)} {timed.literal})" for timed in problem.timed)
+    yield from map(format_atom, problem.initial)
+    yield from (f"(= {format_atom(function)} {format_number(value)})" for function, value in problem.values.items())
+    yield from (f"(at {format_number(timed.time_s)} {timed.literal})" for timed in problem.timed)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground_plans.partial_plan import GOAL_STEP
 from tailor.executive.planning.pddl.language import Literal
 
 Status = OneOf["solved", "unsolvable", "limit", "unsupported"]
@@ -31,7 +30,7 @@ class Link:
     consumer: int
 
 
-GOAL = GOAL_STEP
+GOAL = -1  # consumer of the causal links that support the goal
 DEFAULT_TICK_S = 0.01  # VHPOP's tolerance
 
 

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.durations import duration_range
-from tailor.executive.planning.ground.grounding import world_of
+from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Action, Domain, Effect
 from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.durations import allowed_durations
 from tailor.executive.planning.plans.link_check import Bound, faulty_link
 from tailor.executive.planning.plans.plan import Plan, Step
 from tailor.executive.planning.plans.state import Binding, Objects, State, conditions_at, fact_of, holds
-from tailor.executive.planning.plans.vhpop_text import atom
 
 SAME_TIME_S = 1e-6  # events closer than this happen together
 DURATION_SLACK_S = 0.0051  # half a tick of 0.01 s: durations are printed in whole ticks
@@ -74,11 +73,11 @@ def _bind(step: Step, domain: Domain, problem: Problem) -> tuple[Action, Binding
 def _check_duration(step: Step, action: Action, binding: Binding, problem: Problem) -> None:
     if action.duration is None:
         return
-    allowed = duration_range(action.duration, binding, world_of(problem))
+    allowed = allowed_durations(action.duration, binding, problem.values)
     if allowed is None:
-        raise _Unsound(f"step {step.id}: {atom(step.action)} has no possible duration")
+        raise _Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
     if not allowed[0] - DURATION_SLACK_S <= step.duration <= allowed[1] + DURATION_SLACK_S:
-        raise _Unsound(f"step {step.id}: {atom(step.action)} cannot last {step.duration} s")
+        raise _Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
 
 
 # --- the simulation ------------------------------------------------------------------------------
@@ -123,7 +122,7 @@ def _happenings(plan: Plan, problem: Problem) -> Iterator[list[_Event]]:
 
 def _literal_event(time_s: float, fact: Fact, positive: bool) -> _Event:
     facts, none = frozenset([fact]), frozenset[Fact]()
-    label = f"the timed literal {atom(fact)}"
+    label = f"the timed literal {format_atom(fact)}"
     return _Event(time_s, 0, label, None, False, facts if positive else none, none if positive else facts)
 
 
@@ -138,7 +137,7 @@ def _check_conditions(events: list[_Event], state: State, problem: Problem, boun
     for event in events:
         when = _unmet(event, state, problem, bound)
         if when and event.step is not None:
-            raise _Unsound(f"step {event.step.id}: {atom(event.step.action)} lacks a condition at its {when}")
+            raise _Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
 
 
 def _unmet(event: _Event, state: State, problem: Problem, bound: Bound) -> str:
@@ -157,7 +156,7 @@ def _check_invariants(running: list[Step], state: State, problem: Problem, bound
     for step in running:
         action, binding = bound[step.id]
         if not holds(conditions_at(action.conditions, "over"), binding, state, Objects(problem)):
-            raise _Unsound(f"step {step.id}: {atom(step.action)} loses a condition that it needs all the time")
+            raise _Unsound(f"step {step.id}: {format_atom(step.action)} loses a condition that it needs all the time")
 
 
 def _changes(

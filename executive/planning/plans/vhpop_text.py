@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan
 
 
@@ -12,8 +12,8 @@ def format_plan(plan: Plan) -> str:
     """The plain form: `;problem`, then `START:(action args)` a line, `[duration]` behind a durative one."""
     lines = [f";{plan.problem}"]
     for step in plan.steps:
-        duration = f"[{number(step.duration)}]" if plan.durative else ""
-        lines.append(f"{number(step.start)}:{atom(step.action)}{duration}")
+        duration = f"[{format_number(step.duration)}]" if plan.durative else ""
+        lines.append(f"{format_number(step.start)}:{format_atom(step.action)}{duration}")
     return "\n".join(lines) + "\n"
 
 
@@ -22,9 +22,9 @@ def format_links(plan: Plan) -> str:
 
     Their unit is 0.01 s as VHPOP's; for another tolerance a line of ours says so.
     """
-    lines = [f";{plan.problem}", "Initial  :" + "".join(" " + atom(fact) for fact in plan.initial)]
+    lines = [f";{plan.problem}", "Initial  :" + "".join(" " + format_atom(fact) for fact in plan.initial)]
     for step in plan.steps:
-        lines += ["", f"Step {step.id:<3} : {atom(step.action)}", *_links(plan.links_to(step.id))]
+        lines += ["", f"Step {step.id:<3} : {format_atom(step.action)}", *_links(plan.links_to(step.id))]
     lines += ["", "Goal     : ", *_links(plan.links_to(GOAL))]
     if plan.bounds:
         lines += ["orderings = ", *_matrix(plan)]
@@ -45,14 +45,3 @@ def _links(links: tuple[Link, ...]) -> Iterator[str]:
 def _matrix(plan: Plan) -> Iterator[str]:
     for row in plan.bounds:
         yield "".join(f" {'inf' if bound is None else bound:>6}" for bound in row)
-
-
-def atom(fact: Fact) -> str:
-    """A fact or action in parentheses."""
-    return f"({' '.join(fact)})"
-
-
-def number(value: float) -> str:
-    """A number without needless digits: 3, 0.01, 28.04."""
-    text = f"{value:.6f}".rstrip("0").rstrip(".")
-    return text or "0"

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
-if TYPE_CHECKING:
-    from tailor.executive.planning.lifted.formula import Leaf
-
-L = TypeVar("L", int, "Leaf")  # what is joined: ground literals, or lifted ones with equalities
+L = TypeVar("L")  # leaves: ground literals, or lifted literals and equalities
 
 
 @dataclass(frozen=True, slots=True)

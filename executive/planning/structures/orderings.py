@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 
 INITIAL = 0  # node of the initial state: before all others
 GOAL = 1  # node of the goal: after all others
+GOAL_STEP = -1  # step number of the goal; the initial state is step 0
 FIRST = 2  # node of the first step, or of the first timed literal
 
 

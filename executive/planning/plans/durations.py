@@ -1,0 +1,53 @@
+"""Durations that a problem allows for a step; the validator's own evaluation of PDDL arithmetic."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric
+from tailor.executive.planning.plans.state import Binding
+
+_OPERATORS: dict[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+
+
+def allowed_durations(
+    bounds: tuple[DurationBound, ...], binding: Binding, values: Mapping[Fact, float]
+) -> tuple[float, float] | None:
+    """Shortest and longest duration of a step in seconds.
+
+    Args:
+      bounds: Constraints of the action schema on ?duration.
+      binding: Objects of the action's parameters.
+      values: Values of the problem's static functions.
+
+    Returns:
+      The closed interval, up to infinity without an upper bound; None when it is empty, a function has no value or
+      a divisor is 0.
+    """
+    try:
+        numbers = [(bound.operator, _value(bound.value, binding, values)) for bound in bounds]
+    except (KeyError, ZeroDivisionError):
+        return None
+    shortest = max([0.0, *(value for comparison, value in numbers if comparison != "<=")])
+    longest = min([math.inf, *(value for comparison, value in numbers if comparison != ">=")])
+    return (shortest, longest) if shortest <= longest else None
+
+
+def _value(number: Numeric, binding: Binding, values: Mapping[Fact, float]) -> float:
+    """The value of an arithmetic expression; raises KeyError or ZeroDivisionError when it has none."""
+    if isinstance(number, Number):
+        return number.value
+    if isinstance(number, Function):
+        return values[(number.name, *(binding.get(term, term) for term in number.terms))]
+    result, *others = (_value(operand, binding, values) for operand in number.operands)
+    for other in others:
+        result = _OPERATORS[number.operator](result, other)
+    return result
