@@ -101,7 +101,7 @@ def test_a_second_executive_cannot_move_the_robot(system):
     def refused():
         first = driving(start, endpoint, trace, 0.25)
         states = session.inbox(["driver"], "agilo")
-        second = start("tests.support.stand_in_executive", endpoint, 0.9)
+        second = start("tests.support.stand_ins.executive", endpoint, 0.9)
 
         def told():
             found = [s.message for s in states.drain() if isinstance(s.message, DriverState)]

@@ -23,7 +23,7 @@ from tests.support.stalls import repeat_on_stall
 def robot(tmp_path):
     """A bus with a stand-in robot that publishes; yields (session, start_recorder)."""
     with bus_system() as (session, endpoint, start):
-        start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
+        start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace")
         states = session.inbox(["driver"], "agilo")
         wait_until(states.drain, "driver state")
 
@@ -133,7 +133,7 @@ def test_record_replay_record_is_byte_identical(tmp_path):
             wait_until(marker.matched, "recorder")
             return recorder
 
-        sim = start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
+        sim = start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace")
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
         recorder = record("a.mcap")
         wait_until(lambda: len(readable(tmp_path / "a.mcap")) > 150, "two seconds of messages")

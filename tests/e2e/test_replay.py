@@ -122,7 +122,7 @@ def test_keys_step_pause_and_end_a_replay(tmp_path):
 
 def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
     with bus_system() as (session, endpoint, start):
-        start("tests.support.stand_in_sim", endpoint, tmp_path / "trace")
+        start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace")
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
 
         def spared():

@@ -19,7 +19,7 @@ def bus_system():
     endpoint, children = free_endpoint(), []
 
     def start(module, *arguments):
-        children.append(Child(module, [sys.executable, "-m", module, *map(str, arguments)]))
+        children.append(Child(module, [sys.executable, "-P", "-m", module, *map(str, arguments)]))
         return children[-1]
 
     with open_router(endpoint) as session:
@@ -35,7 +35,7 @@ def guarded_robot(tmp_path):
     """A bus with the stand-in simulator: yields (session, endpoint, start, trace of the guard's output)."""
     with bus_system() as (session, endpoint, start):
         trace = tmp_path / "trace"
-        start("tests.support.stand_in_sim", endpoint, trace)
+        start("tests.support.stand_ins.sim", endpoint, trace)
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
         yield session, endpoint, start, trace
 
@@ -62,6 +62,6 @@ def moving(trace, speed):
 
 def driving(start, endpoint, trace, speed=0.5):
     """An executive that drives the stand-in robot, which moves by now."""
-    executive = start("tests.support.stand_in_executive", endpoint, speed)
+    executive = start("tests.support.stand_ins.executive", endpoint, speed)
     wait_until(moving(trace, speed), "robot moves")
     return executive

@@ -11,7 +11,7 @@ from tailor.simnodes.driver_spec import DriverSpec, declaration
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.services import Services
 from tailor.simnodes.world import Event, World
-from tests.support.fake_body import FakeBody
+from tests.support.stand_ins.body import FakeBody
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000

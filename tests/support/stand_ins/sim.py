@@ -14,7 +14,7 @@ from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
-from tests.support.fake_body import FakeBody
+from tests.support.stand_ins.body import FakeBody
 
 LIMITS = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
 
