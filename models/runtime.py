@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
 from tailor.models.cards.card import KINDS, MAX_MODEL_BYTES, Card, card_path, read_bytes, read_card, sha256_of
-from tailor.models.cards.checks import check_identity, check_made_with, check_place, check_ranges
+from tailor.models.cards.checks import check_identity, check_place, check_ranges, check_trained_with
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -68,7 +68,7 @@ class OnnxGate:
     threshold: float  # above this risk the greedy choice is kept
 
     @property
-    def asks(self) -> tuple[str, ...]:
+    def input_names(self) -> tuple[str, ...]:
         """Names of the values that it is told, in order."""
         return tuple(argument["name"] for argument in self.card["arguments"])
 
@@ -151,7 +151,7 @@ def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> 
         return None
     model = load_model(path)
     check_place(model.card, f"{robot}/{GATE}", path.parent)
-    check_made_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
+    check_trained_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
     assert isinstance(model, OnnxGate)
     return model
 

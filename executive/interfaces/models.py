@@ -29,7 +29,7 @@ class RefinementGate(Protocol):
     """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
 
     @property
-    def asks(self) -> tuple[str, ...]:
+    def input_names(self) -> tuple[str, ...]:
         """Names of the values that it is told, in order."""
         ...
 
@@ -54,11 +54,11 @@ class ModelBounds(Protocol):
     Models that know theirs have them as `bounds`; without, nothing can be proven about a choice.
     """
 
-    def least(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
+    def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """The least mean plus `k_std` standard deviations."""
         ...
 
-    def most(self, lower: Columns, upper: Columns) -> Array:
+    def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """The largest mean."""
         ...
 

@@ -46,9 +46,9 @@ class Verdict:
 
 def check_gate(model: RefinementGate) -> RefinementGate:
     """The model, if it asks what is told here; raises UsageError otherwise."""
-    if model.asks != SITUATION:
+    if model.input_names != SITUATION:
         raise UsageError(
-            f"the benefit tree asks for {', '.join(model.asks)}, expected {', '.join(SITUATION)}: "
+            f"the benefit tree asks for {', '.join(model.input_names)}, expected {', '.join(SITUATION)}: "
             "train it again with `tailor train-gate`"
         )
     return model

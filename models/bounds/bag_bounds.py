@@ -11,7 +11,7 @@ MIN_STD = np.float32(1e-9)  # s: below, all trees agree
 ROUNDS = 6  # of raising outliers: half as many cost a tenth more boxes, twice as many save none
 
 
-def least_of_bag(least: Floats, most: Floats, k_std: float) -> Floats:
+def bag_lower_bound(least: Floats, most: Floats, k_std: float) -> Floats:
     """The least mean plus `k_std` standard deviations, shape (...), of trees between `least` and `most`, (k, ...).
 
     That is convex in what the trees say, and its tangent plane anywhere bounds it from below: a mean with the weights

@@ -108,8 +108,8 @@ class LeafBounds:
     def least(self, meeting: Meeting, side: Side, k_std: float = 0.0) -> Floats:
         """The least of each tree, shape (sides, trees, ...); where leaves have a spread, with `k_std` times that."""
         said = self._formulas(meeting, side)
-        if k_std and self.boxes.spread is not None:
-            said = said + _along(np.float32(k_std) * self.boxes.spread[meeting.leaves])
+        if k_std and self.boxes.std is not None:
+            said = said + _along(np.float32(k_std) * self.boxes.std[meeting.leaves])
         total = np.where(meeting.met, said, np.float32(np.inf))
         least: Floats = np.minimum.reduceat(total, meeting.starts, axis=1)
         return least

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.bounds.bag_bounds import least_of_bag
+from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Meeting, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.features.feature_intervals import FEATURE_SPANS, Spans
@@ -35,11 +35,11 @@ class ModelBounds:
         hulls = (reduce(Span.hull, spans) for spans in zip(*(case.features for case in cases), strict=True))
         return replace(self, trees=self.trees.within(tuple(hulls), MARGIN))
 
-    def least(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
+    def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """The least mean plus `k_std` standard deviations, for arguments between `lower` and `upper`."""
         return self._over_cases(tuple(map(Span, lower, upper)), lambda meeting: self._spread(meeting, k_std))
 
-    def most(self, lower: Columns, upper: Columns) -> Array:
+    def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """The largest mean, for arguments between `lower` and `upper`."""
         trees = self.trees
         return -self._over_cases(
@@ -78,7 +78,7 @@ class ModelBounds:
             mean: Floats = trees.least(meeting, Side.LEAST, k_std)[0].mean(axis=0) - slack
             return mean
         least, opposite = trees.least(meeting, Side.BOTH)
-        return least_of_bag(least, 2 * slack - opposite, k_std) - slack
+        return bag_lower_bound(least, 2 * slack - opposite, k_std) - slack
 
 
 def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:

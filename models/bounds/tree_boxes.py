@@ -34,7 +34,7 @@ class TreeBoxes:
     intercept: Floats  # (l,)
     low: Floats  # (l,)
     high: Floats  # (l,)
-    spread: Floats | None = None  # (l,) standard deviation by leaf; None: that of the trees among each other
+    std: Floats | None = None  # (l,) standard deviation by leaf; None: that of the trees among each other
 
     def part(self, leaves: NDArray[np.bool_]) -> TreeBoxes:
         """The same trees with some of their leaves only, (l,): at least one of each."""
@@ -48,7 +48,7 @@ class TreeBoxes:
             intercept=self.intercept[leaves],
             low=self.low[leaves],
             high=self.high[leaves],
-            spread=None if self.spread is None else self.spread[leaves],
+            std=None if self.std is None else self.std[leaves],
         )
 
     def inside(self, lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> TreeBoxes:
@@ -84,7 +84,7 @@ def _linear(graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Fl
     place = tree, said.astype(np.int64)
     formula = _formulas(graph, lower.shape[1])[place]
     low, high = (graph.constants[name][place] for name in (tree_names.LOW, tree_names.HIGH))
-    spread = graph.constants.get(tree_names.SPREAD)
+    spread = graph.constants.get(tree_names.LEAF_STD)
     said_spread = None if spread is None else spread[place]
     return TreeBoxes(first, lower, upper, formula[:, :-1], formula[:, -1], low, high, said_spread)
 

@@ -41,7 +41,7 @@ def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, about: GateProve
     return place(zoo, _exported(trained, about.names, card), card)
 
 
-def withdraw_gate(zoo: Path, robot: str) -> bool:
+def remove_gate(zoo: Path, robot: str) -> bool:
     """Remove a robot's benefit tree, as its action models have changed; whether there was one."""
     path = zoo / robot / f"{GATE}.onnx"
     there = path.exists()

@@ -33,7 +33,7 @@ def add_tree(sink: Sink, features: str, tree: LinearTree) -> tuple[str, str]:
     every = sink.add("MatMul", sink.constant(formulas, tree_names.FORMULAS), rows)  # (l, n)
     ends = {tree_names.LOW: tree.low[None], tree_names.HIGH: tree.high[None]}
     mean = _clipped(sink, sink.add("GatherElements", every, leaf, axis=0), leaf, ends)
-    return _flat(sink, mean), _flat(sink, _looked_up(sink, tree_names.SPREAD, tree.spread[None], leaf))
+    return _flat(sink, mean), _flat(sink, _looked_up(sink, tree_names.LEAF_STD, tree.std[None], leaf))
 
 
 def add_bag(sink: Sink, features: str, trees: Sequence[LinearTree]) -> tuple[str, str]:

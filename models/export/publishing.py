@@ -132,6 +132,6 @@ def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequenc
     if about.kind == "success":
         answers: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
     else:
-        answers = dict(zip(_outputs(about.kind), learner.predict_spread(features), strict=True))
+        answers = dict(zip(_outputs(about.kind), learner.predict_with_std(features), strict=True))
     rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in answers.items()}
     return {"arguments": arguments.tolist(), **rounded}

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.features import Quantity
-from tailor.models.rules.rules import NAMES, Bounds, conditions, formula
+from tailor.models.rules.rules import QUANTITY_NAMES, LeafBox, conditions, formula
 from tailor.schemas.errors import UsageError
 
 Floats = NDArray[np.float32]
@@ -32,16 +32,16 @@ def rules_of(boxes: TreeBoxes, number: int, quantities: Sequence[Quantity], unit
     """One rule a leaf of a tree; `unit` is that of its formulas, "" where leaves say a probability of success."""
     said = []
     for leaf in leaves_of(boxes, number):
-        box = Bounds(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
+        box = LeafBox(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
         then = f"success in {100 * boxes.low[leaf]:.0f} %"
         if unit:
-            then = f"{NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}"
+            then = f"{QUANTITY_NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}"
         said.append(f"if {conditions(box, quantities)}\nthen {then}")
     return said
 
 
-def applied(boxes: TreeBoxes, features: Floats, quantities: Sequence[Quantity], unit: str) -> str:
-    """The rule that applied to some features, (f,): of that tree which says nearest to what all of them say together.
+def applied_rule(boxes: TreeBoxes, features: Floats, quantities: Sequence[Quantity], unit: str) -> str:
+    """Rule that applies to one row of features, shape (f,), from the tree closest to the mean of all trees.
 
     Empty where a feature is not a number, or in no leaf.
     """
@@ -52,12 +52,14 @@ def applied(boxes: TreeBoxes, features: Floats, quantities: Sequence[Quantity], 
     said = np.clip(boxes.slopes[leaves] @ features + boxes.intercept[leaves], boxes.low[leaves], boxes.high[leaves])
     tree = int(np.abs(said - said.mean()).argmin())
     leaf = int(leaves[tree])
-    box = Bounds(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
+    box = LeafBox(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
     of = "" if len(leaves) == 1 else f" (tree {tree + 1} of {len(leaves)}, the one that says nearest to their mean)"
-    return f"if {conditions(box, quantities)} then {NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}{of}"
+    return (
+        f"if {conditions(box, quantities)} then {QUANTITY_NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}{of}"
+    )
 
 
-def answers_of(boxes: TreeBoxes, number: int, features: Floats) -> Floats:
+def predictions_of(boxes: TreeBoxes, number: int, features: Floats) -> Floats:
     """What a tree says of features (n, f), shape (n,)."""
     answers = np.full(len(features), np.nan, np.float32)
     for leaf in leaves_of(boxes, number):

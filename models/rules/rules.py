@@ -15,11 +15,11 @@ from tailor.models.trees.split_tree import LEAF, SplitTree
 
 DEGREES = 180 / np.pi
 TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term
-NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
+QUANTITY_NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class LeafBox:
     """What the path to a leaf says of each feature: lower < value <= upper."""
 
     leaf: int
@@ -27,13 +27,13 @@ class Bounds:
     upper: NDArray[np.float64]  # (f,)
 
 
-def bounds(tree: SplitTree, features: int) -> Iterator[Bounds]:
+def leaf_boxes(tree: SplitTree, features: int) -> Iterator[LeafBox]:
     """The box of every leaf, from left to right."""
 
-    def visit(node: int, lower: NDArray[np.float64], upper: NDArray[np.float64]) -> Iterator[Bounds]:
+    def visit(node: int, lower: NDArray[np.float64], upper: NDArray[np.float64]) -> Iterator[LeafBox]:
         feature, threshold = int(tree.feature[node]), float(tree.threshold[node])
         if feature == LEAF:
-            yield Bounds(int(tree.leaf[node]), lower, upper)
+            yield LeafBox(int(tree.leaf[node]), lower, upper)
             return
         left, right = upper.copy(), lower.copy()
         left[feature], right[feature] = min(upper[feature], threshold), max(lower[feature], threshold)
@@ -46,8 +46,8 @@ def bounds(tree: SplitTree, features: int) -> Iterator[Bounds]:
 def duration_rules(tree: LinearTree, quantities: Sequence[Quantity], unit: str = "s") -> list[str]:
     """One rule a leaf: "if ... then time = ...", or "energy" where the unit is J."""
     return [
-        f"if {conditions(box, quantities)}\nthen {NAMES[unit]} = {formula(tree, box.leaf, quantities, unit)}"
-        for box in bounds(tree.splits, len(quantities))
+        f"if {conditions(box, quantities)}\nthen {QUANTITY_NAMES[unit]} = {formula(tree, box.leaf, quantities, unit)}"
+        for box in leaf_boxes(tree.splits, len(quantities))
     ]
 
 
@@ -55,11 +55,11 @@ def success_rules(splits: SplitTree, success: NDArray[np.float32], quantities: S
     """One rule a leaf: "if ... then success in p %"."""
     return [
         f"if {conditions(box, quantities)}\nthen success in {100 * success[box.leaf]:.0f} %"
-        for box in bounds(splits, len(quantities))
+        for box in leaf_boxes(splits, len(quantities))
     ]
 
 
-def conditions(box: Bounds, quantities: Sequence[Quantity]) -> str:
+def conditions(box: LeafBox, quantities: Sequence[Quantity]) -> str:
     """The conditions of a leaf, angles in degrees."""
     said = []
     for quantity, low, high in zip(quantities, box.lower, box.upper, strict=True):
@@ -82,7 +82,7 @@ def formula(tree: LinearTree | TreeBoxes, leaf: int, quantities: Sequence[Quanti
             sign = "-" if shown < 0 else "+"
             terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
     start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
-    spread = "" if tree.spread is None else f", ± {tree.spread[leaf]:.2f} {of}"
+    spread = "" if tree.std is None else f", ± {tree.std[leaf]:.2f} {of}"
     return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{spread}]"
 
 

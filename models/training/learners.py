@@ -38,7 +38,7 @@ def _svm(seed: int) -> Any:
     return make_pipeline(StandardScaler(), machine)
 
 
-DURATION: Mapping[str, Callable[[int], Any]] = {
+DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "bag": lambda seed: BaggedModelTrees(random_state=seed),
     "robust": lambda seed: BaggedModelTrees(random_state=seed, **ROBUST),
     "distilled": lambda seed: DistilledModelTree(random_state=seed),
@@ -47,7 +47,7 @@ DURATION: Mapping[str, Callable[[int], Any]] = {
     "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
     "network": lambda seed: SklearnRegressor(_network(MLPRegressor, seed)),
 }
-SUCCESS: Mapping[str, Callable[[int], Any]] = {
+SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "taught": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
     "distilled": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
@@ -58,13 +58,13 @@ SUCCESS: Mapping[str, Callable[[int], Any]] = {
 }
 
 
-def make(kind: str, name: str, seed: int) -> Any:
+def make_learner(kind: str, name: str, seed: int) -> Any:
     """A fresh learner; energy is learned as durations are.
 
     Raises:
       UsageError: No learner of that name for that kind.
     """
-    table = SUCCESS if kind == "success" else DURATION
+    table = SUCCESS_LEARNERS if kind == "success" else DURATION_LEARNERS
     if name not in table:
         raise UsageError(f"learner '{name}' is unknown for {kind} (expected one of: {', '.join(table)})")
     return table[name](seed)

@@ -32,7 +32,7 @@ class SklearnRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         """Seconds, shape (n,), within what training saw."""
         return np.clip(self.inner_.predict(X), self.low_, self.high_)
 
-    def predict_spread(self, X: Any) -> tuple[Array, Array]:
+    def predict_with_std(self, X: Any) -> tuple[Array, Array]:
         """Seconds and the constant spread, shapes (n,)."""
         return self.predict(X), np.full(len(X), self.spread_)
 

@@ -36,11 +36,11 @@ class Trained:
 
 
 def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
-    """Learn how long an action takes; see `train_amount`."""
-    return train_amount(DURATION, episodes, space, learner, seed)
+    """Learn how long an action takes; see `train_regression`."""
+    return train_regression(DURATION, episodes, space, learner, seed)
 
 
-def train_amount(
+def train_regression(
     amount: RegressionTarget, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
 ) -> Trained:
     """Learn how long an action takes, or how much energy.
@@ -57,7 +57,7 @@ def train_amount(
     rows = amount.examples(finished, n_i)
     first = amount.examples(finished, 1).of(apart)
     twin = fit(amount.kind, learner, rows.of(kept), space, seed)
-    mean, spread = twin.predict_spread(space(first.arguments))
+    mean, spread = twin.predict_with_std(space(first.arguments))
     errors = first.targets - mean
     mae, ci = scores.mean_with_ci(np.abs(errors), rng)
     chosen = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
@@ -109,7 +109,7 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
 
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
     """A learner of that name, fitted to examples in a feature space."""
-    learner = learners.make(kind, name, seed)
+    learner = learners.make_learner(kind, name, seed)
     targets = rows.targets if kind != "success" else rows.targets.astype(np.int64)
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 

@@ -35,7 +35,7 @@ def distil(teacher: Callable[[Floats], Answers], features: Floats) -> LinearTree
     leaf = tree.splits.leaf_of(features)
     rows = np.bincount(leaf, minlength=tree.leaves)
     uncertain = np.bincount(leaf, spread, tree.leaves) / np.maximum(rows, 1)
-    return tree.with_spread(uncertain.astype(np.float32))
+    return tree.with_std(uncertain.astype(np.float32))
 
 
 class DistilledModelTree(ModelTreeRegressor):
@@ -61,5 +61,5 @@ class DistilledModelTree(ModelTreeRegressor):
         settings = (self.max_leaves, self.min_rows, self.smoothing, self.ridge, self.bins, self.clip)
         bag = BaggedModelTrees(self.trees, *settings, self.random_state).fit(X, y, groups)
         asked = between(features, min(ROWS, ROWS_EACH * len(features)), np.random.default_rng(self.random_state or 0))
-        self.tree_ = distil(bag.predict_spread, np.concatenate([features, asked]))
+        self.tree_ = distil(bag.predict_with_std, np.concatenate([features, asked]))
         return self

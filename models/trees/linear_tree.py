@@ -25,7 +25,7 @@ class LinearTree:
     intercept: Floats  # (l,) seconds
     low: Floats  # (l,) seconds: nothing shorter was seen in this leaf
     high: Floats  # (l,) seconds
-    spread: Floats  # (l,) seconds: standard deviation of what was seen around the formula
+    std: Floats  # (l,) seconds: standard deviation of what was seen around the formula
     rows: Ints  # (l,) examples that the leaf was fitted to
 
     @classmethod
@@ -35,9 +35,9 @@ class LinearTree:
         numbers = (np.asarray(column, np.float32) for column in rest)
         return cls(SplitTree.of(nodes), np.asarray(slopes, np.float32), *numbers, np.asarray(rows))
 
-    def with_spread(self, spread: Floats) -> LinearTree:
+    def with_std(self, spread: Floats) -> LinearTree:
         """The same tree with other spreads, (l,)."""
-        return replace(self, spread=spread)
+        return replace(self, std=spread)
 
     @property
     def leaves(self) -> int:

@@ -96,12 +96,12 @@ class ModelTreeRegressor(_TreeRegressor):
 
     def predict(self, X: Any) -> NDArray[np.float32]:
         """Seconds, shape (n,)."""
-        return self.predict_spread(X)[0]
+        return self.predict_with_std(X)[0]
 
-    def predict_spread(self, X: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    def predict_with_std(self, X: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Seconds and the standard deviation seen in the leaf, shapes (n,)."""
         features = self._features(X)
-        return self.tree_.predict(features), self.tree_.spread[self.tree_.splits.leaf_of(features)]
+        return self.tree_.predict(features), self.tree_.std[self.tree_.splits.leaf_of(features)]
 
     @property
     def trees_(self) -> list[LinearTree]:
@@ -148,9 +148,9 @@ class BaggedModelTrees(_TreeRegressor):
 
     def predict(self, X: Any) -> NDArray[np.float32]:
         """Seconds, shape (n,)."""
-        return self.predict_spread(X)[0]
+        return self.predict_with_std(X)[0]
 
-    def predict_spread(self, X: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    def predict_with_std(self, X: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Seconds and the trees' standard deviation, shapes (n,)."""
         features = self._features(X)
         each = np.stack([tree.predict(features) for tree in self.trees_], axis=1)

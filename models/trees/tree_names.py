@@ -9,4 +9,4 @@ LEAF = "leaf_of_cell"  # (cells,)
 FORMULAS = "formulas"  # (l, f + 1) of one tree: slopes and intercept of each leaf
 TERM = "term_{}"  # (k, m) of k trees of at most m leaves: one for each column of their formulas
 LOW, HIGH = "low", "high"  # (k, m), ends of what a leaf says
-SPREAD = "spread"  # (1, l) of one tree
+LEAF_STD = "spread"  # (1, l) of one tree

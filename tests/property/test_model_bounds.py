@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.models.bounds.bag_bounds import least_of_bag
+from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.leaf_bounds import LeafBounds, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.cards.card import card_path
@@ -70,8 +70,8 @@ def test_model_says_nothing_outside_its_bounds(space, seed, trees):
     mean, std = model.predict(drawn(lower, upper, rng, 200))
     ends = tuple(tuple(np.full(SHAPE, value) for value in side) for side in (lower, upper))
     k_std = float(rng.choice([0.0, 0.5, 1.0, 3.0]))
-    assert model.bounds.least(*ends, k_std).item() <= (mean + k_std * std).min()
-    assert model.bounds.most(*ends).item() >= mean.max()
+    assert model.bounds.lower_bound(*ends, k_std).item() <= (mean + k_std * std).min()
+    assert model.bounds.upper_bound(*ends).item() >= mean.max()
 
 
 @settings(max_examples=60, deadline=None)
@@ -85,7 +85,7 @@ def test_bounds_of_a_point_are_nearly_what_the_model_says(seed):
     mean, _ = model.predict(at[None])
     near = drawn(at - 1e-5, at + 1e-5, rng, 400)
     alike = np.ptp(model.predict(near)[0]) < 1e-3  # no threshold so near that rounding could tell
-    assert not alike or model.bounds.least(columns, columns).item() == pytest.approx(mean[0], abs=1e-3)
+    assert not alike or model.bounds.lower_bound(columns, columns).item() == pytest.approx(mean[0], abs=1e-3)
 
 
 def test_several_boxes_are_bounded_as_each_alone():
@@ -97,7 +97,7 @@ def test_several_boxes_are_bounded_as_each_alone():
         (*(before[k][None, :, None, j] for j in range(4)), *(own[k][None, None, :, j] for j in range(4)))
         for k in range(2)
     ]
-    together = model.bounds.least(ends[0], ends[1], 1.0)
+    together = model.bounds.lower_bound(ends[0], ends[1], 1.0)
     assert together.shape == (1, 4, 5)
     for i in range(4):
         for j in range(5):
@@ -105,7 +105,7 @@ def test_several_boxes_are_bounded_as_each_alone():
                 (*(before[k][i, c].reshape(SHAPE) for c in range(4)), *(own[k][j, c].reshape(SHAPE) for c in range(4)))
                 for k in range(2)
             ]
-            assert model.bounds.least(one[0], one[1], 1.0).item() == pytest.approx(together[0, i, j], abs=1e-5)
+            assert model.bounds.lower_bound(one[0], one[1], 1.0).item() == pytest.approx(together[0, i, j], abs=1e-5)
 
 
 @pytest.mark.parametrize("path", LEARNED, ids=lambda path: "/".join(path.parts[-3:]))
@@ -141,7 +141,7 @@ def test_bag_between_two_values_says_no_less_than_its_bound_which_is_tight_where
     said = np.where(np.isnan(said), least + rng.random(said.shape) * (most - least), said)
     levels = np.clip(np.linspace(least.min(), most.max(), 2000), least, most)  # the optimum is of this kind
     cost = np.concatenate([one.mean(axis=0) + k_std * one.std(axis=0) for one in (said, levels)])
-    bound = least_of_bag(least, most, k_std).item()
+    bound = bag_lower_bound(least, most, k_std).item()
     assert bound <= cost.min() + 1e-5
     assert bound > cost.min() - 0.1 or k_std >= 1
 
@@ -158,5 +158,5 @@ def test_bounds_within_a_part_are_those_of_the_whole_model_there(space, seed):
     )
     fewer = model.bounds.within(*whole)
     assert fewer.effort <= model.bounds.effort
-    assert fewer.least(*part, 1.0) == pytest.approx(model.bounds.least(*part, 1.0))
-    assert fewer.most(*part) == pytest.approx(model.bounds.most(*part))
+    assert fewer.lower_bound(*part, 1.0) == pytest.approx(model.bounds.lower_bound(*part, 1.0))
+    assert fewer.upper_bound(*part) == pytest.approx(model.bounds.upper_bound(*part))

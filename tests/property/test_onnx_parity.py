@@ -74,7 +74,7 @@ def test_durations_agree(learner, examples) -> None:
     learner.fit(projective(arguments), targets, groups=groups)
     rows = np.concatenate([awkward(), *(on_thresholds(tree.splits, awkward(1000)) for tree in learner.trees_)])
     mean, std = session(export_duration(learner, projective, {})).run(None, {"arguments": rows})
-    expected = learner.predict_spread(projective(rows))
+    expected = learner.predict_with_std(projective(rows))
     assert np.abs(mean - expected[0]).max() <= TOLERANCE
     assert np.abs(std - expected[1]).max() <= TOLERANCE
 
@@ -87,7 +87,7 @@ def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> 
     assert [node.op_type for node in model.graph.node].count("TreeEnsembleRegressor") == 3
     rows = awkward(10_000)
     mean, std = session(model).run(None, {"arguments": rows})
-    expected = bag.predict_spread(projective(rows))
+    expected = bag.predict_with_std(projective(rows))
     assert np.abs(mean - expected[0]).max() <= TOLERANCE
     assert np.abs(std - expected[1]).max() <= TOLERANCE
     boxes = tree_boxes(model.SerializeToString(), 5)

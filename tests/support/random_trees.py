@@ -55,7 +55,7 @@ class Trees:
         leaf = np.stack([np.argmax(part, axis=1) + at for at, part in self._parts(inside)], axis=1)
         said = (features[:, None] * boxes.slopes[leaf]).sum(axis=2) + boxes.intercept[leaf]
         said = np.clip(said, boxes.low[leaf], boxes.high[leaf]).astype(float)
-        std = said.std(axis=1) if boxes.spread is None else boxes.spread[leaf[:, 0]].astype(float)
+        std = said.std(axis=1) if boxes.std is None else boxes.std[leaf[:, 0]].astype(float)
         return said.mean(axis=1), std
 
     def probability(self, arguments: Array) -> Array:

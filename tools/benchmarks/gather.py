@@ -10,7 +10,7 @@ from rich.table import Table
 
 from tailor.executive import domains
 from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import actions
+from tailor.tools.learning.run_gathering import modelled_actions
 
 
 def run(console: Console, quick: bool) -> None:
@@ -18,11 +18,11 @@ def run(console: Console, quick: bool) -> None:
     table = Table("action", "episodes", "mean duration", "times real time per core", title="gathering, one process")
     for name in domains.DOMAINS:
         robot = domains.load(name).robot
-        for action in actions(name):
+        for action in modelled_actions(name):
             with tempfile.TemporaryDirectory() as folder:
-                work = gathering.Work(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
-                gathering.prepare(work, resume=False)
-                parts = [gathering.run_part(work, first) for first in gathering.missing_parts(work)]
+                spec = gathering.DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
+                gathering.prepare(spec, resume=False)
+                parts = [gathering.run_part(spec, first) for first in gathering.missing_parts(spec)]
             count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))
             table.add_row(f"{robot}/{action}", str(count), f"{simulated / count:.1f} s", f"{simulated / wall:.0f}")
     console.print(table)

@@ -20,7 +20,7 @@ from tailor.models.trees.model_tree import BaggedModelTrees
 
 ROWS = (1, 50, 250, 1000)
 ALONE: Mapping[str, Callable[[], Any]] = {
-    "one tree": lambda: learners.make("duration", "linear", 1),
+    "one tree": lambda: learners.make_learner("duration", "linear", 1),
     "bag of 16": lambda: BaggedModelTrees(trees=16, random_state=1),
 }
 EPISODES, TICKS = 3000, 20  # the fit that learning.md sets a limit for: 5 s
@@ -77,5 +77,5 @@ def _alone(make: Callable[[], Any]) -> tuple[Callable[[Any], Any], int]:
 def _fit_seconds() -> float:
     features, seconds, groups = _examples(EPISODES * TICKS)
     started = time.process_time()
-    learners.make("duration", "linear", 1).fit(features, seconds, groups=groups)
+    learners.make_learner("duration", "linear", 1).fit(features, seconds, groups=groups)
     return time.process_time() - started

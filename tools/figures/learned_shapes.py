@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tailor.models.cards.card import UNITS
 from tailor.models.rules.model_queries import distilled_duration, space_of
-from tailor.models.rules.rules import NAMES, bounds, conditions, formula
+from tailor.models.rules.rules import QUANTITY_NAMES, conditions, formula, leaf_boxes
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.tools.figures.learned_regions import Region, swept
 
@@ -36,16 +36,19 @@ def figure7(figure: Any, model: OnnxDuration, region: Region) -> None:
     left.plot(degrees, mean, label="model")
     left.plot(degrees, rules, lw=1, ls="--", color="tab:orange", label="its rules")
     left.plot(degrees, np.where(leaf == widest, rules, np.nan), lw=3, color="tab:orange", label="rule below")
-    left.set(xlabel=f"{region.swept} [°]", ylabel=f"{NAMES[unit]} [{unit}]", xticks=range(-180, 181, 60))
+    left.set(xlabel=f"{region.swept} [°]", ylabel=f"{QUANTITY_NAMES[unit]} [{unit}]", xticks=range(-180, 181, 60))
     left.set_title(region.fixed, fontsize="medium")
     left.legend(fontsize="small")
     polar = figure.add_subplot(1, 2, 2, projection="polar")
     polar.plot(angle, mean)
     polar.yaxis.set_major_locator(MaxNLocator(4))
     polar.set(ylim=(0, None), rlabel_position=112)
-    polar.set_title(f"the same, {NAMES[unit]} [{unit}] outwards", fontsize="medium")
-    box = next(box for box in bounds(tree.splits, len(space.features)) if box.leaf == widest)
-    said = f"if {conditions(box, space.features)}", f"{NAMES[unit]} = {formula(tree, widest, space.features, unit)}"
+    polar.set_title(f"the same, {QUANTITY_NAMES[unit]} [{unit}] outwards", fontsize="medium")
+    box = next(box for box in leaf_boxes(tree.splits, len(space.features)) if box.leaf == widest)
+    said = (
+        f"if {conditions(box, space.features)}",
+        f"{QUANTITY_NAMES[unit]} = {formula(tree, widest, space.features, unit)}",
+    )
     figure.supxlabel("\n".join(line for part in said for line in wrap(part, WIDEST)), fontsize=7)
 
 

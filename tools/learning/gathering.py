@@ -33,7 +33,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True, slots=True)
-class Work:
+class DataSetSpec:
     """One data set to make."""
 
     domain: str
@@ -63,31 +63,31 @@ def check_action(domain: str, action: str) -> None:
         raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
 
 
-def run_one(work: Work, domain: Domain, body: Any, number: int) -> Episode:
-    """Run one episode; the same work and number give the same bits."""
-    rng = work.rng(number)
-    arguments = action_run.sample_arguments(domain, work.action, rng)
-    run = action_run.run_action(body, domain, work.action, arguments, rng)
+def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episode:
+    """Run one episode; the same spec and number give the same bits."""
+    rng = spec.rng(number)
+    arguments = action_run.sample_arguments(domain, spec.action, rng)
+    run = action_run.run_action(body, domain, spec.action, arguments, rng)
     return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
 
 
-def run_part(work: Work, first: int) -> tuple[int, float, float]:
+def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
     """Make the part that starts with episode `first`; returns episodes, simulated and wall seconds."""
-    domain, started = domains.load(work.domain), time.perf_counter()
+    domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
-    made = [run_one(work, domain, body, number) for number in range(first, min(first + PART, work.episodes))]
-    write_part(part_path(work, first), made, argument_names(domain, work.action))
+    made = [run_one(spec, domain, body, number) for number in range(first, min(first + PART, spec.episodes))]
+    write_part(part_path(spec, first), made, argument_names(domain, spec.action))
     return len(made), sum(episode.duration_s for episode in made), time.perf_counter() - started
 
 
-def part_path(work: Work, first: int) -> Path:
+def part_path(spec: DataSetSpec, first: int) -> Path:
     """Where the part that starts with episode `first` lies: part-000020-000040.parquet holds 20 to 39."""
-    return work.folder / f"part-{first:06d}-{min(first + PART, work.episodes):06d}.parquet"
+    return spec.folder / f"part-{first:06d}-{min(first + PART, spec.episodes):06d}.parquet"
 
 
-def missing_parts(work: Work) -> list[int]:
+def missing_parts(spec: DataSetSpec) -> list[int]:
     """First episodes of the parts that are still to be made."""
-    return [first for first in range(0, work.episodes, PART) if not part_path(work, first).exists()]
+    return [first for first in range(0, spec.episodes, PART) if not part_path(spec, first).exists()]
 
 
 def argument_names(domain: Domain, action: str) -> list[str]:
@@ -95,20 +95,20 @@ def argument_names(domain: Domain, action: str) -> list[str]:
     return [parameter.name for parameter in domain.actions[action].parameters]
 
 
-def prepare(work: Work, resume: bool) -> None:
+def prepare(spec: DataSetSpec, resume: bool) -> None:
     """Make the folder with its manifest, or check that it is the one to go on with.
 
     Raises:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
     """
-    manifest = _manifest(work)
-    check_resumable(work.folder, manifest, resume)
-    work.folder.mkdir(parents=True, exist_ok=True)
-    expected = {part_path(work, first).name for first in range(0, work.episodes, PART)}
-    for path in (*work.folder.glob("*.tmp"), *work.folder.glob("part-*.parquet")):
+    manifest = _manifest(spec)
+    check_resumable(spec.folder, manifest, resume)
+    spec.folder.mkdir(parents=True, exist_ok=True)
+    expected = {part_path(spec, first).name for first in range(0, spec.episodes, PART)}
+    for path in (*spec.folder.glob("*.tmp"), *spec.folder.glob("part-*.parquet")):
         if path.name not in expected:
             path.unlink()  # half-written, or a last part that was shorter
-    write_manifest(work.folder, manifest)
+    write_manifest(spec.folder, manifest)
 
 
 def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> None:
@@ -132,18 +132,18 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
         )
 
 
-def _manifest(work: Work) -> dict[str, Any]:
-    domain = domains.load(work.domain)
+def _manifest(spec: DataSetSpec) -> dict[str, Any]:
+    domain = domains.load(spec.domain)
     return {
         "robot": domain.robot,
-        "domain": work.domain,
-        "action": work.action,
-        "arguments": argument_ranges(domain, work.action),
-        "episodes": work.episodes,
-        "seed": work.seed,
-        "stream": work.stream,
+        "domain": spec.domain,
+        "action": spec.action,
+        "arguments": argument_ranges(domain, spec.action),
+        "episodes": spec.episodes,
+        "seed": spec.seed,
+        "stream": spec.stream,
         "source": "lock-step, random arguments",
-        "source_sha256": source_hash(domain.robot, work.domain),
+        "source_sha256": source_hash(domain.robot, spec.domain),
         "on_policy": 0,
         "software": {name: version(name) for name in ("tailor", "mujoco", "numpy")},
     }
@@ -169,8 +169,8 @@ def source_hash(robot: str, domain: str) -> str:
     return digest.hexdigest()
 
 
-def gather(work: Work, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:
+def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:
     """Make parts in parallel, on whatever joblib backend is active; yields what `run_part` returns, as it comes."""
     from joblib import Parallel, delayed
 
-    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(run_part)(work, p) for p in parts)
+    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(run_part)(spec, p) for p in parts)

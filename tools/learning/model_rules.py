@@ -75,7 +75,7 @@ def _own(card: Card, boxes: TreeBoxes | None, tree: int, features: NDArray[np.fl
         )
     quantities, unit = space_of(card).features, UNITS.get(card["kind"], "")
     said = leaf_rules.rules_of(boxes, tree, quantities, unit)
-    return said, leaf_rules.answers_of(boxes, tree, features).astype(np.float64)
+    return said, leaf_rules.predictions_of(boxes, tree, features).astype(np.float64)
 
 
 def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], Array]:

@@ -66,7 +66,7 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
         "models_sha256": models_hash(domains.load(policy.domain).robot, policy.zoo),
     }
     about["episodes"] = policy.runs
-    prepare(policy.domain, policy.folder, actions(policy.domain), about, policy.jobs, resume)
+    prepare(policy.domain, policy.folder, modelled_actions(policy.domain), about, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 
@@ -108,7 +108,7 @@ def prepare(
         write_manifest(place, manifest)
 
 
-def actions(domain: str) -> list[str]:
+def modelled_actions(domain: str) -> list[str]:
     """Names of the data sets: the actions whose duration models the domain's actions name."""
     return sorted({action.duration_model.split("/")[0] for action in domains.load(domain).actions.values()})
 
@@ -116,7 +116,7 @@ def actions(domain: str) -> list[str]:
 def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode]]) -> None:
     """Write the episodes of some runs, each to its action's data set."""
     loaded = domains.load(domain)
-    for action in actions(domain):
+    for action in modelled_actions(domain):
         mine = [episode for name, episode in cut if name == action]
         if mine:
             names = gathering.argument_names(loaded, action)
@@ -141,7 +141,7 @@ def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path
         numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
         write(domain, folder, f"{number:06d}", numbered)
         number += len(one)
-    return {action: found[action] for action in actions(domain)}
+    return {action: found[action] for action in modelled_actions(domain)}
 
 
 def _messages(path: Path) -> Iterator[Message]:

@@ -61,11 +61,11 @@ class StageBound:
         """Seconds, shape (len(before), len(own)): no values in the two boxes cost less; +inf: all are INVALID."""
         arguments = self.spans(*self._parameters(before, own))
         settings = self.settings
-        cost = self.duration.least(*arguments, settings.k_std).mean(axis=0)
+        cost = self.duration.lower_bound(*arguments, settings.k_std).mean(axis=0)
         if self.energy is not None:
-            cost = cost + settings.energy_weight * self.energy.least(*arguments).mean(axis=0)
+            cost = cost + settings.energy_weight * self.energy.lower_bound(*arguments).mean(axis=0)
         if self.success is not None:
-            failure = np.maximum(1 - self.success.most(*arguments), 0.0)
+            failure = np.maximum(1 - self.success.upper_bound(*arguments), 0.0)
             cost = cost + settings.risk_cost_s * failure.mean(axis=0)
             cost = np.where(failure.max(axis=0) > self.stage.p_fail_max, np.inf, cost)
         return np.broadcast_to(cost, (len(before), len(own)))

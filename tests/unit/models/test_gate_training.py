@@ -16,7 +16,7 @@ from tailor.executive.refinement.gate import SITUATION
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models import runtime
 from tailor.models.cards.card import card_path, read_card, write_card
-from tailor.models.export.gate_publishing import GateProvenance, publish_gate, withdraw_gate
+from tailor.models.export.gate_publishing import GateProvenance, publish_gate, remove_gate
 from tailor.models.training.gate_training import Pairs, TrainedGate, train_gate
 from tailor.models.training.gate_trees import LEARNERS
 from tailor.schemas.errors import UsageError
@@ -193,9 +193,9 @@ def test_models_commands_know_the_tree(zoo: Path, capsys) -> None:
 
 
 def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
-    assert withdraw_gate(zoo, "agilo")
+    assert remove_gate(zoo, "agilo")
     assert load_models("agilo", str(zoo), gated=True).gate is None
-    assert not withdraw_gate(zoo, "agilo")
+    assert not remove_gate(zoo, "agilo")
 
 
 def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(zoo: Path) -> None:
@@ -218,7 +218,7 @@ def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_witho
     assert rebuild_context(without).models.gate is None
     del without["order"]["settings"]["refinement"]["gate"]  # recorded before there were trees
     assert rebuild_context(without).models.gate is None
-    withdraw_gate(zoo, "agilo")
+    remove_gate(zoo, "agilo")
     with pytest.raises(UsageError, match="refinement/benefit is missing"):
         rebuild_context(with_tree)
 

@@ -5,7 +5,7 @@ import pytest
 
 from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.features import SPACES, Quantity
-from tailor.models.rules.leaf_rules import applied
+from tailor.models.rules.leaf_rules import applied_rule
 from tailor.models.runtime import load_model
 
 QUANTITIES = (Quantity("dist", "m"), Quantity("angle_to", "rad"))
@@ -31,15 +31,15 @@ def boxes() -> TreeBoxes:
     ],
 )
 def test_the_rule_is_of_the_tree_that_says_nearest_to_the_mean(dist: float, said: str) -> None:
-    assert applied(boxes(), np.array([dist, 0.1], np.float32), QUANTITIES, "s").startswith(said)
+    assert applied_rule(boxes(), np.array([dist, 0.1], np.float32), QUANTITIES, "s").startswith(said)
 
 
 def test_what_is_not_a_number_meets_no_rule() -> None:
-    assert applied(boxes(), np.array([np.nan, 0.1], np.float32), QUANTITIES, "s") == ""
+    assert applied_rule(boxes(), np.array([np.nan, 0.1], np.float32), QUANTITIES, "s") == ""
 
 
 def test_a_shipped_model_has_a_rule_for_whatever_it_is_asked() -> None:
     model = load_model("agilo/goToPose/duration")
     space = SPACES[model.card["features"]]
     for row in space(np.array(model.card["golden"]["arguments"])):
-        assert applied(model.bounds.trees.boxes, row, space.features, "s").startswith("if ")
+        assert applied_rule(model.bounds.trees.boxes, row, space.features, "s").startswith("if ")

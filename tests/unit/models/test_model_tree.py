@@ -72,7 +72,7 @@ def test_one_noisy_episode_repeated_often_makes_no_leaves() -> None:
 def test_a_bag_is_less_sure_where_it_has_not_looked() -> None:
     x, y = two_planes(600, noise=0.3)
     bag = BaggedModelTrees(trees=8).fit(x, y)
-    spread = bag.predict_spread(two_planes(600, seed=3)[0])[1]
+    spread = bag.predict_with_std(two_planes(600, seed=3)[0])[1]
     edge = np.abs(two_planes(600, seed=3)[0][:, 0] - 0.3) < 0.05
     assert spread[edge].mean() > 2 * spread[~edge].mean()
 

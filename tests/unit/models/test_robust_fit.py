@@ -47,6 +47,6 @@ def test_the_robust_learner_errs_less_where_durations_have_a_long_tail() -> None
     x = rng.uniform(0, 4, (1600, 3))
     y = 1.0 + x[:, 0] + np.abs(x[:, 1] - 2) + np.where(rng.random(1600) < 0.1, rng.exponential(8.0, 1600), 0.0)
     plain = BaggedModelTrees(random_state=1).fit(x[:1200], y[:1200])
-    robust = learners.make("duration", "robust", 1).fit(x[:1200], y[:1200])
+    robust = learners.make_learner("duration", "robust", 1).fit(x[:1200], y[:1200])
     error = [np.abs(model.predict(x[1200:]) - y[1200:]).mean() for model in (plain, robust)]
     assert error[1] < 0.95 * error[0]

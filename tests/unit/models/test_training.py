@@ -11,7 +11,7 @@ from tailor.models.episodes.regression_targets import ENERGY
 from tailor.models.export.publishing import Publication, publish
 from tailor.models.export.zoo_writer import place
 from tailor.models.features import features
-from tailor.models.training.training import Trained, train_amount, train_duration, train_success
+from tailor.models.training.training import Trained, train_duration, train_regression, train_success
 from tailor.schemas.errors import UsageError
 from tests.support import standin
 
@@ -55,7 +55,7 @@ def test_a_published_duration_model_predicts_what_its_learner_does(data, duratio
     model = runtime.load_model(publish(tmp_path, data, duration, about))
     arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
     mean, std = model.predict(arguments)
-    expected = duration.learner.predict_spread(features.projective(arguments))
+    expected = duration.learner.predict_with_std(features.projective(arguments))
     assert np.abs(mean - expected[0]).max() <= 1e-4
     assert np.abs(std - expected[1]).max() <= 1e-4
     assert model.card["test"]["mae_s"] < 0.3 * model.card["test"]["mean_duration_s"]
@@ -82,7 +82,7 @@ def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
 def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
     ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
     told = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
-    trained = train_amount(ENERGY, told, features.projective, "linear", seed=3)
+    trained = train_regression(ENERGY, told, features.projective, "linear", seed=3)
     about = Publication("energy", "linear", features.projective, 3, "tailor train toy")
     publish(tmp_path, replace(data, episodes=told), trained, about)
     model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
@@ -91,7 +91,7 @@ def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path)
     arguments = np.stack([e.ticks[0] for e in told[:50]])
     assert np.abs(model.predict(arguments)[0] - trained.learner.predict(features.projective(arguments))).max() <= 1e-4
     with pytest.raises(UsageError, match="0 finished episodes, expected at least 40"):
-        train_amount(ENERGY, data.episodes, features.projective, "linear", seed=3)
+        train_regression(ENERGY, data.episodes, features.projective, "linear", seed=3)
 
 
 def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data) -> None:

@@ -26,7 +26,7 @@ class Advisor:
 
     probability: float
     sequences: frozenset[tuple[str, ...]] = frozenset({KIND})
-    asks: tuple[str, ...] = SITUATION
+    input_names: tuple[str, ...] = SITUATION
     threshold: float = 0.5
     heard: list[tuple[float, ...]] = dataclasses.field(default_factory=list)
 

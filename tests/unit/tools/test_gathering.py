@@ -11,7 +11,7 @@ import pytest
 from tailor.models.episodes.episodes import read_data_set
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, Work
+from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, DataSetSpec
 from tailor.tools.main import main
 from tests.support import far_backend
 
@@ -35,9 +35,9 @@ def parts(folder: Path) -> dict[str, bytes]:
 
 
 def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -> None:
-    work = Work("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
-    gathering.prepare(work, resume=False)
-    gathering.run_part(work, PART)  # the second part first, and then the process dies in the midst of the first
+    spec = DataSetSpec("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
+    gathering.prepare(spec, resume=False)
+    gathering.run_part(spec, PART)  # the second part first, and then the process dies in the midst of the first
     (tmp_path / "goToPose" / "part-000000-000020.1234.tmp").write_bytes(b"half a part")
     assert gather(tmp_path, "--resume") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
@@ -45,9 +45,9 @@ def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -
 
 
 def test_episodes_of_evaluation_are_never_those_of_training(gathered: Path) -> None:
-    work = Work("soccer", "goToPose", 8, 7, gathered)
-    evaluation = Work("soccer", "goToPose", 8, 7, gathered, stream=EVALUATION_STREAM)
-    assert not np.isclose(work.rng(0).uniform(size=4), evaluation.rng(0).uniform(size=4)).any()
+    spec = DataSetSpec("soccer", "goToPose", 8, 7, gathered)
+    evaluation = DataSetSpec("soccer", "goToPose", 8, 7, gathered, stream=EVALUATION_STREAM)
+    assert not np.isclose(spec.rng(0).uniform(size=4), evaluation.rng(0).uniform(size=4)).any()
 
 
 def test_a_data_set_holds_what_happened(gathered: Path) -> None:

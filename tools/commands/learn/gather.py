@@ -16,7 +16,7 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import Work
+from tailor.tools.learning.gathering import DataSetSpec
 
 if TYPE_CHECKING:
     from tailor.tools.learning.run_gathering import Policy
@@ -57,20 +57,20 @@ def run(arguments: argparse.Namespace) -> int:
     out = arguments.out or Path("data") / arguments.robot
     if arguments.recordings or arguments.on_policy:
         return _from_runs(arguments, name, out)
-    works = [
-        Work(name, action, arguments.episodes, arguments.seed, out / action)
+    specs = [
+        DataSetSpec(name, action, arguments.episodes, arguments.seed, out / action)
         for action in actions_of(name, arguments.actions)
     ]
-    for work in works:
-        gathering.prepare(work, arguments.resume)
+    for spec in specs:
+        gathering.prepare(spec, arguments.resume)
     figures = []
-    for work in works:
+    for spec in specs:
         try:
-            figures.append(_gather(work, arguments.jobs, quiet=arguments.json))
+            figures.append(_gather(spec, arguments.jobs, quiet=arguments.json))
         except KeyboardInterrupt:
-            left = sum(min(gathering.PART, work.episodes - first) for first in gathering.missing_parts(work))
+            left = sum(min(gathering.PART, spec.episodes - first) for first in gathering.missing_parts(spec))
             Console(stderr=True).print(
-                f"{work.folder}: kept {work.episodes - left} of {work.episodes}; --resume goes on"
+                f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume goes on"
             )
             return 130
     if arguments.json:
@@ -125,20 +125,20 @@ def actions_of(domain: str, asked: list[str]) -> list[str]:
     return list(dict.fromkeys(asked)) or sorted({action.duration_model.split("/")[0] for action in known.values()})
 
 
-def _gather(work: Work, jobs: int, quiet: bool) -> dict[str, object]:
-    parts, started = gathering.missing_parts(work), time.perf_counter()
-    left = sum(min(gathering.PART, work.episodes - first) for first in parts)
+def _gather(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
+    parts, started = gathering.missing_parts(spec), time.perf_counter()
+    left = sum(min(gathering.PART, spec.episodes - first) for first in parts)
     simulated = busy = 0.0
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
-        task = progress.add_task(work.action, total=work.episodes, completed=work.episodes - left, rate="")
-        for count, sim_s, wall_s in gathering.gather(work, parts, jobs):
+        task = progress.add_task(spec.action, total=spec.episodes, completed=spec.episodes - left, rate="")
+        for count, sim_s, wall_s in gathering.gather(spec, parts, jobs):
             simulated, busy = simulated + sim_s, busy + wall_s
             speed = simulated / busy if busy else 0.0
             progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")
     return {
-        "action": work.action,
-        "folder": str(work.folder),
+        "action": spec.action,
+        "folder": str(spec.folder),
         "episodes": left,
         "simulated_s": simulated,
         "wall_s": time.perf_counter() - started,

@@ -72,8 +72,8 @@ def _check_names(arguments: argparse.Namespace) -> None:
     from tailor.models.features.features import SPACES
     from tailor.models.training import learners
 
-    learners.make("duration", arguments.learner, arguments.seed)
-    learners.make("success", arguments.failure_learner, arguments.seed)
+    learners.make_learner("duration", arguments.learner, arguments.seed)
+    learners.make_learner("success", arguments.failure_learner, arguments.seed)
     for name in (arguments.features, arguments.energy_features):
         if name is not None and name not in SPACES:
             raise UsageError(f"no feature space '{name}' (expected one of: {', '.join(SPACES)})")
@@ -81,9 +81,9 @@ def _check_names(arguments: argparse.Namespace) -> None:
 
 def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
     """A benefit tree judges the choices of the models that it was learned with: these are gone now."""
-    from tailor.models.export.gate_publishing import withdraw_gate
+    from tailor.models.export.gate_publishing import remove_gate
 
-    if withdraw_gate(arguments.zoo, arguments.robot):
+    if remove_gate(arguments.zoo, arguments.robot):
         again = f"tailor train-gate {arguments.robot}"
         console.print(
             f"removed {arguments.robot}/refinement/benefit, learned with the models before; `{again}` makes it"
@@ -107,7 +107,7 @@ def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[s
     command = command_of(arguments, spaces, manifests)
     jobs = [("duration", arguments.learner, training.train_duration)]
     if sum(ENERGY.told(episode) and episode.finished for episode in data.episodes) >= training.LEAST:
-        jobs.append(("energy", arguments.learner, partial(training.train_amount, ENERGY)))
+        jobs.append(("energy", arguments.learner, partial(training.train_regression, ENERGY)))
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
     if failures >= RARE * len(data.episodes):
         jobs.append(("success", arguments.failure_learner, training.train_success))

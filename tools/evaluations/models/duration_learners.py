@@ -45,7 +45,7 @@ def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
     test = duration_examples([episode for episode in unseen if episode.finished], 1)
     space = SPACES["projective"]
     rows = []
-    for name in learners.DURATION:
+    for name in learners.DURATION_LEARNERS:
         started = time.perf_counter()
         model = fit("duration", name, train, space, arguments.seed)
         seconds = time.perf_counter() - started

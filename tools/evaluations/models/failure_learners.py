@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     space = SPACES["projective"]
     observed = test.targets > 0.5
     rows = []
-    for name in learners.SUCCESS:
+    for name in learners.SUCCESS_LEARNERS:
         model = fit("success", name, train, space, arguments.seed)
         rows.append(_row(name, model.predict_proba(space(test.arguments))[:, 1], model.threshold_, observed))
     if weka.installed():

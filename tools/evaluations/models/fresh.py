@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet, read_data_set
 from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, Work
+from tailor.tools.learning.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, DataSetSpec
 from tailor.tools.lockstep import action_run
 
 REPEATS = 8  # runs of the same task with other noise
@@ -28,9 +28,9 @@ def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: P
     gathering.check_action(domain, action)
     made_by = gathering.source_hash(robot, domain)[:12]  # other controllers, other episodes
     folder = store / "episodes" / f"{robot}-{action}-{made_by}-{stream}-{seed}-{count}"
-    work = Work(domain, action, count, seed, folder, stream)
-    gathering.prepare(work, resume=True)
-    for _ in gathering.gather(work, gathering.missing_parts(work), jobs):
+    spec = DataSetSpec(domain, action, count, seed, folder, stream)
+    gathering.prepare(spec, resume=True)
+    for _ in gathering.gather(spec, gathering.missing_parts(spec), jobs):
         pass
     return read_data_set(folder)
 

@@ -20,7 +20,7 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models.learned import configure_learned
 from tailor.tools.evaluations.report import Report, publish_report
 from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import Policy, actions, models_hash, run_policy
+from tailor.tools.learning.run_gathering import Policy, modelled_actions, models_hash, run_policy
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather both rounds, compare, tell; exit code 0."""
     domain = gathering.domain_of(arguments.robot)
     folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
-    rows = [row for action in actions(domain) for row in _rows(action, folders, arguments)]
+    rows = [row for action in modelled_actions(domain) for row in _rows(action, folders, arguments)]
     remarks = [
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
@@ -117,5 +117,5 @@ def _errors(model: Any, episodes: Sequence[Episode]) -> tuple[Any, Any]:
     """Predicted minus observed seconds, and the model's spread, at the first ticks."""
     space = SPACES["projective"]
     rows = duration_examples([e for e in episodes if e.finished], 1)
-    mean, spread = model.predict_spread(space(rows.arguments))
+    mean, spread = model.predict_with_std(space(rows.arguments))
     return mean - rows.targets, spread

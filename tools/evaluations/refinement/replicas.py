@@ -67,10 +67,10 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
 
 
 def _gather(recipe: Recipe, seed: int, folder: Path, jobs: int) -> None:
-    for action in run_gathering.actions(recipe.domain):
-        work = gathering.Work(recipe.domain, action, recipe.episodes, seed, folder / action)
-        gathering.prepare(work, resume=True)
-        _finish(gathering.gather(work, gathering.missing_parts(work), jobs), f"{action}, seed {seed}")
+    for action in run_gathering.modelled_actions(recipe.domain):
+        spec = gathering.DataSetSpec(recipe.domain, action, recipe.episodes, seed, folder / action)
+        gathering.prepare(spec, resume=True)
+        _finish(gathering.gather(spec, gathering.missing_parts(spec), jobs), f"{action}, seed {seed}")
 
 
 def _finish(running: Any, title: str) -> None:

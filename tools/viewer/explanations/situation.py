@@ -11,7 +11,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
 from tailor.models.cards.card import UNITS
 from tailor.models.features.features import SPACES, Quantity
-from tailor.models.rules.leaf_rules import applied
+from tailor.models.rules.leaf_rules import applied_rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,9 @@ def situations_of(
         if space is not None:
             both = np.array([_parameters(action, sequence) for sequence in (chosen, greedy)])
             seen = space(action.action.arguments(both))
-            rule = "" if bounds is None else applied(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
+            rule = (
+                "" if bounds is None else applied_rule(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
+            )
             chose, alone = (tuple(row.astype(float)) for row in seen)
             found.append(Situation(action.action.name, space.features, chose, alone, rule))
     return tuple(found)
