@@ -109,10 +109,10 @@ def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
 
 def made_up(seed: int, variant: str, greedy_s: float, refined_s: float, situation: np.ndarray) -> Outcome:
     duration_s = greedy_s if variant == "h1" else refined_s
-    told = (("goToPose", True, 2.0), (KIND[0], False, 3.0), (KIND[1], False, 5.0))
+    predicted = (("goToPose", True, 2.0), (KIND[0], False, 3.0), (KIND[1], False, 5.0))
     seen = tuple(situation) if variant == "h2" else ()
-    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (), predicted_actions=told,
-                   situation=seen)  # fmt: skip
+    return Outcome(seed, variant, True, duration_s, "achieved", (), (), (), (), False, 0.0, (), (),
+                   predicted_actions=predicted, situation=seen)  # fmt: skip
 
 
 def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes(tmp_path, monkeypatch, capsys) -> None:
