@@ -1,4 +1,4 @@
-# The project's commands. `make demo` and `make test` set everything up first.
+# The project's commands. Each sets everything up first.
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -10,7 +10,7 @@ setup: .venv/.installed
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
-	@$(BIN)/python -m compileall -q executive models runtime schemas simnodes tools  # or each start compiles them: 0.3 s
+	@$(BIN)/python -m compileall -q executive models runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
 	@touch $@
 
 demo: setup
@@ -25,12 +25,13 @@ test: setup
 test-all: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-goldens: setup  # tells what has changed in the golden recordings of tests/replay, and renews them
+goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew
 
 lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell .
 
 types: setup
 	$(BIN)/mypy

@@ -1,0 +1,142 @@
+"""The installed wheel holds one import name and works in a folder whose own modules have our folders' names.
+
+Nothing is downloaded: the fresh environment sees the third-party packages of the test environment through a .pth file.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import tailor
+from tailor.tools.launch.system import free_endpoint
+from tests.support.bus_system import ROOT
+
+LINKS = ("executive", "models", "runtime", "schemas", "simnodes", "tools")
+DATA_KINDS = {".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
+PDDL = ROOT / "tests" / "data" / "pddl" / "own"
+BUILD = "import sys; from setuptools import build_meta; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info")
+HOSTILE = 'raise SystemExit("a module of the working folder was imported")\n'
+
+pytestmark = pytest.mark.xdist_group("live")  # one worker: the wheel is built once, and live runs follow one another
+
+
+def built(kind, source, out):
+    """The file that one of setuptools' build functions makes of a source tree."""
+    done = subprocess.run([sys.executable, "-c", BUILD, kind, out], cwd=source, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return out / done.stdout.split()[-1]
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """A copy of the sources, so that the checkout gets no build folder."""
+    copy = tmp_path_factory.mktemp("source")
+    for name in (*LINKS, "src"):
+        shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=LEFT_OUT)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, copy)
+    return copy
+
+
+@pytest.fixture(scope="module")
+def wheel(source, tmp_path_factory):
+    """The wheel, as `pip install .` builds it."""
+    return built("build_wheel", source, tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory):
+    """The `tailor` command of a fresh environment that has the wheel."""
+    folder = tmp_path_factory.mktemp("environment")
+    venv.create(folder, with_pip=False)
+    python = folder / "bin" / "python"
+    install = ["install", "--quiet", "--no-deps", "--no-index", "--no-compile", "--disable-pip-version-check", wheel]
+    subprocess.run([sys.executable, "-m", "pip", "--python", python, *install], check=True)
+    [site] = folder.glob("lib/python*/site-packages")
+    others = [entry for entry in sys.path if entry.endswith(("site-packages", "dist-packages"))]
+    (site / "third_party.pth").write_text("".join(f"{entry}\n" for entry in others))
+    return folder / "bin" / "tailor"
+
+
+@pytest.fixture
+def hostile_folder(tmp_path):
+    """A foreign project: its modules have the names of our folders, of our package and of a library, and raise."""
+    for name in ("models.py", "runtime.py", "tailor.py", "numpy.py"):
+        (tmp_path / name).write_text(HOSTILE)
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "__init__.py").write_text(HOSTILE)
+    return tmp_path
+
+
+@pytest.fixture
+def run(installed, hostile_folder):
+    """Runs an installed command in the hostile folder and returns what it printed."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+
+    def run_command(*arguments):
+        command = [installed, *map(str, arguments)]
+        done = subprocess.run(command, cwd=hostile_folder, capture_output=True, text=True, timeout=120, env=environment)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    return run_command
+
+
+def test_the_wheel_has_one_top_level_name(wheel):
+    names = zipfile.ZipFile(wheel).namelist()
+    assert {name.split("/")[0] for name in names} == {"tailor", f"tailor-{tailor.__version__}.dist-info"}
+
+
+def test_the_wheel_holds_every_module_and_every_data_file(wheel):
+    names = set(zipfile.ZipFile(wheel).namelist())
+    files = [
+        p.relative_to(ROOT) for name in LINKS for p in (ROOT / name).rglob("*") if p.suffix in {".py", *DATA_KINDS}
+    ]
+    assert {f"tailor/{p.as_posix()}" for p in files} | {"tailor/__init__.py", "tailor/py.typed"} <= names
+
+
+def test_the_checkout_has_no_data_file_of_another_kind():
+    """A new kind needs a line in [tool.setuptools.package-data]."""
+    listed = subprocess.run(["git", "ls-files", *LINKS], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode != 0:
+        pytest.skip("not a git checkout")
+    assert {Path(name).suffix for name in listed.stdout.split()} <= {".py", *DATA_KINDS}
+
+
+def test_a_source_distribution_builds_the_same_wheel(source, wheel, tmp_path):
+    """The links of src/tailor are stored as the folders that they lead to."""
+    archive = built("build_sdist", source, tmp_path)
+    with tarfile.open(archive) as tar:
+        tar.extractall(tmp_path, filter="data")
+    again = built("build_wheel", tmp_path / archive.name.removesuffix(".tar.gz"), tmp_path)
+    assert sorted(zipfile.ZipFile(again).namelist()) == sorted(zipfile.ZipFile(wheel).namelist())
+
+
+def test_the_command_imports_the_installed_package(installed):
+    python = installed.with_name("python")
+    code = "import tailor; print(tailor.__file__)"
+    printed = subprocess.run([python, "-P", "-c", code], capture_output=True, text=True, check=True, env={}).stdout
+    assert Path(printed.strip()).is_relative_to(installed.parents[1])
+
+
+def test_version_is_printed(run):
+    assert run("--version") == f"tailor {tailor.__version__}\n"
+
+
+def test_plan_finds_a_plan(run):
+    assert run("plan", PDDL / "kitchen-domain.pddl", PDDL / "kitchen-s1.pddl")
+
+
+def test_a_system_starts_records_verifies_and_is_drawn(run, hostile_folder):
+    run("up", "arm", "--scenario", "letter-I", "--once", "--record", "run.mcap", "--connect", free_endpoint())
+    run("verify", "run.mcap")
+    run("view", "run.mcap", "-o", "run.html")
+    assert "<html" in (hostile_folder / "run.html").read_text()

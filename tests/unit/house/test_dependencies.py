@@ -1,0 +1,67 @@
+"""Every imported package is declared, explained and pinned."""
+
+import re
+import sys
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+from tests.unit.house.arrows import MODULES, ROOT, imported_names
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+TEST_MODULES = [
+    p.relative_to(ROOT).as_posix() for folder in ("tests", "examples") for p in (ROOT / folder).rglob("*.py")
+]
+OURS = {"tailor", "tests"}
+DISTRIBUTIONS = packages_distributions()
+
+
+def canonical(name: str) -> str:
+    """Name of a distribution as PEP 503 compares it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def declared(requirements: list[str]) -> set[str]:
+    return {canonical(re.split(r"[<>=!~ ;\[]", requirement)[0]) for requirement in requirements}
+
+
+RUN = declared(PROJECT["dependencies"])
+TEST = declared(PROJECT["optional-dependencies"]["test"])
+PINNED = declared((ROOT / "constraints.txt").read_text().split())
+OPTIONAL = {"cma"}  # `tailor bench refine` leaves CMA-ES out where it is not installed
+
+
+def imported_distributions(paths: list[str]) -> dict[str, str]:
+    """Distribution -> one of the files that import it, without ours and the standard library."""
+    found: dict[str, str] = {}
+    for path in paths:
+        for name in {name.split(".")[0] for name in imported_names(path)} - OURS - set(sys.stdlib_module_names):
+            known = {canonical(name)} & (RUN | TEST)  # a meta-package declares what another distribution contains
+            found[known.pop() if known else canonical(DISTRIBUTIONS.get(name, [name])[0])] = path
+    return found
+
+
+def test_every_package_that_the_code_imports_is_a_dependency() -> None:
+    imported = imported_distributions(sorted(MODULES))
+    assert {name: path for name, path in imported.items() if name not in RUN | OPTIONAL} == {}
+
+
+def test_every_dependency_is_imported() -> None:
+    assert RUN - imported_distributions(sorted(MODULES)).keys() == set()
+
+
+def test_every_package_that_the_tests_import_is_declared() -> None:
+    imported = imported_distributions(TEST_MODULES)
+    assert {name: path for name, path in imported.items() if name not in RUN | TEST} == {}
+
+
+@pytest.mark.parametrize("name", sorted(RUN | TEST))
+def test_a_dependency_is_pinned_and_explained(name: str) -> None:
+    assert name in PINNED
+    page = (Path(ROOT) / "docs" / "dependencies.md").read_text()
+    first_cells = {
+        canonical(cell) for row in re.findall(r"^\| ([^|]+) \|", page, re.MULTILINE) for cell in row.split(", ")
+    }
+    assert name in first_cells
