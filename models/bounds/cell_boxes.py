@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.bounds.onnx_wire import Contents
+from tailor.models.bounds.onnx_reader import Contents
 from tailor.models.trees import tree_names
 
 Floats = NDArray[np.float32]

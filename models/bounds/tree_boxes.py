@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.cell_boxes import boxes_of_cells
-from tailor.models.bounds.onnx_wire import Contents, Node, read_graph
+from tailor.models.bounds.onnx_reader import Contents, Node, read_graph
 from tailor.models.trees import tree_names
 
 Floats = NDArray[np.float32]

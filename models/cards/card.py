@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from tailor.models.cards.shape import card_error
+from tailor.models.cards.card_shape import card_error
 from tailor.schemas.errors import UsageError
 
 FORMAT = 1

@@ -17,7 +17,7 @@ from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
-from tailor.models.trees.distilling import DistilledModelTree
+from tailor.models.trees.distillation import DistilledModelTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 
 TYPES = {"f4": TensorProto.FLOAT, "u2": TensorProto.UINT16, "i4": TensorProto.INT32, "i8": TensorProto.INT64}

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingClassifier
 from sklearn.tree import DecisionTreeRegressor
 
-from tailor.models.episodes.episode_rows import resampled
+from tailor.models.episodes.episode_groups import resampled
 from tailor.models.failure.failure_tree import FailureModel
-from tailor.models.trees.grown_tree import means_of, splits_of
+from tailor.models.trees.sklearn_trees import means_of, splits_of
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from sklearn.tree import DecisionTreeRegressor
 
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureModel
-from tailor.models.trees.distilling import between
-from tailor.models.trees.grown_tree import means_of, splits_of
+from tailor.models.trees.distillation import between
+from tailor.models.trees.sklearn_trees import means_of, splits_of
 
 ROWS = 40_000  # asked of the forest, at most
 ROWS_EACH = 40  # for each row of the examples

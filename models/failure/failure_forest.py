@@ -7,9 +7,9 @@ from typing import Any, Self
 import numpy as np
 from sklearn.tree import DecisionTreeClassifier
 
-from tailor.models.episodes.episode_rows import resampled
+from tailor.models.episodes.episode_groups import resampled
 from tailor.models.failure.failure_tree import FailureModel
-from tailor.models.trees.grown_tree import shares_of, splits_of
+from tailor.models.trees.sklearn_trees import shares_of, splits_of
 
 
 class FailureForest(FailureModel):

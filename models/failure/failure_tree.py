@@ -12,8 +12,8 @@ from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from tailor.models.episodes.episode_rows import held_out, numbered
-from tailor.models.trees.grown_tree import Step, splits_of
+from tailor.models.episodes.episode_groups import held_out, numbered
+from tailor.models.trees.sklearn_trees import Step, splits_of
 from tailor.models.trees.split_tree import SplitTree
 
 Ints = NDArray[np.int64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.features import Quantity
-from tailor.models.rules.rules import QUANTITY_NAMES, LeafBox, conditions, formula
+from tailor.models.rules.rule_text import QUANTITY_NAMES, LeafBox, conditions, formula
 from tailor.schemas.errors import UsageError
 
 Floats = NDArray[np.float32]

@@ -9,9 +9,9 @@ from sklearn.tree import DecisionTreeRegressor
 from tailor.models.cards.card import Card
 from tailor.models.features.features import SPACES, FeatureSpace
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
-from tailor.models.trees.distilling import distil
-from tailor.models.trees.grown_tree import means_of, splits_of
+from tailor.models.trees.distillation import distil
 from tailor.models.trees.linear_tree import LinearTree
+from tailor.models.trees.sklearn_trees import means_of, splits_of
 from tailor.models.trees.split_tree import SplitTree
 
 Array = NDArray[np.float64]

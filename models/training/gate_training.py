@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.features.features import FeatureSpace, Quantity
-from tailor.models.rules.rules import success_rules
+from tailor.models.rules.rule_text import success_rules
 from tailor.models.training.gate_trees import LEARNERS, RiskTrees, grow_tree
 from tailor.schemas.errors import UsageError
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.tree import DecisionTreeClassifier
 
-from tailor.models.trees.grown_tree import Step, shares_of, splits_of
+from tailor.models.trees.sklearn_trees import Step, shares_of, splits_of
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -17,7 +17,7 @@ from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
-from tailor.models.trees.distilling import DistilledModelTree
+from tailor.models.trees.distillation import DistilledModelTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 from tailor.schemas.errors import UsageError
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.robust_fit import refit
 from tailor.models.trees.scaling import Scale
+from tailor.models.trees.tree_conversion import Source, write_down
 from tailor.models.trees.tree_induction import Examples, Growth, Node, grow, quantile_bins
-from tailor.models.trees.tree_writing import Source, write_down
 
 Array = NDArray[np.float64]
 

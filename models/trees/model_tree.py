@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from tailor.models.episodes.episode_rows import held_out, numbered, resampled
+from tailor.models.episodes.episode_groups import held_out, numbered, resampled
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.linear_variant import TreeSettings, fit_linear
 from tailor.models.trees.m5_variant import fit_m5

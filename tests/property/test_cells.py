@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tailor.models.bounds.cell_boxes import boxes_of_cells
-from tailor.models.bounds.onnx_wire import read_graph
+from tailor.models.bounds.onnx_reader import read_graph
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.features import projective
 from tailor.models.trees.cells import CELLS_MAX, cells_of

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tailor.models.cards.card import UNITS
 from tailor.models.rules.model_queries import distilled_duration, space_of
-from tailor.models.rules.rules import QUANTITY_NAMES, conditions, formula, leaf_boxes
+from tailor.models.rules.rule_text import QUANTITY_NAMES, conditions, formula, leaf_boxes
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.tools.figures.learned_regions import Region, swept
 

@@ -14,7 +14,7 @@ from tailor.models.bounds.tree_boxes import TreeBoxes, tree_boxes
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.rules import leaf_rules
 from tailor.models.rules.model_queries import distilled_duration, distilled_success, random_arguments, space_of
-from tailor.models.rules.rules import duration_rules, success_rules
+from tailor.models.rules.rule_text import duration_rules, success_rules
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.schemas.errors import UsageError
 

@@ -8,7 +8,7 @@ import pytest
 
 from tailor.models import runtime
 from tailor.models.features.features import projective
-from tailor.models.rules.rules import duration_rules
+from tailor.models.rules.rule_text import duration_rules
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.tools.main import main
 
