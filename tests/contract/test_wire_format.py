@@ -1,5 +1,10 @@
-"""The bytes on the wire, pinned: what other nodes and old recordings rely on."""
+"""The bytes on the wire, pinned: other nodes and old recordings rely on them.
 
+After a deliberate change of a message, `python -m tests.contract.test_wire_format` writes the pinned values again.
+"""
+
+import json
+from pathlib import Path
 from typing import get_type_hints
 
 import pytest
@@ -7,7 +12,9 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
+from tests.support.filled import filled
 
+PINNED = Path(__file__).resolve().parents[1] / "data" / "messages.json"
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
 
 # A TwistStamped as CDR, field by field.
@@ -57,3 +64,25 @@ def test_a_types_name_leads_back_to_it(kind):
 
 def test_an_unknown_type_is_none_of_ours():
     assert type_of("sensor_msgs/msg/Image") is None
+
+
+def wire_format():
+    """Type hash and bytes of every message type, by ROS name."""
+    return {
+        ros_type(kind): {"hash": type_hash(kind), "example": encode(filled(kind)).hex()}
+        for kind in sorted(MESSAGES, key=ros_type)
+    }
+
+
+def test_type_hashes_and_bytes_of_all_messages_are_the_pinned_ones():
+    assert wire_format() == json.loads(PINNED.read_text())
+
+
+@pytest.mark.parametrize("kind", MESSAGES)
+def test_a_filled_message_is_read_back_from_its_bytes(kind):
+    message = filled(kind)
+    assert encode(decode(kind, encode(message))) == encode(message)
+
+
+if __name__ == "__main__":
+    PINNED.write_text(json.dumps(wire_format(), indent=1) + "\n")
