@@ -41,14 +41,15 @@ def encode(message: Message) -> bytes:
     return to_bytes(write(message), name)
 
 
-def decode(what: Topic | type, data: bytes) -> Message | Rejected:
+def decode(what: Topic | type[Message], data: bytes) -> Message | Rejected:
     """The message in CDR bytes that came over a topic (or of a type), or why it is refused.
 
     The number of different reasons is small, so that they can be counted: "too long", "malformed", "trailing bytes",
     "not finite", "number too large", "negative variance", "stamp out of range", "orientation is not a unit quaternion",
     "a joint lacks a value".
     """
-    kind, limit = (what.type, what.max_bytes) if isinstance(what, Topic) else (what, _LIMITS[what])
+    kind: type = what.type if isinstance(what, Topic) else what
+    limit = what.max_bytes if isinstance(what, Topic) else _LIMITS[what]
     if len(data) > limit:
         return Rejected("too long")
     _, read, name = _codec(kind)

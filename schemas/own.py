@@ -1,7 +1,7 @@
-"""Our own messages (`tailor_msgs`) as ROS values and back, by reflection over the dataclass.
+"""Converts messages of our own types (`tailor_msgs`) to ROS values and back, by reflection over the dataclass.
 
-Fields go by name and order; `stamp_ns` becomes a header. Tuples of numbers become numpy arrays, because rosbags
-writes only those.
+Fields keep name and order; `stamp_ns` becomes a header. Tuples of numbers become numpy arrays, because rosbags
+serializes only those.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import cache
-from typing import Any, get_args, get_type_hints
+from typing import Any
 
 import numpy as np
 
+from tailor.schemas.msg_definitions import element_type, field_types
 from tailor.schemas.numbers import check_array, check_numbers, check_variances
 from tailor.schemas.ros_time import header, stamp_ns
 from tailor.schemas.typesystem import ros_class, ros_type
 
 Convert = Callable[[Any], Any]
-FRAMES = {"BallPercept": "base_link", "SimTruth": "map"}
 
 
 def _same(value: Any) -> Any:
@@ -42,28 +42,28 @@ def _numbers(values: Any) -> tuple[float, ...]:
 
 
 def _field(name: str, hint: Any) -> tuple[Convert, Convert]:
-    """How one field is written and read, by its type hint."""
+    """Writer and reader of one field, by its type hint."""
     if hint is float:
         return float, _variance if name.startswith("var_") else _number
     if hint in {int, bool, str}:
         return _same, _same
-    item: Any = get_args(hint)[0]
-    if item is float:
+    element = element_type(hint)
+    if element is float:
         return lambda values: np.array(values, dtype=np.float64), _numbers
-    if item is int:
+    if element is int:
         return lambda values: np.array(values, dtype=np.int64), lambda values: tuple(values.tolist())
-    if item is str:
+    if element is str:
         return list, tuple
-    write, read = converters(item)
+    write, read = converters(element)
     return lambda parts: [write(part) for part in parts], lambda parts: tuple(read(part) for part in parts)
 
 
 @cache
 def converters(kind: Any) -> tuple[Convert, Convert]:
-    """Functions that turn a message of this own type into a ROS value and back; reading raises Refusal."""
-    hints = get_type_hints(kind)
+    """Functions that convert a message of this own type to a ROS value and back; reading raises Refusal."""
+    hints = field_types(kind)
     stamped = next(iter(hints)) == "stamp_ns"
-    frame = FRAMES.get(kind.__name__, "")
+    frame = getattr(kind, "FRAME_ID", "")
     rows = [(name, *_field(name, hint)) for name, hint in hints.items() if name != "stamp_ns"]
     target = ros_class(ros_type(kind))
 
@@ -79,12 +79,12 @@ def converters(kind: Any) -> tuple[Convert, Convert]:
 
 
 def example(kind: Any) -> Any:
-    """A legal message of any type, all zeros and empty strings, with one element in every nested sequence."""
-    return kind(*(_example_field(hint) for hint in get_type_hints(kind).values()))
+    """A legal message of any type: zeros, empty strings, and one element in every sequence of nested types."""
+    return kind(*(_example_field(hint) for hint in field_types(kind).values()))
 
 
 def _example_field(hint: Any) -> Any:
     if hint in {int, float, bool, str}:
         return hint()
-    item: Any = get_args(hint)[0]
-    return (example(item),) if is_dataclass(item) else ()
+    element = element_type(hint)
+    return (example(element),) if is_dataclass(element) else ()

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Literal
 
 from tailor.schemas import messages as m
+from tailor.schemas.messages import soccer
 
 Priority = Literal["real_time", "interactive_high", "data"]
 
@@ -19,7 +20,7 @@ class Topic:
     """One row of the table; `{robot}` in a key stands for the robot's name."""
 
     key: str
-    type: type
+    type: type[m.Message]
     rate_hz: float  # 0: on demand or on change
     source: Literal["driver", "executive", "people", "simulator"]
     fresh_s: float | None = None  # older than this is stale; None: never
@@ -34,7 +35,7 @@ TOPICS: dict[str, Topic] = {
     "cmd_vel": Topic("{robot}/cmd_vel", m.VelocityCommand, 10, "executive", priority="real_time"),
     "odom": Topic("{robot}/odom", m.Odometry, 50, "driver", STALE_S, "interactive_high"),
     "pose": Topic("{robot}/pose", m.PoseEstimate, 12.5, "driver", 1.0),
-    "ball": Topic("{robot}/ball", m.BallPercept, 12.5, "driver"),
+    "ball": Topic("{robot}/ball", soccer.BallPercept, 12.5, "driver"),
     "joint_cmd": Topic("{robot}/joint_cmd", m.JointCommand, 10, "executive", priority="real_time"),
     "joint_states": Topic("{robot}/joint_states", m.JointState, 50, "driver", STALE_S, "interactive_high"),
     "currents": Topic("{robot}/currents", m.MotorCurrents, 10, "driver"),
@@ -42,7 +43,7 @@ TOPICS: dict[str, Topic] = {
     "arm_request": Topic("{robot}/arm_request", m.ArmRequest, 0, "people", priority="interactive_high"),
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
     "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # a replay's
-    "truth": Topic("{robot}/sim/truth", m.SimTruth, 10, "simulator"),
+    "truth": Topic("{robot}/sim/truth", soccer.SoccerGroundTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),

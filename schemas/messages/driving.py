@@ -1,54 +1,61 @@
-"""What moves and stops a robot: commands, arming, the e-stop, and what its driver answers."""
+"""Commands, arming, the e-stop and the state of a driver."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
+
+from tailor.schemas.messages.message import Message
 
 
 @dataclass(frozen=True, slots=True)
-class VelocityCommand:
-    """geometry_msgs/TwistStamped: linear.x in m/s, angular.z in rad/s, base_link frame."""
+class VelocityCommand(Message):
+    """Velocity set-point in base_link; other components of the twist are written as zero."""
+
+    ROS_TYPE: ClassVar[str] = "geometry_msgs/msg/TwistStamped"
 
     stamp_ns: int
-    v: float
-    omega: float
+    v: float  # linear.x, m/s
+    omega: float  # angular.z, rad/s
 
 
 @dataclass(frozen=True, slots=True)
-class JointCommand:
-    """Velocity set-points of named joints, rad/s; the driver closes the current loop (paper Table 5)."""
+class JointCommand(Message):
+    """Velocity set-points of named joints; the driver closes the current loop (paper Table 5)."""
 
     stamp_ns: int
     names: tuple[str, ...] = ()
-    velocities: tuple[float, ...] = ()
+    velocities: tuple[float, ...] = ()  # rad/s
 
 
 @dataclass(frozen=True, slots=True)
-class EStop:
-    """std_msgs/Bool: true stops and latches every driver; it takes an ArmRequest with `reset` to leave."""
+class EStop(Message):
+    """True stops and latches every driver; only an ArmRequest with `reset` releases it."""
+
+    ROS_TYPE: ClassVar[str] = "std_msgs/msg/Bool"
 
     stop: bool
 
 
 @dataclass(frozen=True, slots=True)
-class ArmRequest:
-    """Arm or disarm a driver for one sender; `reset` also leaves a latched e-stop."""
+class ArmRequest(Message):
+    """Request to arm or disarm a driver for one sender of commands."""
 
     arm: bool
-    reset: bool
+    reset: bool  # also release a latched e-stop
     sender: str  # 32 hex digits; empty: the sender of this message
-    epoch: int  # the driver's epoch that is meant; 0: whichever
+    epoch: int  # epoch of the driver that is meant; 0: any
 
 
 @dataclass(frozen=True, slots=True)
-class DriverState:
-    """What a driver says of itself: mode (disarmed, armed, stopped, estopped), why, whom it obeys."""
+class DriverState(Message):
+    """State of a driver and of its guard."""
 
     stamp_ns: int
-    mode: str
-    reason: str
+    mode: str  # disarmed, armed, stopped, estopped
+    reason: str  # why it is in that mode
     epoch: int  # changes with every start of the driver
-    armed_sender: str  # 32 hex digits, empty while disarmed
+    armed_sender: str  # 32 hex digits, empty unless armed
     accepted: int  # commands since start
-    refused_reasons: tuple[str, ...] = ()
+    refused_reasons: tuple[str, ...] = ()  # parallel to refused_counts
     refused_counts: tuple[int, ...] = ()

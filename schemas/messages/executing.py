@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tailor.schemas.messages.message import Message
+
 
 @dataclass(frozen=True, slots=True)
-class ExecStatus:
+class ExecStatus(Message):
     """The executive's state at the end of a tick."""
 
     stamp_ns: int
@@ -25,7 +27,7 @@ class ExecStatus:
 
 
 @dataclass(frozen=True, slots=True)
-class ActionFinished:
+class ActionFinished(Message):
     """One action ended: how, and how long it took against what was predicted."""
 
     stamp_ns: int

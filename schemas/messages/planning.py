@@ -1,17 +1,19 @@
-"""How the executive comes by its plans, and what it asks and hears of an external planner."""
+"""Plans, and the exchange with an external planner."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tailor.schemas.messages.message import Message
+
 
 @dataclass(frozen=True, slots=True)
-class PlanReport:
-    """A plan in VHPOP's causal-link form, and how the executive came by it."""
+class PlanReport(Message):
+    """A plan in VHPOP's causal-link form, and its source."""
 
     stamp_ns: int
-    status: str  # solved unsolvable limit unsupported, failed (the external planner)
-    way: str  # "searched", "suffix", "improved" (found while the action before it ran), "external"
+    status: str  # solved, unsolvable, limit, unsupported, failed (the external planner)
+    way: str  # searched, suffix, improved (found during the action before it), external
     plan: str
     generated: int
     visited: int
@@ -19,21 +21,21 @@ class PlanReport:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanRequest:
-    """What the executive asks its external planner: PDDL of the domain, and of the problem from the facts of now."""
+class PlanRequest(Message):
+    """Request of the executive to its external planner."""
 
     stamp_ns: int
     id: int
-    domain: str
-    problem: str
+    domain: str  # PDDL
+    problem: str  # PDDL, from the current facts
 
 
 @dataclass(frozen=True, slots=True)
-class PlanAnswer:
-    """How the external planner ended, as it was handed to the executive's core: an input, recorded for replay."""
+class PlanAnswer(Message):
+    """Result of the external planner, as handed to the executive's core: an input, recorded for replay."""
 
     stamp_ns: int
     id: int  # of the request
-    outcome: str  # "answered", "crashed", "timeout", "flood", "missing"
-    output: str  # what it printed, if it answered: not believed yet
+    outcome: str  # answered, crashed, timeout, flood, missing
+    output: str  # of the planner, if it answered; parsed and validated before use
     reason: str

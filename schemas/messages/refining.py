@@ -1,13 +1,15 @@
-"""The actions that a plan became, and the search for the best values of their free parameters."""
+"""Instantiated actions of a plan, and the search for the values of their free parameters."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tailor.schemas.messages.message import Message
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """An instantiated action parameter; equal ids are one variable (paper 6.2.2)."""
+    """Parameter of an instantiated action; equal ids are one variable (paper 6.2.2)."""
 
     name: str
     id: int
@@ -21,19 +23,19 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class InstantiatedAction:
-    """An executable action with its parameters and what its model predicts for the chosen values."""
+    """Executable action with its parameters and the prediction of its model for the chosen values."""
 
     action: str
     step: int
     asserted: bool
     predicted_s: float
-    spread_s: float
+    spread_s: float  # standard deviation
     parameters: tuple[Parameter, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Subgoals:
-    """The action sequence that is being executed, with the chosen values of its free parameters."""
+class Subgoals(Message):
+    """Action sequence in execution, with the chosen values of its free parameters."""
 
     stamp_ns: int
     tick: int
@@ -42,8 +44,8 @@ class Subgoals:
 
 
 @dataclass(frozen=True, slots=True)
-class RefinementReport:
-    """The refinement's search: what greedy would have cost, the best so far, and what it took; -1 s is INVALID."""
+class RefinementReport(Message):
+    """State of the refinement's search; a duration of -1 s is INVALID."""
 
     stamp_ns: int
     tick: int
@@ -52,11 +54,11 @@ class RefinementReport:
     finished: bool
     evaluations: int
     checks: int
-    greedy_s: float
-    best_s: float
-    trace_evaluations: tuple[int, ...] = ()
+    greedy_s: float  # predicted duration of the greedy choice
+    best_s: float  # predicted duration of the best choice so far
+    trace_evaluations: tuple[int, ...] = ()  # parallel to trace_best_s
     trace_best_s: tuple[float, ...] = ()
-    situation: tuple[float, ...] = ()  # what a benefit tree sees of both choices; its card names the values
-    p_slowdown: float = -1.0  # the tree's risk that refining costs time, 0..1 (paper 6.3.2); -1: it was not asked
-    kept_greedy: bool = False  # the tree advised against refining
-    gap_pct: float = -1.0  # proven: best_s is at most so much above the models' optimum; -1: not certified
+    situation: tuple[float, ...] = ()  # inputs of the refinement gate; its card names the values
+    p_slowdown: float = -1.0  # predicted risk that refining costs time, 0..1 (paper 6.3.2); -1: no prediction
+    kept_greedy: bool = False  # the gate advised against refining
+    gap_pct: float = -1.0  # certified: best_s is at most this much above the models' optimum; -1: not certified

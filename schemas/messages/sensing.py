@@ -1,63 +1,60 @@
-"""What a robot says of itself and of what it sees."""
+"""Measurements of a robot's own state."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
+
+from tailor.schemas.messages.message import Message
 
 
 @dataclass(frozen=True, slots=True)
-class Odometry:
-    """nav_msgs/Odometry: dead-reckoned pose in odom frame (m, rad), velocity in base_link (m/s, rad/s)."""
+class Odometry(Message):
+    """Dead-reckoned pose in the odom frame, velocity in base_link."""
+
+    ROS_TYPE: ClassVar[str] = "nav_msgs/msg/Odometry"
 
     stamp_ns: int
-    x: float
-    y: float
-    phi: float
-    v: float
-    omega: float
+    x: float  # m
+    y: float  # m
+    phi: float  # rad
+    v: float  # m/s
+    omega: float  # rad/s
 
 
 @dataclass(frozen=True, slots=True)
-class PoseEstimate:
-    """geometry_msgs/PoseWithCovarianceStamped: absolute pose in the map frame, variances in m² and rad²."""
+class PoseEstimate(Message):
+    """Absolute pose in the map frame with variances."""
+
+    ROS_TYPE: ClassVar[str] = "geometry_msgs/msg/PoseWithCovarianceStamped"
 
     stamp_ns: int
-    x: float
-    y: float
-    phi: float
-    var_x: float
-    var_y: float
-    var_phi: float
+    x: float  # m
+    y: float  # m
+    phi: float  # rad
+    var_x: float  # m²
+    var_y: float  # m²
+    var_phi: float  # rad²
 
 
 @dataclass(frozen=True, slots=True)
-class JointState:
-    """sensor_msgs/JointState: rad, rad/s and N·m of each named joint; all tuples have one length."""
+class JointState(Message):
+    """State of named joints; all tuples have one length."""
 
-    stamp_ns: int
-    names: tuple[str, ...] = ()
-    positions: tuple[float, ...] = ()
-    velocities: tuple[float, ...] = ()
-    efforts: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class BallPercept:
-    """The ball as the camera sees it: position in base_link (m), covariance (m²), x ahead, y left."""
-
-    stamp_ns: int
-    x: float
-    y: float
-    var_x: float
-    var_y: float
-    cov_xy: float
-
-
-@dataclass(frozen=True, slots=True)
-class MotorCurrents:
-    """Motor currents in A since the last message of this kind: the one of now, and the largest magnitude."""
+    ROS_TYPE: ClassVar[str] = "sensor_msgs/msg/JointState"
 
     stamp_ns: int
     names: tuple[str, ...] = ()
-    amperes: tuple[float, ...] = ()
-    peak_amperes: tuple[float, ...] = ()
+    positions: tuple[float, ...] = ()  # rad
+    velocities: tuple[float, ...] = ()  # rad/s
+    efforts: tuple[float, ...] = ()  # N·m
+
+
+@dataclass(frozen=True, slots=True)
+class MotorCurrents(Message):
+    """Motor currents since the previous message of this type."""
+
+    stamp_ns: int
+    names: tuple[str, ...] = ()
+    amperes: tuple[float, ...] = ()  # present value
+    peak_amperes: tuple[float, ...] = ()  # largest magnitude

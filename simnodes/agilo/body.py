@@ -9,7 +9,7 @@ from dataclasses import asdict
 import mujoco
 import numpy as np
 
-from tailor.schemas.messages import SimTruth
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.simnodes.agilo import firmware as fw
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 from tailor.simnodes.agilo.scene import compile_scene
@@ -76,13 +76,13 @@ class AgiloBody:
                 readings += self._sense()
         return readings
 
-    def ground_truth(self) -> SimTruth:
+    def ground_truth(self) -> SoccerGroundTruth:
         """Pose and velocities of robot and ball, field frame."""
         x, y, phi = self._pose()
         vx, vy, _, _, _, omega, _, _, ball_vx, ball_vy = self._qvel[: BALL_V + 2].tolist()
         ball_x, ball_y = self._qpos[BALL : BALL + 2].tolist()
         v = vx * math.cos(phi) + vy * math.sin(phi)
-        return SimTruth(self._time_ns, x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy)
+        return SoccerGroundTruth(self._time_ns, x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy)
 
     def _drive(self) -> None:
         v, omega = self._firmware.tick()

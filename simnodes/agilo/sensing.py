@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.schemas.messages.soccer import BallPercept
 
 POSE_PERIOD_NS = 80_000_000
 POSE_PERIOD_S = POSE_PERIOD_NS * 1e-9

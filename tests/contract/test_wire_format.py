@@ -5,12 +5,12 @@ After a deliberate change of a message, `python -m tests.contract.test_wire_form
 
 import json
 from pathlib import Path
-from typing import get_type_hints
 
 import pytest
 
 from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
+from tailor.schemas.msg_definitions import field_types
 from tailor.schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
 from tests.support.filled import filled
 
@@ -52,7 +52,7 @@ def test_type_hashes_are_those_of_ros_2():
 def test_a_definition_has_the_fields_of_its_message_in_their_order(kind):
     own_part = definition(kind).split("=" * 80)[0]
     names = [line.split()[1] for line in own_part.splitlines() if line.strip()]
-    expected = ["header" if name == "stamp_ns" else name for name in get_type_hints(kind)]
+    expected = ["header" if name == "stamp_ns" else name for name in field_types(kind)]
     assert names == expected
 
 

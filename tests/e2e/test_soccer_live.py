@@ -17,7 +17,8 @@ import pytest
 from tailor.executive import domains
 from tailor.runtime.bus.session import open_client
 from tailor.runtime.processes.child import Child, tailor
-from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus, SimTruth, VelocityCommand
+from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus, VelocityCommand
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tests.support.bus_system import ROOT, answers, bus_system, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.stalls import StallMeter, repeat_on_stall
@@ -167,7 +168,7 @@ class Live:
         return lambda: getattr(self.look().get(DriverState), "mode", "") == mode
 
     def moves(self):
-        status, truth = self.look().get(ExecStatus), self.latest.get(SimTruth)
+        status, truth = self.look().get(ExecStatus), self.latest.get(SoccerGroundTruth)
         return status is not None and status.mode == "EXECUTING" and truth is not None and truth.v > 0.2
 
     def put_back(self):
@@ -241,8 +242,8 @@ def test_a_second_executive_on_the_same_bus_does_not_move_the_robot(live):
     assert live.latest[DriverState].armed_sender == armed
     first.kill()
     wait_until(live.driver("stopped"), "guard stops")
-    wait_until(lambda: abs(live.look()[SimTruth].v) < 0.02, "robot at rest")
+    wait_until(lambda: abs(live.look()[SoccerGroundTruth].v) < 0.02, "robot at rest")
     time.sleep(0.5)
     assert live.look()[DriverState].mode == "stopped", "the second one must not take over by itself"
-    assert abs(live.latest[SimTruth].v) < 0.02
+    assert abs(live.latest[SoccerGroundTruth].v) < 0.02
     second.kill()

@@ -9,6 +9,7 @@ from tailor.executive import domains
 from tailor.executive.domains.soccer import belief as soccer
 from tailor.schemas import messages as m
 from tailor.schemas.messages import Sample
+from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.numbers import MOST
 
 SOCCER = domains.load("soccer")
@@ -19,7 +20,7 @@ STAMP = st.integers(0, 2**62)
 READINGS = st.one_of(
     st.builds(m.Odometry, STAMP, ANY, ANY, ANGLE, ANY, ANY),
     st.builds(m.PoseEstimate, STAMP, ANY, ANY, ANGLE, VARIANCE, VARIANCE, VARIANCE),
-    st.builds(m.BallPercept, STAMP, ANY, ANY, VARIANCE, VARIANCE, ANY),
+    st.builds(BallPercept, STAMP, ANY, ANY, VARIANCE, VARIANCE, ANY),
 )
 
 

@@ -12,6 +12,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas import messages as m
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tests.support.synthetic_models import MODELS, approach_dribble
 
 PLAN = """;approach-dribble
@@ -159,7 +160,7 @@ def _tick(now, index, name, elapsed, predicted, pose, rng) -> Iterator[Published
     near = rng.normal(0, 0.02, 3)
     belief = (x + near[0], y + near[1], phi + near[2], v, 0.0, *carried)
     yield Published(now, "agilo/odom", m.Odometry(now, x, y, phi, v, 0.0))
-    yield Published(now, "agilo/sim/truth", m.SimTruth(now, x, y, phi, v, 0.0, *map(float, carried), 0.0, 0.0))
+    yield Published(now, "agilo/sim/truth", SoccerGroundTruth(now, x, y, phi, v, 0.0, *map(float, carried), 0.0, 0.0))
     yield Published(now, "agilo/cmd_vel", m.VelocityCommand(now, v, 0.1))
     yield Published(
         now, "exec/status", status(now, "EXECUTING", "", name, index, elapsed, predicted, map(float, belief))

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.schemas.messages import RefinementReport, SimTruth, Subgoals
+from tailor.schemas.messages import RefinementReport, Subgoals
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.run import Run
 
 FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
@@ -132,5 +133,5 @@ def _ball_moved_m(episode: Run) -> float:
     return max((_apart_m(first, truth) for truth in later if truth.stamp_ns <= ended_ns[0]), default=0.0)
 
 
-def _apart_m(first: SimTruth, second: SimTruth) -> float:
+def _apart_m(first: SoccerGroundTruth, second: SoccerGroundTruth) -> float:
     return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)

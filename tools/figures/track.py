@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals, TickReport
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +67,12 @@ def track_of(title: str, messages: Iterable[Message]) -> Track:
             track.ticks += 1
             track.late_ticks += message.lateness_ns > LATE_NS
             track.missed_ticks += message.skipped
-        elif isinstance(message, SimTruth) and status is not None and status.action:
+        elif isinstance(message, SoccerGroundTruth) and status is not None and status.action:
             track.points.append(_point(message, status))
     return track
 
 
-def _point(truth: SimTruth, status: ExecStatus) -> Point:
+def _point(truth: SoccerGroundTruth, status: ExecStatus) -> Point:
     return Point(
         time_s=truth.stamp_ns / 1e9,
         x=truth.x,

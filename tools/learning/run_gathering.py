@@ -21,14 +21,15 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, SimTruth, Subgoals
+from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, Subgoals
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.learning import gathering
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
 CHUNK = 10  # runs whose episodes are kept together
-READ = (Subgoals, ExecStatus, SimTruth, JointState, Odometry, ActionFinished)
+READ = (Subgoals, ExecStatus, SoccerGroundTruth, JointState, Odometry, ActionFinished)
 MAX_ACTIONS = 100  # of one run; spaces the numbers of its episodes
 UNPROVEN = RefinementSettings(certify_checks=0)  # a proof of how good a choice is takes time and changes nothing
 

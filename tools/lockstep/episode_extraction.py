@@ -24,9 +24,9 @@ from tailor.schemas.messages import (
     JointState,
     Message,
     Odometry,
-    SimTruth,
     Subgoals,
 )
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
 
@@ -67,12 +67,12 @@ class EpisodeExtractor:
                     self._changed(message)
                 case ExecStatus() if message.action:
                     self._tick(message)
-                case SimTruth():
+                case SoccerGroundTruth():
                     self._motion = message
                     self._see(message)
                 case JointState():
                     self._motion = message
-                case Odometry() if not isinstance(self._motion, SimTruth):
+                case Odometry() if not isinstance(self._motion, SoccerGroundTruth):
                     self._motion = message
                 case ActionFinished():
                     self._finish(message)
@@ -119,7 +119,7 @@ class EpisodeExtractor:
         arguments = run.action.arguments(values[None, :])[0]
         return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 
-    def _see(self, truth: SimTruth) -> None:
+    def _see(self, truth: SoccerGroundTruth) -> None:
         run = self._running
         if run is None:
             return

@@ -10,6 +10,7 @@ from dataclasses import fields
 from typing import Any
 
 from tailor.schemas import messages as m
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 
 Fields = dict[str, Any]  # JSON values only
 
@@ -23,7 +24,7 @@ def number(value: float) -> float | None:
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 
-def truth(message: m.SimTruth) -> Fields:
+def truth(message: SoccerGroundTruth) -> Fields:
     """The simulator's robot and ball."""
     row = _pose(message.x, message.y, message.phi, message.v)
     if math.hypot(message.ball_x, message.ball_y) < FAR_M:

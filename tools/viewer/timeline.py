@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
+from tailor.schemas.messages.soccer import BallPercept, SoccerGroundTruth
 from tailor.tools.viewer import event_fields
 from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
@@ -14,7 +15,7 @@ from tailor.tools.viewer.run_facts import about
 
 STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
 # Messages that everything is known of; what is not among them goes out as plain series of numbers.
-SILENT = (m.ArmRequest, m.BallPercept, m.PlanRequest, m.PlanAnswer)
+SILENT = (m.ArmRequest, BallPercept, m.PlanRequest, m.PlanAnswer)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ class RunTimeline:
                 return self._provenance(message)
             case m.ExecStatus():
                 return self._status(at_s, message)
-            case m.SimTruth():
+            case SoccerGroundTruth():
                 return self._path(at_s, "truth", event_fields.truth(message))
             case m.Odometry():
                 return self._path(at_s, "odom", event_fields.odometry(message))

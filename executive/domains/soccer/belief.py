@@ -10,7 +10,8 @@ from tailor.executive.belief.angles import difference
 from tailor.executive.belief.ball_track import BallTrack, Seen
 from tailor.executive.belief.planar_ekf import OdometryNoise, Pose
 from tailor.executive.domains.soccer import robot
-from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
+from tailor.schemas.messages import Odometry, PoseEstimate, Sample
+from tailor.schemas.messages.soccer import BallPercept
 
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
 POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts in a row err alike and count as one

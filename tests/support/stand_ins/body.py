@@ -2,7 +2,8 @@
 
 import math
 
-from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, SimTruth
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.schemas.messages.soccer import BallPercept, SoccerGroundTruth
 from tailor.simnodes.body import STEP_NS, Reading
 
 PERIODS_NS = {"odom": 20_000_000, "pose": 80_000_000, "ball": 80_000_000, "truth": 100_000_000}
@@ -40,7 +41,9 @@ class FakeBody:
 
     def ground_truth(self):
         s = self.state
-        return SimTruth(self.time_ns, s["x"], s["y"], s["phi"], self.v, self.omega, s["ball_x"], s["ball_y"], 0.0, 0.0)
+        return SoccerGroundTruth(
+            self.time_ns, s["x"], s["y"], s["phi"], self.v, self.omega, s["ball_x"], s["ball_y"], 0.0, 0.0
+        )
 
     def _sense(self, topic):
         s, now = self.state, self.time_ns

@@ -13,7 +13,8 @@ from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer import robot
 from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Interval
-from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate, Sample
+from tailor.schemas.messages import Odometry, PoseEstimate, Sample
+from tailor.schemas.messages.soccer import BallPercept
 from tailor.tools.lockstep.action_run import new_body, newest
 
 SOCCER = domains.load("soccer")

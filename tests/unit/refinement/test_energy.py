@@ -11,15 +11,16 @@ from tailor.models.episodes.episodes import Episode, read_data_set, write_part
 from tailor.models.episodes.examples import energy_examples
 from tailor.models.episodes.manifest import write_manifest
 from tailor.models.runtime import load_robot
-from tailor.schemas.messages import JointState, Odometry, SimTruth
+from tailor.schemas.messages import JointState, Odometry
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.task_runs import run_one
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.samplers.drive_work import MASS_KG, joint_work_j, wheel_work_j
 
 
-def truth(at_s: float, v: float, omega: float = 0.0) -> SimTruth:
-    return SimTruth(round(at_s * 1e9), 0.0, 0.0, 0.0, v, omega, 0.0, 0.0, 0.0, 0.0)
+def truth(at_s: float, v: float, omega: float = 0.0) -> SoccerGroundTruth:
+    return SoccerGroundTruth(round(at_s * 1e9), 0.0, 0.0, 0.0, v, omega, 0.0, 0.0, 0.0, 0.0)
 
 
 def joints(at_s: float, efforts: tuple[float, ...], velocities: tuple[float, ...]) -> JointState:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tailor.executive.domains.soccer import robot
-from tailor.schemas.messages import BallPercept, Odometry, PoseEstimate
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.agilo import body as agilo_body
 from tailor.simnodes.agilo import firmware, scene

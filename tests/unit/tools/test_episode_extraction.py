@@ -4,7 +4,8 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import UNOBSERVED
-from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, SimTruth, Subgoals
+from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, Subgoals
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
 DOMAIN = domains.load("soccer")
@@ -29,8 +30,8 @@ def finished(action: str, index: int, seconds: float, outcome: str = "done") -> 
     return ActionFinished(0, 0, action, index, outcome, "" if outcome == "done" else "lost", 3.0, seconds)
 
 
-def truth(ball_x: float) -> SimTruth:
-    return SimTruth(0, 0.0, 0.0, 0.0, 0.0, 0.0, ball_x, 0.0, 0.0, 0.0)
+def truth(ball_x: float) -> SoccerGroundTruth:
+    return SoccerGroundTruth(0, 0.0, 0.0, 0.0, 0.0, 0.0, ball_x, 0.0, 0.0, 0.0)
 
 
 def drive(action: str, index: int, ticks: int, first: int = 0) -> list[ExecStatus]:
@@ -95,8 +96,8 @@ def test_a_dribble_starts_where_the_ball_is() -> None:
 
 
 def test_the_work_of_the_drives_is_cut_with_the_episode_where_motion_is_told() -> None:
-    def moving(k: int) -> SimTruth:
-        return SimTruth(k * 100_000_000, 0.0, 0.0, 0.0, 0.1 * k, 0.0, 1.0, 0.0, 0.0, 0.0)
+    def moving(k: int) -> SoccerGroundTruth:
+        return SoccerGroundTruth(k * 100_000_000, 0.0, 0.0, 0.0, 0.1 * k, 0.0, 1.0, 0.0, 0.0, 0.0)
 
     ticks = [message for k, said in enumerate(drive("goToPose", 0, 5)) for message in (moving(k), said)]
     [(_, told)] = cut(subgoals("goToPose", {"xg": 2.0}), *ticks, finished("goToPose", 0, 0.5))

@@ -8,6 +8,7 @@ import math
 import pytest
 
 from tailor.schemas import messages as m
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import MESSAGES
 from tailor.tools.viewer.event_fields import numbers
@@ -55,7 +56,7 @@ def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -
     fast = [story.tell(k / 50, "agilo/odom", m.Odometry(0, k, 0, 0, 0, 0)) for k in range(100)]
     assert 20 <= sum(map(len, fast)) <= 34
     jitter = [0.0, 0.113, 0.19, 0.31, 0.387, 0.5]
-    assert all(story.tell(9 + at, "agilo/sim/truth", m.SimTruth(0, *[0.0] * 9)) for at in jitter)
+    assert all(story.tell(9 + at, "agilo/sim/truth", SoccerGroundTruth(0, *[0.0] * 9)) for at in jitter)
 
 
 def test_topics_that_the_page_does_not_know_are_told_as_named_numbers() -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, Message, SimTruth, Subgoals
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.run import Run
 
 
@@ -40,6 +41,6 @@ def episode_of(messages: Iterable[Message], result: str) -> Run:
                 episode.ended_s = (message.stamp_ns - started_ns) / 1e9
         elif isinstance(message, Subgoals):
             episode.subgoals.append(message)
-        elif isinstance(message, SimTruth):
+        elif isinstance(message, SoccerGroundTruth):
             episode.truth.append(message)
     return episode

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 
-from tailor.schemas.messages import JointState, Message, Odometry, SimTruth
+from tailor.schemas.messages import JointState, Message, Odometry
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 
 AGILO = PhysicalParameters()
@@ -28,12 +29,12 @@ def wheel_work_j(before: Message, after: Message) -> float:
     Its simulated wheels roll freely; what a pushed ball takes (0.2 N) is not in it either.
 
     Args:
-      before, after: `SimTruth`, or `Odometry` where nobody knows the truth (its noise adds about 0.5 W).
+      before, after: `SoccerGroundTruth`, or `Odometry` where nobody knows the truth (its noise adds about 0.5 W).
 
     Returns:
       Joules; NaN if these are no such states.
     """
-    if not isinstance(before, SimTruth | Odometry) or not isinstance(after, SimTruth | Odometry):
+    if not isinstance(before, SoccerGroundTruth | Odometry) or not isinstance(after, SoccerGroundTruth | Odometry):
         return math.nan
     faster = after.v**2 - before.v**2, after.omega**2 - before.omega**2
     return max(0.0, 0.5 * MASS_KG * faster[0] + 0.5 * YAW_KGM2 * faster[1])

@@ -16,7 +16,8 @@ from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
-from tailor.schemas.messages import Message, SimTruth
+from tailor.schemas.messages import Message
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more before the goal state has failed
@@ -103,7 +104,7 @@ class SoccerSampler:
         """Joules that the wheels have taken between two states."""
         return wheel_work_j(before, after)
 
-    def failure(self, action: Action, start: Mapping[str, float], truth: SimTruth) -> str:
+    def failure(self, action: Action, start: Mapping[str, float], truth: SoccerGroundTruth) -> str:
         """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""
         if action.name != "approachBall":
             return ""

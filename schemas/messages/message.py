@@ -1,0 +1,19 @@
+"""Base class of every message."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+
+class Message:
+    """A typed value on the bus; subclasses are frozen dataclasses.
+
+    Attributes:
+      ROS_TYPE: The standard ROS 2 type that carries the message; empty: a type of our own, `tailor_msgs/msg/<name>`.
+      FRAME_ID: The frame in the header of a type of our own.
+    """
+
+    __slots__ = ()
+
+    ROS_TYPE: ClassVar[str] = ""
+    FRAME_ID: ClassVar[str] = ""
