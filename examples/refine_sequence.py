@@ -1,0 +1,28 @@
+"""Chooses heading and speed at a waypoint, so that two actions together take the shortest time."""
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.executive.composition import load_models
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.refinement import Refinement
+
+go = domains.load("soccer").actions["goToPose"]
+known = {"start": (-2.0, 0.0, 0.0, 0.0), "waypoint": (0.0, 1.0, None, None), "goal": (2.0, 0.0, 0.0, 0.0)}
+variables = []
+for place, values in known.items():
+    for parameter, value in zip(go.parameters[:4], values, strict=True):  # x, y, phi, v
+        lower, upper = (parameter.lower, parameter.upper) if value is None else (value, value)
+        row = (place, parameter.quantity, parameter.unit, lower, upper, parameter.periodic, value)
+        variables.append(Variable(len(variables), *row))
+actions = (InstantiatedAction(go, 1, tuple(range(8))), InstantiatedAction(go, 2, tuple(range(4, 12))))
+sequence = ActionSequence(actions, tuple(variables))
+
+refinement = Refinement(sequence, load_models("agilo"), RefinementSettings(), np.random.default_rng(0))
+refinement.advance(CheckBudget(100))
+report = refinement.report()
+print(f"greedy {report.greedy_s:.2f} s, refined {report.best_s:.2f} s")
+for variable in sequence.free():
+    print(f"{variable.quantity} at {variable.label}: {refinement.choice.values[variable.id]:.2f} {variable.unit}")
