@@ -1,0 +1,36 @@
+"""Pages name files, folders and commands that exist."""
+
+import re
+
+import pytest
+
+from tailor.tools.main import COMMANDS
+from tests.unit.house.arrows import OURS, ROOMS, ROOT
+
+PAGES = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
+TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
+PATH = re.compile(rf"`((?:{TOPS}|core|planning|refinement)/[\w./-]*)`")
+LINK = re.compile(r"\]\((?!http|#)([^)#]+)")
+COMMAND = re.compile(r"(?:^|\$ |`)tailor ([a-z][a-z-]*)", re.MULTILINE)
+
+
+def exists(path: str) -> bool:
+    return any((ROOT / folder / path).exists() for folder in ("", "executive"))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_names_files_that_exist(page: str) -> None:
+    text = (ROOT / page).read_text()
+    assert {path for path in PATH.findall(text) if not exists(path)} == set()
+    folder = (ROOT / page).parent
+    assert {link for link in LINK.findall(text) if not (folder / link).exists()} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_names_commands_that_exist(page: str) -> None:
+    assert set(COMMAND.findall((ROOT / page).read_text())) <= set(COMMANDS)
+
+
+def test_the_readme_lists_the_folders_of_the_table() -> None:
+    rows = re.findall(r"^\| `(\w+)/` \|", (ROOT / "README.md").read_text(), re.MULTILINE)
+    assert [row for row in rows if row in OURS] == list(ROOMS["."])
