@@ -103,7 +103,7 @@ class Shell:
         for output in outputs:
             self._publishers[output.topic].publish(output.message)
             if isinstance(output.message, PlanRequest):
-                self._planner.ask(output.message)
+                self._planner.request(output.message)
 
     def _report(self, turn: Period, inputs: Inputs, control_ns: int, checks: int) -> None:
         tick = self._state.tick

@@ -36,7 +36,7 @@ class Raw:
 class Source(Protocol):
     """One subscription; session.py makes it of a zenoh subscriber with a ring handler."""
 
-    def take(self) -> Raw | None:
+    def receive(self) -> Raw | None:
         """The oldest sample that waits, None if there is none; never blocks."""
         ...
 
@@ -68,7 +68,7 @@ class Inbox:
         samples = []
         for topic, key, source, encoding in self._rows:
             for _ in range(EVENT_DEPTH):  # bounded, whatever a flood brings
-                raw = source.take()
+                raw = source.receive()
                 if raw is None:
                     break
                 found = self._read(topic, key, encoding, raw, now)

@@ -31,7 +31,7 @@ class IngestQueue:
             self._bytes += len(raw.payload)
             self._waiting.append(raw)
 
-    def take(self) -> list[Raw]:
+    def drain(self) -> list[Raw]:
         """Everything that waits, oldest first."""
         with self._lock:
             taken = list(self._waiting)

@@ -25,7 +25,7 @@ class ServiceRequest:
 class RequestSource(Protocol):
     """Where questions come from; session.py makes it of a zenoh queryable."""
 
-    def take(self) -> ServiceRequest | None:
+    def receive(self) -> ServiceRequest | None:
         """The oldest question that waits, None if there is none; never blocks."""
         ...
 
@@ -38,4 +38,4 @@ class ServiceServer:
 
     def poll(self) -> ServiceRequest | None:
         """The next question, None if nobody asks."""
-        return self._source.take()
+        return self._source.receive()

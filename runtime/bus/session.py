@@ -134,7 +134,7 @@ class Session:
         """Questions that are asked under `key`, to be polled by a loop."""
         return ServiceServer(_RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
 
-    def ask(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
+    def call(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
         """Ask under `key` and wait: (accepted, answer). Nobody there or no answer in time: (False, why)."""
         for reply in self._zenoh.get(key, payload=text, timeout=timeout_s):
             if reply.ok is not None:
@@ -184,7 +184,7 @@ class _Source:
     def __init__(self, subscriber: Any) -> None:
         self._subscriber = subscriber
 
-    def take(self) -> Raw | None:
+    def receive(self) -> Raw | None:
         sample = self._subscriber.try_recv()
         return None if sample is None else _raw(sample)
 
@@ -193,7 +193,7 @@ class _RequestSource:
     def __init__(self, queryable: Any) -> None:
         self._queryable = queryable
 
-    def take(self) -> ServiceRequest | None:
+    def receive(self) -> ServiceRequest | None:
         query = self._queryable.try_recv()
         if query is None:
             return None

@@ -28,7 +28,7 @@ class ExternalPlanner:
         self._child: Future[PlannerProcess] | None = None
         self._asked = 0
 
-    def ask(self, request: PlanRequest) -> None:
+    def request(self, request: PlanRequest) -> None:
         """Start a child on a request, in the place of any other; that it cannot be started is an answer, too."""
         self.close()
         self._asked = request.id

@@ -51,13 +51,13 @@ class Supervisor:
         self._watches: dict[str, _Watch] = {}
         self._looked_ns: int | None = None
 
-    def begin(self, charge: ProcessSpec, now_ns: int) -> None:
+    def start(self, charge: ProcessSpec, now_ns: int) -> None:
         """Start a process and look after it."""
         watch = _Watch(charge, self._start(charge.name, charge.argv), now_ns)
         watch.restart.started(now_ns)
         self._watches[charge.name] = watch
 
-    def heard(self, name: str, now_ns: int) -> None:
+    def report_alive(self, name: str, now_ns: int) -> None:
         """A sign of life, e.g. a message with a new sequence number."""
         self._watches[name].heard_ns = now_ns
 
@@ -70,7 +70,7 @@ class Supervisor:
         """Process id of the present (or last) incarnation."""
         return self._watches[name].child.pid
 
-    def look(self, now_ns: int) -> None:
+    def poll(self, now_ns: int) -> None:
         """Notice deaths and silences; start what is due."""
         self._forgive_own_pause(now_ns)
         for watch in self._watches.values():

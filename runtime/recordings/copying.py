@@ -10,7 +10,7 @@ from typing import Any
 from mcap import records as r
 from mcap.writer import CompressionType, Writer
 
-from tailor.runtime.recordings.mcap_scan import Account, scan
+from tailor.runtime.recordings.mcap_scan import DamageReport, scan
 from tailor.runtime.recordings.mcap_writer import CHUNK_BYTES
 from tailor.schemas.errors import UsageError
 
@@ -23,7 +23,7 @@ class Copied:
 
     kept: int = 0
     left_out: int = 0
-    account: Account = field(default_factory=Account)  # of the source
+    damage: DamageReport = field(default_factory=DamageReport)  # of the source
 
 
 class _Copy:
@@ -79,13 +79,13 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
       UsageError: The source is not there or no MCAP file, the target exists or cannot be written.
     """
     copied = Copied()
-    next(scan(source, Account(), with_chunks=False), None)  # a source that is no recording makes no target
+    next(scan(source, DamageReport(), with_chunks=False), None)  # a source that is no recording makes no target
     try:
         with target.open("xb") as file:
             writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
             writer.start(profile="ros2", library="tailor")
             _copy_records(source, _Copy(writer), keep, copied)
-            writer.add_metadata("copy", {"of": source.name, "damage": copied.account.text(), **note})
+            writer.add_metadata("copy", {"of": source.name, "damage": copied.damage.text(), **note})
             writer.finish()
     except FileExistsError as error:
         raise UsageError(f"{target}: exists already, expected the name of a new file") from error
@@ -95,7 +95,7 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
 
 
 def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: Copied) -> None:
-    for record in scan(source, copied.account):
+    for record in scan(source, copied.damage):
         if isinstance(record, r.Schema):
             copy_.schemas[record.id] = record
         elif isinstance(record, r.Channel):

@@ -44,7 +44,7 @@ DAMAGE = (McapError, struct.error, ValueError, zstandard.ZstdError, RuntimeError
 
 
 @dataclass(slots=True)
-class Account:
+class DamageReport:
     """What a scan found."""
 
     chunks: int = 0
@@ -61,14 +61,14 @@ class Account:
         why = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
         return f"{what}{self.chunks} chunks whole, {self.damaged_chunks} damaged, {self.lost_bytes} bytes lost{why}"
 
-    def lose(self, size: int, why: str) -> None:
+    def add_loss(self, size: int, why: str) -> None:
         """Note damage."""
         self.lost_bytes += size
         self.reasons.append(why)
 
 
-def scan(path: Path, account: Account, with_chunks: bool = True) -> Iterator[Any]:
-    """Header, schemas, channels, messages and metadata in the order of the file; fills in `account` on the way.
+def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator[Any]:
+    """Header, schemas, channels, messages and metadata in the order of the file; fills in `damage` on the way.
 
     Args:
       path: The file.
@@ -85,7 +85,7 @@ def scan(path: Path, account: Account, with_chunks: bool = True) -> Iterator[Any
                 raise UsageError(f"{path}: not an MCAP file")
             yield from _summary(file, size)
             file.seek(len(MAGIC))
-            yield from _records(file, size, account, with_chunks)
+            yield from _records(file, size, damage, with_chunks)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
 
@@ -104,34 +104,34 @@ def _summary(file: IO[bytes], size: int) -> Iterator[Any]:
         opcode, length = _HEAD.unpack(head)
         if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or length > size - file.tell():
             return
-        yield from _one(_KINDS[opcode].read, file.read(length), Account())
+        yield from _one(_KINDS[opcode].read, file.read(length), DamageReport())
 
 
-def _records(file: IO[bytes], size: int, account: Account, with_chunks: bool) -> Iterator[Any]:
+def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool) -> Iterator[Any]:
     while True:
         start = file.tell()
         head = file.read(_HEAD.size)
         if len(head) < _HEAD.size:
-            account.lose(len(head), "the file ends early")
+            damage.add_loss(len(head), "the file ends early")
             return
         opcode, length = _HEAD.unpack(head)
         if opcode == 0 or length > min(size - file.tell(), MAX_RECORD_BYTES):
             again = _next_chunk(file, start + 1, size)
             if again == size:
-                account.lose(size - start, "the file ends inside a record")
+                damage.add_loss(size - start, "the file ends inside a record")
                 return
-            account.lose(again - start, f"bytes {start} to {again} make no sense")
+            damage.add_loss(again - start, f"bytes {start} to {again} make no sense")
             file.seek(again)
             continue
         if opcode == Opcode.DATA_END:
-            account.complete = _ends_well(file, size)
+            damage.complete = _ends_well(file, size)
             return
         if opcode == Opcode.CHUNK and with_chunks:
-            yield from _chunk(file.read(length), account)
+            yield from _chunk(file.read(length), damage)
         elif opcode == Opcode.MESSAGE and with_chunks:
-            yield from _one(partial(r.Message.read, length=length), file.read(length), account)
+            yield from _one(partial(r.Message.read, length=length), file.read(length), damage)
         elif opcode in _KINDS and opcode != Opcode.CHUNK:
-            yield from _one(_KINDS[opcode].read, file.read(length), account)
+            yield from _one(_KINDS[opcode].read, file.read(length), damage)
         else:
             file.seek(length, 1)
 
@@ -151,24 +151,24 @@ def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
     return size
 
 
-def _one(read: Any, data: bytes, account: Account) -> Iterator[Any]:
+def _one(read: Any, data: bytes, damage: DamageReport) -> Iterator[Any]:
     try:
         record = read(ReadDataStream(BytesIO(data)))
     except DAMAGE as error:
-        account.lose(len(data), f"a record is damaged: {type(error).__name__}")
+        damage.add_loss(len(data), f"a record is damaged: {type(error).__name__}")
         return
     yield record
 
 
-def _chunk(data: bytes, account: Account) -> Iterator[Any]:
+def _chunk(data: bytes, damage: DamageReport) -> Iterator[Any]:
     try:
         chunk = r.Chunk.read(ReadDataStream(BytesIO(data)))
         inside = records_of(_unpacked(chunk), chunk.uncompressed_crc)
     except DAMAGE as error:
-        account.damaged_chunks += 1
-        account.lose(len(data), f"a chunk is damaged: {error or type(error).__name__}")
+        damage.damaged_chunks += 1
+        damage.add_loss(len(data), f"a chunk is damaged: {error or type(error).__name__}")
         return
-    account.chunks += 1
+    damage.chunks += 1
     yield from inside
 
 

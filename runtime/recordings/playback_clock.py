@@ -5,7 +5,7 @@ from __future__ import annotations
 SLOWEST, FASTEST = 0.01, 100.0
 
 
-class Pace:
+class PlaybackClock:
     """Maps recorded time to the player's; can be paused, stepped, and change its rate on the way."""
 
     def __init__(self, first_ns: int, now_ns: int, rate: float = 1.0, paused: bool = False) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from tailor.runtime.bus.attachment import Origin
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.clock import Clock
-from tailor.runtime.recordings.playback_clock import Pace
+from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.recording import Recorded
 
 SLICE_NS = 20_000_000  # how long a player sleeps before it looks at the keyboard again
@@ -30,7 +30,7 @@ class Player:
         self,
         outlet: Callable[[str, str], Publisher],
         clock: Clock,
-        watch: Callable[[Pace], bool],
+        watch: Callable[[PlaybackClock], bool],
         tick: Callable[[int], None] = lambda _: None,
         tick_ns: int = 0,
     ) -> None:
@@ -47,21 +47,21 @@ class Player:
         self._outlet, self._clock, self._watch = outlet, clock, watch
         self._tick, self._tick_ns, self._next_tick_ns = tick, tick_ns, 0
 
-    def play(self, messages: Iterable[Recorded], pace: Pace) -> bool:
+    def play(self, messages: Iterable[Recorded], playback: PlaybackClock) -> bool:
         """Send the messages, in their order; False if `watch` ended it."""
         for recorded in messages:
-            if not self._wait(recorded.log_ns, pace):
+            if not self._wait(recorded.log_ns, playback):
                 return False
             self._send(recorded)
         return True
 
-    def _wait(self, recorded_ns: int, pace: Pace) -> bool:
-        while self._watch(pace):
+    def _wait(self, recorded_ns: int, playback: PlaybackClock) -> bool:
+        while self._watch(playback):
             now_ns = self._clock.now_ns()
-            self._tick_when_due(now_ns, pace)
-            due_ns = pace.due_ns(recorded_ns)
+            self._tick_when_due(now_ns, playback)
+            due_ns = playback.due_ns(recorded_ns)
             if due_ns is None:
-                if pace.take_step(recorded_ns):
+                if playback.take_step(recorded_ns):
                     return True
                 self._clock.sleep_until(now_ns + SLICE_NS)
             elif now_ns >= due_ns:
@@ -71,9 +71,9 @@ class Player:
                 self._clock.sleep_until(min(due_ns, now_ns + SLICE_NS, self._next_tick_ns or due_ns))
         return False
 
-    def _tick_when_due(self, now_ns: int, pace: Pace) -> None:
+    def _tick_when_due(self, now_ns: int, playback: PlaybackClock) -> None:
         if self._tick_ns and now_ns >= self._next_tick_ns:
-            self._tick(pace.recorded_ns(now_ns))
+            self._tick(playback.recorded_ns(now_ns))
             self._next_tick_ns = now_ns + self._tick_ns
 
     def _send(self, recorded: Recorded) -> None:

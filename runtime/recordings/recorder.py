@@ -45,7 +45,7 @@ class Health:
 
 
 class Recorder:
-    """Call `spin_once` some ten times a second from one thread, and `close` at the end."""
+    """Call `step` some ten times a second from one thread, and `close` at the end."""
 
     def __init__(
         self,
@@ -73,9 +73,9 @@ class Recorder:
         self._flush_at_ns = 0
         self._tape = self._next_tape()
 
-    def spin_once(self, now_ns: int) -> None:
+    def step(self, now_ns: int) -> None:
         """Write what has arrived; flush when it is time. `now_ns` is monotonic."""
-        for raw in self._intake.take():
+        for raw in self._intake.drain():
             self._keep(raw)
         if now_ns >= self._flush_at_ns:
             self._flush_at_ns = now_ns + FLUSH_NS
@@ -86,7 +86,7 @@ class Recorder:
 
     def close(self) -> Health:
         """Write what is left, and the footer."""
-        for raw in self._intake.take():
+        for raw in self._intake.drain():
             self._keep(raw)
         self._note_drops()
         self._tape.close()
@@ -100,7 +100,7 @@ class Recorder:
             self._dropped[raw.key] += 1
             return
         self._tape.write(raw, raw.received_wall_ns or wall_ns())
-        if self._facts.hear(raw):
+        if self._facts.observe(raw):
             self._tape.note("provenance", self._facts.entries["provenance"])
 
     def _wants(self, key: str, encoding: str) -> bool:

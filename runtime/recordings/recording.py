@@ -10,7 +10,7 @@ from typing import Any
 
 from mcap import records as r
 
-from tailor.runtime.recordings.mcap_scan import Account, scan
+from tailor.runtime.recordings.mcap_scan import DamageReport, scan
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message
@@ -38,14 +38,14 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.account = Account()  # of the last complete iteration over messages()
+        self.damage = DamageReport()  # of the last complete iteration over messages()
 
     def messages(self) -> Iterator[Recorded]:
-        """All messages in file order, which is the order of reception; damaged parts are left out, see `account`."""
+        """All messages in file order, which is the order of reception; damaged parts are left out, see `damage`."""
         schemas: dict[int, Any] = {0: None}
         channels: dict[int, tuple[str, str, str]] = {}
-        self.account = Account()
-        for record in scan(self.path, self.account):
+        self.damage = DamageReport()
+        for record in scan(self.path, self.damage):
             if isinstance(record, r.Message):
                 if record.channel_id in channels:
                     yield _recorded(record, *channels[record.channel_id])
@@ -68,7 +68,7 @@ class Recording:
 
     def metadata(self) -> list[tuple[str, dict[str, str]]]:
         """Metadata records, name and entries, in file order; of several with one name the last holds."""
-        found = scan(self.path, Account(), with_chunks=False)
+        found = scan(self.path, DamageReport(), with_chunks=False)
         return [(record.name, record.metadata) for record in found if isinstance(record, r.Metadata)]
 
     def _check_schema(self, channel: Any, schema: Any) -> None:
@@ -92,7 +92,7 @@ def open_recording(path: str | Path) -> Recording:
       UsageError: Not there, or not an MCAP file.
     """
     recording = Recording(Path(path))
-    next(scan(recording.path, Account(), with_chunks=False), None)
+    next(scan(recording.path, DamageReport(), with_chunks=False), None)
     return recording
 
 

@@ -32,7 +32,7 @@ class RecordingMetadata:
         self.entries[name] = dict(entries)
         return True
 
-    def hear(self, raw: Raw) -> bool:
+    def observe(self, raw: Raw) -> bool:
         """Take an executive's configuration out of what goes by; True if it is news."""
         if raw.key != TOPICS["provenance"].key:
             return False

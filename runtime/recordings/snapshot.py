@@ -16,7 +16,7 @@ MAX_BYTES = 256_000_000  # of memory, whatever the time span
 AFTER_NS = 1_000_000_000  # of what follows a failure goes into its file too
 
 
-class Ring:
+class SnapshotBuffer:
     """Messages of the last `span_ns`, at most `most_bytes` of them."""
 
     def __init__(self, span_ns: int, most_bytes: int = MAX_BYTES) -> None:
@@ -52,13 +52,13 @@ class Ring:
         return tape.messages
 
 
-class Alarm:
+class FailureDetector:
     """Notices failures in what goes by: an executive that comes into FAULT, a driver that stops by itself."""
 
     def __init__(self) -> None:
         self._modes: dict[str, str] = {}
 
-    def hears(self, raw: Raw) -> str:
+    def detect(self, raw: Raw) -> str:
         """What has just gone wrong, empty if nothing."""
         if raw.key == TOPICS["status"].key:
             return self._changed(raw, decode(ExecStatus, raw.payload), ("FAULT",))

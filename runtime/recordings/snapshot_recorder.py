@@ -11,32 +11,32 @@ from tailor.runtime.recordings.mcap_writer import ENCODING
 from tailor.runtime.recordings.recorder import Health
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
-from tailor.runtime.recordings.snapshot import AFTER_NS, Alarm, Ring
+from tailor.runtime.recordings.snapshot import AFTER_NS, FailureDetector, SnapshotBuffer
 
 
 class SnapshotRecorder:
-    """Call `spin_once` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
+    """Call `step` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
 
     def __init__(
-        self, path: Path, intake: IngestQueue, selection: Selection, ring: Ring, facts: RecordingMetadata
+        self, path: Path, intake: IngestQueue, selection: Selection, buffer: SnapshotBuffer, facts: RecordingMetadata
     ) -> None:
         """Files will be NAME_000.mcap and so on beside `path`; none is made before it is needed."""
         self.health = Health()
         self._path, self._intake, self._selection = path, intake, selection
-        self._ring, self._facts, self._alarm = ring, facts, Alarm()
+        self._ring, self._facts, self._alarm = buffer, facts, FailureDetector()
         self._reason = ""  # why a file is due
         self._write_at_ns = 0
         self._number = 0  # of the next file
 
-    def spin_once(self, now_ns: int) -> None:
+    def step(self, now_ns: int) -> None:
         """Take what has arrived; write a file when one is due. `now_ns` is monotonic."""
-        for raw in self._intake.take():
+        for raw in self._intake.drain():
             self._keep(raw, now_ns)
         self.health.drops = self._intake.drops
         if self._reason and now_ns >= self._write_at_ns:
             self._write()
 
-    def ask(self, reason: str, now_ns: int) -> bool:
+    def request_snapshot(self, reason: str, now_ns: int) -> bool:
         """Have what is in memory written at the next turn; False if nothing is there yet."""
         if self._ring.is_empty:
             return False
@@ -54,10 +54,10 @@ class SnapshotRecorder:
         if not raw.is_put or not self._selection.wants(raw.key, raw.encoding.removeprefix(ENCODING)):
             return
         self._ring.add(raw, raw.received_wall_ns or wall_ns())
-        self._facts.hear(raw)
-        alarm = self._alarm.hears(raw)
-        if alarm and not self._reason:
-            self._reason, self._write_at_ns = alarm, now_ns + AFTER_NS  # what follows tells too
+        self._facts.observe(raw)
+        failure = self._alarm.detect(raw)
+        if failure and not self._reason:
+            self._reason, self._write_at_ns = failure, now_ns + AFTER_NS  # what follows tells too
 
     def _write(self) -> None:
         reason, self._reason = self._reason, ""

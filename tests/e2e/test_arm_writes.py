@@ -3,9 +3,9 @@
 import pytest
 
 from tailor.runtime.stopping import Stop
-from tailor.tools.cli.deployment import Deployment, order_of
+from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
-from tailor.tools.commands.run.letters import recorded
+from tailor.tools.commands.run.letters import recorded_track
 from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 from tailor.tools.writing.measures import waypoint_errors_rad
 
@@ -13,11 +13,11 @@ from tailor.tools.writing.measures import waypoint_errors_rad
 @pytest.mark.slow
 def test_a_letter_written_live_passes_its_waypoints(tmp_path):
     recording = tmp_path / "letter.mcap"
-    plan = LaunchConfig(order_of("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
+    config = LaunchConfig(executive_config("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
     with screen() as shown:
-        assert run_system(plan, shown, Stop()) == "achieved"
-    said = recorded("live", "I", recording)
-    assert said.result == "achieved"
-    assert len(said.arrivals_s) == len(said.waypoints) == 4
-    assert waypoint_errors_rad(said).max() < 0.03
-    assert said.peak_current_a > 1.0
+        assert run_system(config, shown, Stop()) == "achieved"
+    track = recorded_track("live", "I", recording)
+    assert track.result == "achieved"
+    assert len(track.arrivals_s) == len(track.waypoints) == 4
+    assert waypoint_errors_rad(track).max() < 0.03
+    assert track.peak_current_a > 1.0

@@ -116,13 +116,13 @@ def test_questions_are_answered_from_a_loop(pair):
     thread = threading.Thread(target=loop)
     thread.start()
     try:
-        wait_until(lambda: a.ask("exec/goal", "(good)") == (True, "gladly"), "an answer")
-        assert a.ask("exec/goal", "(bad)") == (False, "no such goal")
-        assert a.ask("exec/none", "(good)") == (False, "nobody answers at exec/none")
+        wait_until(lambda: a.call("exec/goal", "(good)") == (True, "gladly"), "an answer")
+        assert a.call("exec/goal", "(bad)") == (False, "no such goal")
+        assert a.call("exec/none", "(good)") == (False, "nobody answers at exec/none")
     finally:
         over.set()
         thread.join()
-    assert a.ask("exec/goal", "(good)", timeout_s=0.2) == (False, "no answer within 0.2 s")
+    assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no answer within 0.2 s")
 
 
 def test_clients_are_back_within_a_second_of_their_router():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tailor.runtime.processes.child import Child
-from tailor.runtime.recordings.mcap_scan import Account
+from tailor.runtime.recordings.mcap_scan import DamageReport
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Odometry, Provenance
@@ -50,7 +50,7 @@ def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
     assert recorder.wait(PATIENCE_S) == 0
     recording = open_recording(path)
     found = list(recording.decoded())
-    assert recording.account == Account(chunks=recording.account.chunks, complete=True)
+    assert recording.damage == DamageReport(chunks=recording.damage.chunks, complete=True)
     assert not [value for _, value in found if isinstance(value, Rejected)]
     odometry = [recorded for recorded, value in found if isinstance(value, Odometry)]
     assert [r.sequence for r in odometry] == list(range(odometry[0].sequence, odometry[-1].sequence + 1))
@@ -75,8 +75,8 @@ def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
             recorder.kill()
             recording = open_recording(path)
             last_ns = max(r.log_ns for r in recording.messages())
-            assert not recording.account.complete
-            assert recording.account.damaged_chunks == 0
+            assert not recording.damage.complete
+            assert recording.damage.damaged_chunks == 0
             assert (killed_ns - last_ns) / 1e9 <= 1.0
 
         repeat_on_stall(3, killed)
@@ -118,7 +118,7 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
 def test_a_snapshot_is_written_on_request_only(robot, tmp_path):
     session, record = robot
     record(tmp_path / "snap.mcap", "--snapshot", 5)
-    wait_until(lambda: session.ask("recorder/snapshot", "by hand", 0.2)[0], "snapshot recorder")
+    wait_until(lambda: session.call("recorder/snapshot", "by hand", 0.2)[0], "snapshot recorder")
     path = tmp_path / "snap_000.mcap"
     wait_until(lambda: readable(path), "snapshot")
     assert dict(open_recording(path).metadata())["snapshot"] == {"reason": "by hand"}

@@ -164,7 +164,7 @@ def test_the_clock_of_a_replay_tells_recorded_time(recording):
     with bus_system() as (session, endpoint, _):
         intake, tapped = session.subscribe_all("clock")  # all of them: an inbox keeps the newest alone
         run(recording, endpoint, "--clock", "50", "--rate", "0.5", "--start", "1.0")
-        raws = wait_until(intake.take, "the clock")
+        raws = wait_until(intake.drain, "the clock")
         times = [decode(Clock, raw.payload).stamp_ns / 1e9 - 1_700_000_000 for raw in raws]
         tapped.undeclare()
         assert times == sorted(times)

@@ -16,8 +16,8 @@ def system(tmp_path):
         yield robot
 
 
-def ask(session, name, what):
-    return session.ask(f"agilo/sim/{name}", json.dumps(what))
+def call(session, name, what):
+    return session.call(f"agilo/sim/{name}", json.dumps(what))
 
 
 def newest(inbox):
@@ -29,7 +29,7 @@ def test_reset_puts_the_world_back_and_disarms(system):
     truth, driver = session.inbox(["truth"], "agilo"), session.inbox(["driver"], "agilo")
     driving(start, endpoint, trace)
     wait_until(lambda: newest(truth).x > 0.1, "robot moves")
-    assert ask(session, "reset", {"start": {"x": -3.0}}) == (True, "reset")
+    assert call(session, "reset", {"start": {"x": -3.0}}) == (True, "reset")
     wait_until(lambda: newest(truth).x == -3.0, "robot back at its start")
     wait_until(lambda: newest(driver).reason == "the world was reset", "disarmed")
     time.sleep(0.3)
@@ -40,9 +40,9 @@ def test_reset_puts_the_world_back_and_disarms(system):
 def test_in_a_pause_nothing_moves_and_steps_are_exact(system):
     session, *_ = system
     odometry = session.inbox(["odom"], "agilo")
-    assert ask(session, "step", 1) == (False, "step: pause first")
+    assert call(session, "step", 1) == (False, "step: pause first")
     latest = wait_until(odometry.drain)
-    assert ask(session, "pause", True) == (True, "paused")
+    assert call(session, "pause", True) == (True, "paused")
 
     def sequence():
         nonlocal latest
@@ -56,11 +56,11 @@ def test_in_a_pause_nothing_moves_and_steps_are_exact(system):
 
     wait_until(stands_still, "silence of a paused world")
     before = sequence()
-    assert ask(session, "step", 50) == (True, "50 periods")  # of 10 ms; odometry comes every 20 ms
+    assert call(session, "step", 50) == (True, "50 periods")  # of 10 ms; odometry comes every 20 ms
     wait_until(lambda: sequence() == before + 25, "odometry of 50 periods")
-    assert ask(session, "step", 2)[0]
+    assert call(session, "step", 2)[0]
     wait_until(lambda: sequence() == before + 26, "odometry of two more")
-    assert ask(session, "pause", False) == (True, "running")
+    assert call(session, "pause", False) == (True, "running")
     wait_until(lambda: sequence() > before + 26, "a running world")
 
 
@@ -70,10 +70,10 @@ def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
 
     def drives_on():
         executive = driving(start, endpoint, trace)
-        ask(session, "pause", True)
+        call(session, "pause", True)
         time.sleep(1.0)
         truth.drain()
-        ask(session, "pause", False)
+        call(session, "pause", False)
         first = newest(truth)
         time.sleep(0.3)
         speed, last = outputs(trace)[-1][1], newest(truth)
@@ -88,13 +88,13 @@ def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
 def test_things_can_be_placed_while_the_world_runs(system):
     session, *_ = system
     truth = session.inbox(["truth"], "agilo")
-    assert ask(session, "place", {"ball_x": 4.5}) == (True, "placed")
+    assert call(session, "place", {"ball_x": 4.5}) == (True, "placed")
     wait_until(lambda: newest(truth).ball_x == 4.5, "ball placed")
-    assert ask(session, "place", {"ball_x": "far"})[0] is False
+    assert call(session, "place", {"ball_x": "far"})[0] is False
     for huge in (1e308, -1001.0, 10**400):
-        assert "expected an object of numbers up to 1000" in ask(session, "place", {"x": huge})[1]
-    assert ask(session, "place", {"ball": 1.0}) == (
+        assert "expected an object of numbers up to 1000" in call(session, "place", {"x": huge})[1]
+    assert call(session, "place", {"ball": 1.0}) == (
         False,
         "place: there is no ball, expected some of: x, y, phi, ball_x, ball_y",
     )
-    assert "there is no z" in ask(session, "reset", {"start": {"z": 1.0}})[1]
+    assert "there is no z" in call(session, "reset", {"start": {"z": 1.0}})[1]

@@ -77,9 +77,13 @@ def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte
         subprocess.run(verifying, env=other_hashes, check=True, cwd=ROOT, capture_output=True)
     assert runs[0].read_bytes() == runs[1].read_bytes()
     live, again = (RecordedRuns(path).runs[0] for path in (recording, runs[0]))
-    assert live.said.keys() == again.said.keys() >= {"agilo/cmd_vel", "exec/plan", "exec/subgoals", "exec/status"}
-    for key, messages in live.said.items():
-        assert [message.data for message in messages] == [message.data for message in again.said[key]], key
+    assert (
+        live.published.keys()
+        == again.published.keys()
+        >= {"agilo/cmd_vel", "exec/plan", "exec/subgoals", "exec/status"}
+    )
+    for key, messages in live.published.items():
+        assert [message.data for message in messages] == [message.data for message in again.published[key]], key
     assert command("verify", runs[0]).returncode == 0
 
 
@@ -174,7 +178,7 @@ class Live:
     def put_back(self):
         """Robot and ball where they were at the start; the driver stays as it is."""
         _, start = domains.load_scenario("soccer", "approach-dribble", np.random.default_rng([0, 0]))
-        assert self.session.ask("agilo/sim/place", json.dumps({**start, "v": 0.0}))[0]
+        assert self.session.call("agilo/sim/place", json.dumps({**start, "v": 0.0}))[0]
 
     def executive(self, *flags):
         self.latest.clear()

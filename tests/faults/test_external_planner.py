@@ -23,7 +23,7 @@ def asked(command, limit_s=LIMIT_S):
 
 def polled(command, limit_s):
     planner = ExternalPlanner(command, limit_s)
-    planner.ask(request())
+    planner.request(request())
     longest, ends = 0.0, time.monotonic() + limit_s + PATIENCE_S
     while time.monotonic() < ends:
         before = time.perf_counter()
@@ -78,7 +78,7 @@ def sleeper(tmp_path):
 
 def test_a_child_whose_answer_nobody_awaits_any_more_is_killed(tmp_path):
     planner = ExternalPlanner(sleeper(tmp_path), 60.0)
-    planner.ask(request())
+    planner.request(request())
     assert planner.poll(7, 0) is None
     pid = planner._child.result().pid
     assert planner.poll(0, 0) is None
@@ -87,9 +87,9 @@ def test_a_child_whose_answer_nobody_awaits_any_more_is_killed(tmp_path):
 
 def test_a_new_request_takes_the_place_of_the_old_one_and_closing_leaves_nothing(tmp_path):
     planner = ExternalPlanner(sleeper(tmp_path), 60.0)
-    planner.ask(request(1))
+    planner.request(request(1))
     first = planner._child.result().pid
-    planner.ask(request(2))
+    planner.request(request(2))
     assert gone(first)
     second = planner._child.result().pid
     planner.close()

@@ -54,7 +54,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
     sequences = [message.sequence for message in recording.messages()]
     assert sequences == list(range(sequences[0], sequences[-1] + 1)), "what is there is whole"
     assert len(sequences) > 100
-    assert recording.account.damaged_chunks == 0
+    assert recording.damage.damaged_chunks == 0
 
 
 @pytest.mark.slow

@@ -12,8 +12,8 @@ from tailor.executive.core.context import Settings
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import replay
 from tailor.schemas.messages import RefinementReport, Subgoals
-from tailor.tools.commands.run.sim import make_world
 from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.worlds import make_world
 
 
 def told(outputs, kind):

@@ -12,8 +12,8 @@ from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.schemas.messages import PlanReport
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.tools.commands.run.sim import make_world
 from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.worlds import make_world
 
 BODY = AgiloBody()
 

@@ -69,10 +69,10 @@ def _play(session: Session, until_s: float) -> None:
         for sample in inbox.drain():
             if isinstance(sample.message, ExecStatus) and sample.message.result:
                 seed += 1
-                session.ask("agilo/sim/reset", f'{{"seed": {seed}}}')
+                session.call("agilo/sim/reset", f'{{"seed": {seed}}}')
                 time.sleep(1.5)  # the belief finds itself again
                 arm.publish(ArmRequest(arm=True, reset=False, sender=sample.sender, epoch=0))
-                session.ask("exec/goal", "")
+                session.call("exec/goal", "")
                 time.sleep(0.5)
                 inbox.drain()
         time.sleep(0.05)

@@ -1,1 +1,1 @@
-"""Pieces of a command line: endpoints, deployment files, checked numbers, terminal output."""
+"""What all commands share: endpoints, deployment files, number checks, terminal output."""

@@ -1,6 +1,6 @@
-"""Which bus a command goes on: its flags, and the endpoint that they come to.
+"""Flags that select the bus, and the endpoint that they give.
 
-Commands that only need the bus load no executive for it: `tailor estop` must not wait for one.
+Loads no executive unless a deployment file is named: `tailor estop` must not wait for one.
 """
 
 from __future__ import annotations
@@ -11,19 +11,21 @@ from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
 
 
 def configure_bus(parser: argparse.ArgumentParser) -> None:
-    """The flags of everyone who goes on the bus."""
+    """Flags of every command that connects to the bus."""
     parser.add_argument("--connect", metavar="ENDPOINT", help=f"bus endpoint (default {DEFAULT_ENDPOINT})")
-    parser.add_argument("--config", metavar="FILE", help="deployment file (TOML)")
+    parser.add_argument("--config", metavar="FILE", default="", help="deployment file (TOML)")
 
 
 def endpoint_of(arguments: argparse.Namespace) -> str:
-    """The endpoint; a deployment file is read as a whole, so that a mistake anywhere in it is told.
+    """Endpoint of the bus. The whole deployment file is checked, so that no mistake in it goes unnoticed.
 
     Raises:
-      UsageError: What `tailor.tools.cli.deployment.deployment` raises.
+      UsageError: See `tailor.tools.cli.deployment.read_deployment`.
     """
+    endpoint: str = arguments.connect
     if not arguments.config:
-        return arguments.connect or DEFAULT_ENDPOINT
-    from tailor.tools.cli.deployment import deployment
+        return endpoint or DEFAULT_ENDPOINT
+    from tailor.tools.cli.deployment import read_deployment
 
-    return deployment(arguments).bus.endpoint
+    deployment = read_deployment(arguments.config)
+    return endpoint or deployment.bus.endpoint

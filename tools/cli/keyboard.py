@@ -1,4 +1,4 @@
-"""Single key presses from the terminal, without waiting for one; does nothing when there is no terminal."""
+"""Non-blocking key presses from the terminal; reports none if there is no terminal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KEYS = {b" ": "space", b"\x1b[A": "up", b"\x1b[B": "down", b"\x1b[C": "right", b
 
 
 class Keyboard:
-    """Inside `with`, the terminal gives single keys; afterwards it is as it was."""
+    """Context manager that reads single keys and restores the terminal's settings at the end."""
 
     def __init__(self) -> None:
         self._saved: list[Any] | None = None
@@ -30,7 +30,7 @@ class Keyboard:
             termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)
 
     def pressed(self) -> str:
-        """Name of a key that was pressed (space, up, down, right, quit), empty if none was."""
+        """Name of a pressed key: space, up, down, right or quit; empty if there is none."""
         if self._file is None or not select.select([self._file], [], [], 0)[0]:
             return ""
         return KEYS.get(os.read(self._file, 8), "")

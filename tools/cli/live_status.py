@@ -1,4 +1,4 @@
-"""What people see while a system runs: a panel in a terminal, a line on every change elsewhere."""
+"""Status of a running system: a live panel in a terminal, a line per change in a pipe or log."""
 
 from __future__ import annotations
 
@@ -15,43 +15,43 @@ from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanRep
 
 
 class Screen(Protocol):
-    """Where news goes."""
+    """Output for lines and for messages of the executive."""
 
-    def tell(self, line: str) -> None:
-        """One line that stays."""
+    def report(self, line: str) -> None:
+        """Print one permanent line."""
         ...
 
     def show(self, message: Message) -> None:
-        """A message of the executive."""
+        """Show a message of the executive."""
         ...
 
 
 class _Lines:
-    """For logs and pipes."""
+    """For logs and pipes: a line per change."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._last = ""
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         self._console.print(line, highlight=False)
 
     def show(self, message: Message) -> None:
-        line = _news(message)
+        line = _summary(message)
         if line and line != self._last:
             self._last = line
-            self.tell(line)
+            self.report(line)
 
 
 class _Panel:
-    """For terminals: a live table below the lines that stay."""
+    """For terminals: a live table below the permanent lines."""
 
     def __init__(self, live: Live) -> None:
         self._live = live
         self._status: ExecStatus | None = None
         self._tick: TickReport | None = None
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         self._live.console.print(line, highlight=False)
 
     def show(self, message: Message) -> None:
@@ -59,8 +59,8 @@ class _Panel:
             self._status = message
         elif isinstance(message, TickReport):
             self._tick = message
-        elif isinstance(message, ActionFinished | PlanReport) and (line := _news(message)):
-            self.tell(line)
+        elif isinstance(message, ActionFinished | PlanReport) and (line := _summary(message)):
+            self.report(line)
         self._live.update(self._table())
 
     def _table(self) -> Table:
@@ -84,7 +84,7 @@ class _Panel:
 
 @contextmanager
 def screen() -> Iterator[Screen]:
-    """The screen that fits where stdout goes."""
+    """Screen for the kind of stdout: `_Panel` for a terminal, `_Lines` otherwise."""
     console = Console()
     if not console.is_terminal:
         yield _Lines(console)
@@ -93,11 +93,11 @@ def screen() -> Iterator[Screen]:
         yield _Panel(live)
 
 
-def _news(message: Message) -> str:
+def _summary(message: Message) -> str:
     if isinstance(message, ActionFinished):
-        took = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
+        duration = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
         reason = f" ({message.reason})" if message.reason else ""
-        return f"  {message.action} {message.outcome}{reason}: {took}"
+        return f"  {message.action} {message.outcome}{reason}: {duration}"
     if isinstance(message, PlanReport) and message.status == "failed":
         return f"  planner failed: {message.reason}"
     if isinstance(message, ExecStatus):

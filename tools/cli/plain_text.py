@@ -1,8 +1,8 @@
-"""Words that come from files and the bus, made fit for a terminal."""
+"""Text from files and the bus, escaped for a terminal."""
 
 from __future__ import annotations
 
 
 def plain(text: str) -> str:
-    """The text in one line: what a terminal would obey, or not show, is written as an escape such as \\x1b."""
+    """The text in one line; control characters and unprintable ones become escapes such as \\x1b."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)

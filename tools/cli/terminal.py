@@ -1,16 +1,16 @@
-"""Where tables are printed."""
+"""Console for tables."""
 
 from __future__ import annotations
 
 from rich.console import Console
 
-PIPE_WIDTH = 140  # a file or a pipe has no width of its own, and must not squeeze a table as a small screen does
+PIPE_WIDTH = 140  # a pipe has no width; rich would assume 80 columns and squeeze the table
 
 
 def table_console() -> Console:
-    """A console for tables: as wide as the terminal, or wide enough where there is none.
+    """Console as wide as the terminal, or PIPE_WIDTH without one.
 
-    What stands in a table was recorded or read from a file: it is no markup.
+    Markup is off: the content of a table comes from recordings and files.
     """
     console = Console(markup=False, highlight=False)
     if not console.is_terminal:

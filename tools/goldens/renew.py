@@ -18,11 +18,11 @@ from tailor.executive.composition import ExecutiveConfig, build_context, provena
 from tailor.executive.core.context import Settings
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
-from tailor.tools.commands.run.sim import make_world
 from tailor.tools.goldens.changes import changes, outcome
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.run_recording import LockstepRecording
 from tailor.tools.lockstep.run_writer import RunWriter
+from tailor.tools.lockstep.worlds import make_world
 from tailor.tools.recordings.comparison import compared_run
 
 FOLDER = Path(__file__).resolve().parents[2] / "tests" / "data" / "golden"

@@ -51,14 +51,14 @@ def run_system(plan: LaunchConfig, screen: Screen, stop: Stop) -> str:
         raise UsageError(f"{plan.record}: exists already, expected the name of a new file")
     robot = build_context(plan.order, sender="").domain.robot
     with open_router(plan.endpoint) as session, tempfile.TemporaryFile("w+") as log:
-        supervisor = Supervisor(screen.tell, lambda name, argv: Child(name, argv, log))
+        supervisor = Supervisor(screen.report, lambda name, argv: Child(name, argv, log))
         try:
             return _run(plan, robot, session, supervisor, screen, stop)
         finally:
             supervisor.stop()
             log.seek(0)
             for line in log.read().splitlines():
-                screen.tell(line)
+                screen.report(line)
 
 
 def free_endpoint() -> str:
@@ -72,13 +72,13 @@ def _run(plan: LaunchConfig, robot: str, session: Session, supervisor: Superviso
     inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot, newest_only=False)
     if plan.record is not None:
         listened = session.publisher("provenance", robot)  # the recorder alone hears that: we do not
-        supervisor.begin(ProcessSpec("record", _record(plan), restarts=False), time.monotonic_ns())
+        supervisor.start(ProcessSpec("record", _record(plan), restarts=False), time.monotonic_ns())
         if not _appeared(supervisor, "record", listened.matched, stop):
             return "failed: the recorder did not start"
-    supervisor.begin(ProcessSpec("sim", _sim(plan, robot)), time.monotonic_ns())
+    supervisor.start(ProcessSpec("sim", _sim(plan, robot)), time.monotonic_ns())
     if not _appeared(supervisor, "sim", lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop):
         return "failed: the simulator did not start"
-    supervisor.begin(ProcessSpec("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
+    supervisor.start(ProcessSpec("executive", _executive(plan), silence_ns=SILENCE_NS), time.monotonic_ns())
     return _watch(plan, inbox, supervisor, screen, stop)
 
 
@@ -91,11 +91,11 @@ def _watch(plan: LaunchConfig, inbox: Inbox, supervisor: Supervisor, screen: Scr
             if isinstance(sample.message, DriverState):
                 stopped = _stopped(sample.message)
             elif own.sent(sample, supervisor.pid("executive")):
-                supervisor.heard("executive", turn.now_ns)
+                supervisor.report_alive("executive", turn.now_ns)
                 screen.show(sample.message)
                 if isinstance(sample.message, ExecStatus):
                     result = sample.message.result
-        supervisor.look(turn.now_ns)
+        supervisor.poll(turn.now_ns)
         ended = _ended(supervisor) or (plan.once and (result or stopped))
         if ended:
             return ended
@@ -117,7 +117,7 @@ def _appeared(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop
     """Wait until a process shows that it is there; False if it ends, time runs out, or people stop the system."""
     deadline = time.monotonic() + START_S
     while not ready():
-        supervisor.look(time.monotonic_ns())
+        supervisor.poll(time.monotonic_ns())
         if stop.requested or time.monotonic() > deadline or supervisor.ended(name) is not None:
             return False
         time.sleep(0.02)

@@ -82,14 +82,14 @@ def commands_apart(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
 
 
 def _said(run: RecordedRun, topic: str, kind: type) -> list[Any]:
-    messages = (decoded(recorded) for recorded in run.said.get(TOPICS[topic].key, ()))
+    messages = (decoded(recorded) for recorded in run.published.get(TOPICS[topic].key, ()))
     return [message for message in messages if isinstance(message, kind)]
 
 
 def _commands(run: RecordedRun) -> NDArray[np.float64]:
     """The commands from the first that is not zero on."""
-    keys = [key for key in run.said if key.endswith(COMMANDS)]
-    rows = [(r.log_ns / 1e9, *_values(decoded(r))) for key in keys for r in run.said[key]]
+    keys = [key for key in run.published if key.endswith(COMMANDS)]
+    rows = [(r.log_ns / 1e9, *_values(decoded(r))) for key in keys for r in run.published[key]]
     table = np.array(rows, dtype=np.float64).reshape(len(rows), -1) if rows else np.zeros((0, 1))
     moving = np.flatnonzero(table[:, 1:].any(axis=1))
     table = table[moving[0] :] if moving.size else table[:0]

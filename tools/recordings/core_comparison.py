@@ -33,11 +33,11 @@ class RunComparison:
         self.ticks = self.compared = self.rounded = 0
         self._robot, self._exact, self._proofs = robot, exact, proofs
         self._last_tick = run.ticks[-1].tick
-        self._said: dict[str, list[Recorded]] = dict(run.said)
+        self._said: dict[str, list[Recorded]] = dict(run.published)
         self._taken: dict[str, int] = defaultdict(int)
         self._told: Message | None = None  # of refinement, last, without proof
-        if not proofs and REFINEMENT in run.said:
-            self._said[REFINEMENT] = _without_proofs(run.said[REFINEMENT])
+        if not proofs and REFINEMENT in run.published:
+            self._said[REFINEMENT] = _without_proofs(run.published[REFINEMENT])
 
     def tick(self, tick: int, outputs: tuple[Output, ...]) -> Difference | None:
         """The first difference in what is said in a tick."""

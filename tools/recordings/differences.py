@@ -39,7 +39,7 @@ def rounding_apart(then: Any, now: Any) -> bool:
     if type(then) is not type(now):
         return False
     if isinstance(then, float):
-        return abs(then - now) <= ROUNDING * max(1.0, abs(then)) or then == now
+        return bool(abs(then - now) <= ROUNDING * max(1.0, abs(then)) or then == now)
     if isinstance(then, tuple):
         return len(then) == len(now) and all(map(rounding_apart, then, now))
     if dataclasses.is_dataclass(then):

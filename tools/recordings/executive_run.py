@@ -26,7 +26,7 @@ class RecordedRun:
     sender: str
     provenance: dict[str, Any] = field(default_factory=dict)
     ticks: list[TickReport] = field(default_factory=list)
-    said: dict[str, list[Recorded]] = field(default_factory=lambda: defaultdict(list))
+    published: dict[str, list[Recorded]] = field(default_factory=lambda: defaultdict(list))
 
 
 def decoded(recorded: Recorded) -> Message:
@@ -60,7 +60,7 @@ def take(run: RecordedRun, message: Recorded) -> str:
             return report.reason if isinstance(report, Rejected) else message.ros_type
         run.ticks.append(report)
     else:
-        run.said[message.key].append(message)
+        run.published[message.key].append(message)
     return ""
 
 
@@ -74,5 +74,5 @@ def _table(said: Provenance) -> dict[str, Any]:
 def in_order(run: RecordedRun) -> None:
     """Sort what a run holds by its numbers."""
     run.ticks.sort(key=lambda report: report.tick)
-    for messages in run.said.values():
+    for messages in run.published.values():
         messages.sort(key=lambda message: message.sequence)

@@ -68,7 +68,7 @@ class RecordedRuns:
         return f"left out of {TICK_KEY}: {text}" if text else ""
 
     def _missing(self, recording: Recording) -> str:
-        known = "; ".join(filter(None, (self.left_out_text(), recording.account.text())))
+        known = "; ".join(filter(None, (self.left_out_text(), recording.damage.text())))
         return f"no message of {TICK_KEY}" + (f" to be used ({known})" if known else "")
 
     def _take(self, run: RecordedRun, message: Recorded) -> None:

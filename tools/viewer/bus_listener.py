@@ -41,7 +41,7 @@ class BusListener:
     def look(self) -> None:
         """Take what has arrived and hand it on."""
         rows: list[Event] = []
-        for raw in self._intake.take():
+        for raw in self._intake.drain():
             message = _read(raw)
             if message is not None and self._wanted(raw):
                 rows += self._story.tell(self._at_s(raw), raw.key, message)

@@ -92,7 +92,7 @@ def test_what_stands_behind_a_damaged_record_is_found_again(tmp_path, damage):
     (tmp_path / "bad.mcap").write_bytes(data)
     recording = open_recording(tmp_path / "bad.mcap")
     assert [m.sequence for m in recording.messages()] == [*range(1, 11), *range(21, 51)]
-    assert "bytes lost" in recording.account.text()
+    assert "bytes lost" in recording.damage.text()
 
 
 @pytest.mark.parametrize("opcode", [0x03, 0x06, 0x0C])

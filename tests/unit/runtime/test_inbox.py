@@ -22,7 +22,7 @@ class Line:
     def __init__(self, *raws):
         self.raws = list(raws)
 
-    def take(self):
+    def receive(self):
         return self.raws.pop(0) if self.raws else None
 
 

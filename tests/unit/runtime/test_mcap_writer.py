@@ -12,14 +12,14 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.session import encoding_of
-from tailor.runtime.recordings.mcap_scan import MAGIC, Account, scan
+from tailor.runtime.recordings.mcap_scan import MAGIC, DamageReport, scan
 from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
 from tailor.runtime.recordings.sink import Sink
-from tailor.runtime.recordings.snapshot import Alarm, Ring
+from tailor.runtime.recordings.snapshot import FailureDetector, SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
@@ -65,7 +65,7 @@ def test_a_tape_reads_back_exactly_what_went_in(tmp_path):
     ]
     assert [m.data for m in found] == [odometry(k).payload for k in range(1, 51)]
     assert dict(recording.metadata())["made"] == {"by": "test"}
-    assert (recording.account.chunks, recording.account.text()) == (5, "")
+    assert (recording.damage.chunks, recording.damage.text()) == (5, "")
 
 
 def test_an_unsigned_message_of_a_known_key_gets_its_type_from_the_table(tmp_path):
@@ -89,8 +89,8 @@ def test_a_cut_file_gives_back_every_whole_chunk(tmp_path, share):
     sequences = [m.sequence for m in recording.messages()]
     assert sequences == list(range(1, len(sequences) + 1))
     assert len(sequences) % 10 == 0
-    assert not recording.account.complete
-    assert recording.account.text().startswith("no footer; ")
+    assert not recording.damage.complete
+    assert recording.damage.text().startswith("no footer; ")
 
 
 def chunk_bounds(data):
@@ -110,8 +110,8 @@ def test_a_damaged_chunk_costs_its_own_messages_only(tmp_path):
     (tmp_path / "bad.mcap").write_bytes(data)
     recording = open_recording(tmp_path / "bad.mcap")
     assert [m.sequence for m in recording.messages()] == list(range(11, 51)), "channels come from the index"
-    assert (recording.account.chunks, recording.account.damaged_chunks) == (4, 1)
-    assert "1 damaged" in recording.account.text()
+    assert (recording.damage.chunks, recording.damage.damaged_chunks) == (4, 1)
+    assert "1 damaged" in recording.damage.text()
 
 
 def test_flipped_bits_anywhere_never_raise_anything_but_a_usage_error(tmp_path):
@@ -132,9 +132,9 @@ def test_flipped_bits_anywhere_never_raise_anything_but_a_usage_error(tmp_path):
 def test_a_record_that_claims_to_be_huge_is_not_read(tmp_path, length):
     path = tmp_path / "bomb.mcap"
     path.write_bytes(MAGIC + struct.pack("<BQ", 6, length) + bytes(100))
-    account = Account()
-    assert list(scan(path, account)) == []
-    assert account.lost_bytes == 109
+    damage = DamageReport()
+    assert list(scan(path, damage)) == []
+    assert damage.lost_bytes == 109
 
 
 def test_a_compression_bomb_is_not_unpacked(tmp_path):
@@ -151,9 +151,9 @@ def test_a_compression_bomb_is_not_unpacked(tmp_path):
         )
         path = tmp_path / f"{declared}.mcap"
         path.write_bytes(MAGIC + struct.pack("<BQ", 6, len(body)) + body)
-        account = Account()
-        assert list(scan(path, account)) == []
-        assert account.damaged_chunks == 1
+        damage = DamageReport()
+        assert list(scan(path, damage)) == []
+        assert damage.damaged_chunks == 1
 
 
 def test_what_is_no_recording_is_told_in_one_line(tmp_path):
@@ -214,12 +214,12 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
     monkeypatch.setattr(os, "write", full)
     for sequence in range(1, 31):
         intake.put(odometry(sequence))
-        recorder.spin_once(sequence * S)
+        recorder.step(sequence * S)
     assert recorder.health.trouble == "No space left on device"
     lost = recorder.health.drops["agilo/odom"]
     assert 0 < lost < 30
     monkeypatch.setattr(os, "write", real)
-    recorder.spin_once(100 * S)
+    recorder.step(100 * S)
     assert recorder.health.trouble == ""
     intake.put(odometry(31))
     assert recorder.close().messages == 31 - lost
@@ -232,7 +232,7 @@ def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
     intake = IngestQueue(most_bytes=2000)
     for sequence in range(100):
         intake.put(odometry(sequence))
-    kept = len(intake.take())
+    kept = len(intake.drain())
     assert kept == 2000 // len(odometry(1).payload)
     assert intake.drops == Counter({"agilo/odom": 100 - kept})
 
@@ -242,7 +242,7 @@ def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
     recorder = make_recorder(tmp_path, intake, most_bytes=1)
     for sequence in range(1, 4):
         intake.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
-        recorder.spin_once(sequence * S)
+        recorder.step(sequence * S)
     recorder.close()
     parts = sorted(tmp_path.glob("r_*.mcap"))
     assert len(parts) == 4
@@ -297,10 +297,12 @@ def driver(mode):
 
 
 def test_an_alarm_goes_off_once_when_something_goes_wrong():
-    alarm = Alarm()
-    said = [alarm.hears(r) for r in (status("READY"), status("FAULT"), status("FAULT"), status("READY"), odometry(1))]
+    failure = FailureDetector()
+    said = [
+        failure.detect(r) for r in (status("READY"), status("FAULT"), status("FAULT"), status("READY"), odometry(1))
+    ]
     assert said == ["", "exec/status: FAULT: why", "", "", ""]
-    assert [alarm.hears(r) for r in (driver("armed"), driver("stopped"), driver("armed"))] == [
+    assert [failure.detect(r) for r in (driver("armed"), driver("stopped"), driver("armed"))] == [
         "",
         "agilo/driver: stopped: why",
         "",
@@ -308,34 +310,36 @@ def test_an_alarm_goes_off_once_when_something_goes_wrong():
 
 
 def test_a_driver_that_was_stopped_before_is_no_alarm():
-    assert Alarm().hears(driver("stopped")) == ""
+    assert FailureDetector().detect(driver("stopped")) == ""
 
 
 def test_a_ring_keeps_the_last_seconds_only(tmp_path):
-    ring = Ring(5 * S)
+    buffer = SnapshotBuffer(5 * S)
     for k in range(1, 21):
-        ring.add(odometry(k), k * S)
-    assert ring.write(tmp_path / "ring.mcap", {}) == 6
+        buffer.add(odometry(k), k * S)
+    assert buffer.write(tmp_path / "ring.mcap", {}) == 6
     assert [m.sequence for m in open_recording(tmp_path / "ring.mcap").messages()] == list(range(15, 21))
 
 
 def test_a_ring_is_bounded_in_bytes_too(tmp_path):
-    ring = Ring(1000 * S, most_bytes=10 * len(odometry(1).payload))
+    buffer = SnapshotBuffer(1000 * S, most_bytes=10 * len(odometry(1).payload))
     for k in range(1, 21):
-        ring.add(odometry(k), k * S)
-    assert ring.write(tmp_path / "ring.mcap", {}) == 10
+        buffer.add(odometry(k), k * S)
+    assert buffer.write(tmp_path / "ring.mcap", {}) == 10
 
 
 def test_a_snapshot_of_nothing_is_refused(tmp_path):
     intake = IngestQueue()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
-    assert not recorder.ask("by hand", 0)
-    recorder.spin_once(0)
+    recorder = SnapshotRecorder(
+        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
+    assert not recorder.request_snapshot("by hand", 0)
+    recorder.step(0)
     intake.put(odometry(1))
-    recorder.spin_once(1)
+    recorder.step(1)
     assert list(tmp_path.iterdir()) == []
-    assert recorder.ask("by hand", 2)
-    recorder.spin_once(2)
+    assert recorder.request_snapshot("by hand", 2)
+    recorder.step(2)
     assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
 
 
@@ -353,29 +357,33 @@ def full_disk(monkeypatch):
 
 def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
     intake = IngestQueue()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
+    recorder = SnapshotRecorder(
+        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
     intake.put(odometry(1))
-    recorder.spin_once(0)
+    recorder.step(0)
     full_disk(True)
-    recorder.ask("by hand", 1)
-    recorder.spin_once(1)
+    recorder.request_snapshot("by hand", 1)
+    recorder.step(1)
     assert recorder.health.trouble == "No space left on device"
     assert (recorder.health.files, list(tmp_path.iterdir())) == ([], [])
     full_disk(False)
-    recorder.ask("again", 2)
-    recorder.spin_once(2)
+    recorder.request_snapshot("again", 2)
+    recorder.step(2)
     assert [path.name for path in recorder.health.files] == ["s_000.mcap"]
 
 
 def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
     (tmp_path / "s_000.mcap").write_text("of yesterday")
     intake = IngestQueue()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
+    recorder = SnapshotRecorder(
+        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
     intake.put(odometry(1))
-    recorder.spin_once(0)
+    recorder.step(0)
     for k in (1, 2):
-        recorder.ask("by hand", k)
-        recorder.spin_once(k)
+        recorder.request_snapshot("by hand", k)
+        recorder.step(k)
     assert [path.name for path in recorder.health.files] == ["s_001.mcap", "s_002.mcap"]
     assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
 
@@ -392,15 +400,17 @@ def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_p
 
 def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
     intake = IngestQueue()
-    recorder = SnapshotRecorder(tmp_path / "s.mcap", intake, Selection(), Ring(100 * S), RecordingMetadata("1", 0))
+    recorder = SnapshotRecorder(
+        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
     for k, message in enumerate([odometry(1), status("READY", 2), status("FAULT", 3)]):
         intake.put(message)
-        recorder.spin_once(k * S // 10)
+        recorder.step(k * S // 10)
     assert list(tmp_path.iterdir()) == []
     intake.put(odometry(4))
-    recorder.spin_once(2 * S)
-    recorder.ask("by hand", 3 * S)
-    recorder.spin_once(3 * S)
+    recorder.step(2 * S)
+    recorder.request_snapshot("by hand", 3 * S)
+    recorder.step(3 * S)
     health = recorder.close()
     assert [p.name for p in health.files] == ["s_000.mcap", "s_001.mcap"]
     first = open_recording(health.files[0])

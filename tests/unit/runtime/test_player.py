@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.runtime.recordings.copying import copy
-from tailor.runtime.recordings.playback_clock import Pace
+from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.player import Player
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
@@ -20,37 +20,37 @@ MS = 1_000_000
 
 
 def test_messages_are_due_at_absolute_times_at_any_rate():
-    assert [Pace(1000, 50).due_ns(1000 + k * 100) for k in range(3)] == [50, 150, 250]
-    assert [Pace(1000, 50, rate=4.0).due_ns(1000 + k * 100) for k in range(3)] == [50, 75, 100]
+    assert [PlaybackClock(1000, 50).due_ns(1000 + k * 100) for k in range(3)] == [50, 150, 250]
+    assert [PlaybackClock(1000, 50, rate=4.0).due_ns(1000 + k * 100) for k in range(3)] == [50, 75, 100]
 
 
 def test_a_pause_stops_recorded_time_and_goes_on_from_there():
-    pace = Pace(0, 0)
-    pace.toggle(300)
-    assert (pace.due_ns(500), pace.recorded_ns(900)) == (None, 300)
-    pace.toggle(1000)
-    assert (pace.recorded_ns(1000), pace.due_ns(500)) == (300, 1200)
+    playback = PlaybackClock(0, 0)
+    playback.toggle(300)
+    assert (playback.due_ns(500), playback.recorded_ns(900)) == (None, 300)
+    playback.toggle(1000)
+    assert (playback.recorded_ns(1000), playback.due_ns(500)) == (300, 1200)
 
 
 def test_a_step_lets_one_message_pass_a_pause():
-    pace = Pace(0, 0, paused=True)
-    assert not pace.take_step(10)
-    pace.step()
-    assert pace.take_step(10)
-    assert not pace.take_step(20)
-    pace.toggle(100)
-    assert pace.due_ns(30) == 120, "time goes on from the message that was stepped to"
-    pace.step()
-    assert not pace.take_step(40), "steps count only while paused"
+    playback = PlaybackClock(0, 0, paused=True)
+    assert not playback.take_step(10)
+    playback.step()
+    assert playback.take_step(10)
+    assert not playback.take_step(20)
+    playback.toggle(100)
+    assert playback.due_ns(30) == 120, "time goes on from the message that was stepped to"
+    playback.step()
+    assert not playback.take_step(40), "steps count only while paused"
 
 
 def test_the_rate_changes_from_now_on_and_stays_in_its_bounds():
-    pace = Pace(0, 0)
-    pace.scale(2.0, 100)
-    assert pace.due_ns(300) == 200
+    playback = PlaybackClock(0, 0)
+    playback.scale(2.0, 100)
+    assert playback.due_ns(300) == 200
     for _ in range(100):
-        pace.scale(10.0, 100)
-    assert pace.rate == 100.0
+        playback.scale(10.0, 100)
+    assert playback.rate == 100.0
 
 
 class Outlet:
@@ -65,14 +65,14 @@ class Outlet:
         self.sent.append((self.clock.now_ns(), self.key, data, origin))
 
 
-def play(tmp_path, watch=lambda pace: True, **passage):
+def play(tmp_path, watch=lambda playback: True, **passage):
     recording = open_recording(write_tape(tmp_path / "a.mcap", count=10, chunks=1))
     clock = SteppedClock(7)
     outlet = Outlet(clock)
     ticks = []
     player = Player(outlet, clock, watch, ticks.append, tick_ns=S)
     part = Passage(recording, selection([], []), **passage)
-    finished = player.play(part.messages(), Pace(part.bounds_ns()[0], clock.now_ns(), rate=2.0))
+    finished = player.play(part.messages(), PlaybackClock(part.bounds_ns()[0], clock.now_ns(), rate=2.0))
     return outlet.sent, player.played, finished, ticks
 
 
@@ -96,7 +96,7 @@ def test_a_replay_can_start_later_end_earlier_and_use_another_key(tmp_path):
 
 def test_the_one_who_watches_may_end_a_replay(tmp_path):
     looks = iter([True] * 5 + [False])
-    sent, _, finished, _ = play(tmp_path, watch=lambda pace: next(looks))
+    sent, _, finished, _ = play(tmp_path, watch=lambda playback: next(looks))
     assert not finished
     assert len(sent) < 10
 
@@ -135,12 +135,12 @@ def test_recovering_a_torn_file_gives_a_whole_one_and_says_what_is_lost(tmp_path
     torn = tmp_path / "torn.mcap"
     torn.write_bytes(write_tape(tmp_path / "a.mcap").read_bytes()[:-2000])
     copied = copy(torn, tmp_path / "whole.mcap", lambda *_: True, {})
-    assert copied.account.text().startswith("no footer; ")
+    assert copied.damage.text().startswith("no footer; ")
     recovered = open_recording(tmp_path / "whole.mcap")
     assert [m.sequence for m in recovered.messages()] == list(range(1, copied.kept + 1))
     assert copied.kept >= 40
-    assert recovered.account.text() == ""
-    assert dict(recovered.metadata())["copy"]["damage"] == copied.account.text()
+    assert recovered.damage.text() == ""
+    assert dict(recovered.metadata())["copy"]["damage"] == copied.damage.text()
 
 
 def test_a_copy_never_overwrites(tmp_path):

@@ -64,22 +64,22 @@ def supervisor():
 
 
 def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
-    supervisor.begin(ProcessSpec("executive", ["x"]), 0)
+    supervisor.start(ProcessSpec("executive", ["x"]), 0)
     FakeChild.made[0].code = -9
-    supervisor.look(1 * S)
-    supervisor.look(1 * S + 199 * MS)
+    supervisor.poll(1 * S)
+    supervisor.poll(1 * S + 199 * MS)
     assert len(FakeChild.made) == 1
-    supervisor.look(1 * S + 200 * MS)
+    supervisor.poll(1 * S + 200 * MS)
     assert len(FakeChild.made) == 2
     assert supervisor.said == ["executive ended with -9; starting again in 0.2 s"]
     assert supervisor.ended("executive") is None
 
 
 def test_a_crash_loop_is_given_up(supervisor):
-    supervisor.begin(ProcessSpec("executive", ["x"]), 0)
+    supervisor.start(ProcessSpec("executive", ["x"]), 0)
     for k in range(1, 400):
         FakeChild.made[-1].code = 1
-        supervisor.look(k * 100 * MS)
+        supervisor.poll(k * 100 * MS)
     assert len(FakeChild.made) == 5
     assert supervisor.ended("executive") == 1
     assert supervisor.said[-1] == "executive ended with 1; gave up: too many starts within a minute"
@@ -87,51 +87,51 @@ def test_a_crash_loop_is_given_up(supervisor):
 
 @pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
 def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, code):
-    supervisor.begin(ProcessSpec("sim", ["x"], restarts=restarts), 0)
+    supervisor.start(ProcessSpec("sim", ["x"], restarts=restarts), 0)
     FakeChild.made[0].code = code
-    supervisor.look(1)
-    supervisor.look(10 * S)
+    supervisor.poll(1)
+    supervisor.poll(10 * S)
     assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
 
 
 def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
-    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     for now_ns in range(0, 30 * S, 50 * MS):
         if now_ns % S == 0:
-            supervisor.heard("executive", now_ns)
-        supervisor.look(now_ns)
-    supervisor.look(30 * S)
+            supervisor.report_alive("executive", now_ns)
+        supervisor.poll(now_ns)
+    supervisor.poll(30 * S)
     assert not FakeChild.made[0].killed
-    supervisor.look(30 * S + 1)
+    supervisor.poll(30 * S + 1)
     assert FakeChild.made[0].killed
 
 
 @pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
 def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervisor, paused_s):
-    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
-    supervisor.heard("executive", S)
-    supervisor.look(S + 100 * MS)
+    supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    supervisor.report_alive("executive", S)
+    supervisor.poll(S + 100 * MS)
     on_ns = S + 100 * MS + round(paused_s * S)
     for now_ns in range(on_ns, on_ns + 900 * MS, 50 * MS):
-        supervisor.look(now_ns)
+        supervisor.poll(now_ns)
     assert not FakeChild.made[0].killed
-    supervisor.look(on_ns + 900 * MS + 1)
+    supervisor.poll(on_ns + 900 * MS + 1)
     assert FakeChild.made[0].killed
 
 
 def test_a_child_that_is_gone_for_good_is_told(supervisor):
-    supervisor.begin(ProcessSpec("record", ["x"], restarts=False), 0)
+    supervisor.start(ProcessSpec("record", ["x"], restarts=False), 0)
     FakeChild.made[0].code = -9
-    supervisor.look(S)
-    supervisor.look(2 * S)
+    supervisor.poll(S)
+    supervisor.poll(2 * S)
     assert supervisor.said == ["record ended with -9; not started again"]
 
 
 def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
-    supervisor.begin(ProcessSpec("executive", ["x"], silence_ns=S), 0)
-    supervisor.look(STARTUP_NS)
+    supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    supervisor.poll(STARTUP_NS)
     assert not FakeChild.made[0].killed
-    supervisor.look(STARTUP_NS + 1)
+    supervisor.poll(STARTUP_NS + 1)
     assert FakeChild.made[0].killed
 
 

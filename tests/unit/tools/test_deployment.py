@@ -1,4 +1,4 @@
-"""What a deployment file and the flags over it come to."""
+"""Deployment files, overridden by flags, give the configuration of the executive."""
 
 import argparse
 import sys
@@ -7,39 +7,40 @@ import pytest
 
 from tailor.executive.core.context import PlannerCommand
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import configure_system, deployment, order_of
+from tailor.tools.cli.deployment import executive_config
+from tailor.tools.cli.system_flags import configure_system, deployment_from
 
 
-def order(tmp_path, text, *flags):
+def config(tmp_path, text, *flags):
     parser = argparse.ArgumentParser()
     configure_system(parser)
     file = tmp_path / "d.toml"
     file.write_text(text)
     arguments = parser.parse_args(["soccer", "--config", str(file), *flags])
-    return order_of("soccer", deployment(arguments))
+    return executive_config("soccer", deployment_from(arguments))
 
 
 def test_the_planner_of_the_file_reaches_the_executive(tmp_path):
-    made = order(tmp_path, f'[planner]\ncommand = "{sys.executable} -v1"\nlimit_s = 3\n')
+    made = config(tmp_path, f'[planner]\ncommand = "{sys.executable} -v1"\nlimit_s = 3\n')
     assert made.settings.external == PlannerCommand(f"{sys.executable} -v1", 3.0)
 
 
 def test_a_flag_wins_over_the_file_and_leaves_the_rest(tmp_path):
     text = '[planner]\ncommand = "no-such-vhpop"\nlimit_s = 3\n'
-    assert order(tmp_path, text, "--planner", sys.executable).settings.external == PlannerCommand(sys.executable, 3.0)
-    assert order(tmp_path, text, "--planner", "").settings.external.command == "", "an empty one switches it off"
+    assert config(tmp_path, text, "--planner", sys.executable).settings.external == PlannerCommand(sys.executable, 3.0)
+    assert config(tmp_path, text, "--planner", "").settings.external.command == "", "an empty one switches it off"
 
 
 def test_without_one_there_is_none(tmp_path):
-    assert order(tmp_path, "").settings.external == PlannerCommand()
+    assert config(tmp_path, "").settings.external == PlannerCommand()
 
 
 def test_a_planner_that_is_not_there_is_a_mistake(tmp_path):
     with pytest.raises(UsageError, match="there is no program 'no-such-vhpop'"):
-        order(tmp_path, "", "--planner", "no-such-vhpop -g")
+        config(tmp_path, "", "--planner", "no-such-vhpop -g")
 
 
 @pytest.mark.parametrize("limit", ["0", "-1", "inf", "nan"])
 def test_a_limit_is_a_time(tmp_path, limit):
     with pytest.raises(UsageError, match="expected seconds above 0"):
-        order(tmp_path, f"[planner]\nlimit_s = {limit}\n")
+        config(tmp_path, f"[planner]\nlimit_s = {limit}\n")

@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
     copied = copy(recording.path, target, keep, note)
-    if copied.account.text():
-        print(f"{recording.path}: {copied.account.text()}")
+    if copied.damage.text():
+        print(f"{recording.path}: {copied.damage.text()}")
     print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
     return 0 if copied.kept else 1

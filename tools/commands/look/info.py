@@ -45,7 +45,7 @@ def _told(recording: Recording, found: Survey) -> dict[str, Any]:
         "start": _time(start_ns) if found.streams else "",
         "duration_s": round((end_ns - start_ns) / 1e9, 3),
         "messages": sum(stream.count for stream in found.streams.values()),
-        "damage": recording.account.text(),
+        "damage": recording.damage.text(),
         "drops": {key: int(count) if count.isdecimal() else count for key, count in metadata.get("drops", {}).items()},
         "topics": [_stream(s) for s in sorted(found.streams.values(), key=lambda s: (s.key, s.first_ns))],
         "episodes": [{"goal": goal, "result": result} for goal, result in found.results],

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
-from tailor.runtime.recordings.mcap_scan import Account, scan
+from tailor.runtime.recordings.mcap_scan import DamageReport, scan
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -18,14 +18,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0, also when there was nothing to recover; 1 when nothing could be."""
     source = Path(arguments.file)
-    account = Account()
-    for _ in scan(source, account):
+    damage = DamageReport()
+    for _ in scan(source, damage):
         pass
-    if not account.text():
+    if not damage.text():
         print(f"{source}: whole, nothing to recover")
         return 0
     target = Path(arguments.output) if arguments.output else source.with_name(f"{source.stem}-recovered.mcap")
     copied = copy(source, target, lambda *_: True, {})
-    print(f"{source}: {copied.account.text()}")
+    print(f"{source}: {copied.damage.text()}")
     print(f"{target}: {copied.kept} messages recovered, {copied.left_out} of unknown channels left out")
     return 0 if copied.kept else 1

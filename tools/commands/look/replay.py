@@ -16,7 +16,7 @@ import numpy as np
 
 from tailor.runtime.bus.session import Session, open_client
 from tailor.runtime.clock import MonotonicClock
-from tailor.runtime.recordings.playback_clock import FASTEST, SLOWEST, Pace
+from tailor.runtime.recordings.playback_clock import FASTEST, SLOWEST, PlaybackClock
 from tailor.runtime.recordings.player import Played, Player
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection, selection
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             changes = {"barred": Selection(exclude=DRIVING)}
         passage = Passage(recording, wanted, remap, arguments.start, arguments.duration, **changes)
         outlets = Outlets(session, passage.places())
-        damage = recording.account.text()  # now that all of it was read once; what follows may end early
+        damage = recording.damage.text()  # now that all of it was read once; what follows may end early
         played = _play(arguments, session, passage, outlets, stop)
         gone = not session.connected
     _tell(played, arguments.json)
@@ -98,8 +98,8 @@ def _play(arguments: argparse.Namespace, session: Session, passage: Passage, out
         _say(f"nobody listens to: {', '.join(deaf)}")
     with Keyboard() as keyboard:
 
-        def watch(pace: Pace) -> bool:
-            return session.connected and not stop.requested and _steer(pace, keyboard.pressed(), clock.now_ns())
+        def watch(playback: PlaybackClock) -> bool:
+            return session.connected and not stop.requested and _steer(playback, keyboard.pressed(), clock.now_ns())
 
         def tick(recorded_ns: int) -> None:
             clock_outlet.publish(Clock(min(recorded_ns, LAST_CLOCK_NS)))
@@ -110,20 +110,20 @@ def _play(arguments: argparse.Namespace, session: Session, passage: Passage, out
         start_ns, _ = passage.bounds_ns()
         again = True
         while again:
-            pace = Pace(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
-            again = player.play(passage.messages(), pace) and arguments.loop
+            playback = PlaybackClock(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
+            again = player.play(passage.messages(), playback) and arguments.loop
     time.sleep(TAIL_S)
     return player.played
 
 
-def _steer(pace: Pace, key: str, now_ns: int) -> bool:
+def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
     """Do what a key says; False ends the replay."""
     if key == "space":
-        pace.toggle(now_ns)
+        playback.toggle(now_ns)
     elif key == "right":
-        pace.step()
+        playback.step()
     elif key in ("up", "down"):
-        pace.scale(1.1 if key == "up" else 1 / 1.1, now_ns)
+        playback.scale(1.1 if key == "up" else 1 / 1.1, now_ns)
     return key != "quit"
 
 
@@ -131,7 +131,7 @@ def _driver_is_live(session: Session) -> bool:
     intake, subscribe_all = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
     time.sleep(LISTEN_S)
     subscribe_all.undeclare()
-    return bool(intake.take())
+    return bool(intake.drain())
 
 
 def _tell(played: Played, as_json: bool) -> None:

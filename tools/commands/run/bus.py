@@ -1,4 +1,4 @@
-"""Run the bus router alone; every other process of a deployment connects to it."""
+"""Run only the bus router; every other process of a deployment connects to it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Flags of `tailor bus`; the endpoint that the others connect to is the one to listen at."""
+    """Flags of `tailor bus`; the router listens at the endpoint that the others connect to."""
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Route until told to stop."""
+    """Route until stopped."""
     endpoint = endpoint_of(arguments)
     stop = stop_on_signals()
     with open_router(endpoint):

@@ -1,4 +1,4 @@
-"""The same plan executed twice from the same seed, greedy and refined: live, recorded, tabulated, and drawn."""
+"""Execute the same plan twice from the same seed, greedy and refined; record, tabulate and draw both runs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.table import Table
 
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import Deployment, order_of
+from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.recorded_track import recorded_track
@@ -25,12 +25,14 @@ RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor demo`."""
     parser.add_argument("--scenario", default="approach-dribble", help="a soccer scenario (default %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of start, ball, target and noise (default %(default)s)")
-    parser.add_argument("--output", type=Path, default=Path("out/demo"), help="folder (default %(default)s)")
+    parser.add_argument(
+        "--seed", type=int, default=1, help="random seed of start, ball, target and noise (default %(default)s)"
+    )
+    parser.add_argument("--output", type=Path, default=Path("out/demo"), help="output folder (default %(default)s)")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run both, show the table, write recordings, picture and page; 0 when both reached the goal."""
+    """Run both and write recordings, picture and page; 0 if both runs reached the goal."""
     if arguments.seed < 0:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
     stop = stop_on_signals()
@@ -54,18 +56,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording: Path, stop: Stop) -> None:
-    order = order_of("soccer", Deployment(scenario=arguments.scenario))
-    settings = order.settings
+    config = executive_config("soccer", Deployment(scenario=arguments.scenario))
+    settings = config.settings
     refinement = replace(settings.refinement, horizon=horizon)
-    order = replace(order, settings=replace(settings, seed=arguments.seed, refinement=refinement))
+    config = replace(config, settings=replace(settings, seed=arguments.seed, refinement=refinement))
     with screen() as shown:
-        shown.tell(f"{name}: h = {horizon}, scenario {arguments.scenario}, seed {arguments.seed}")
-        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), shown, stop)
-        shown.tell(f"{name}: {result or 'stopped'}")
+        shown.report(f"{name}: h = {horizon}, scenario {arguments.scenario}, seed {arguments.seed}")
+        result = run_system(LaunchConfig(config, free_endpoint(), recording, once=True), shown, stop)
+        shown.report(f"{name}: {result or 'stopped'}")
 
 
 def summary(tracks: list[Track]) -> Table:
-    """Predicted and actual durations, and how the ticks kept time."""
+    """Table of predicted and actual durations, with late and missed ticks."""
     table = Table(title="The same plan, executed twice")
     for column in ("", "action", "predicted", "actual"):
         table.add_column(column, justify="left" if column in ("", "action") else "right")
@@ -78,9 +80,10 @@ def summary(tracks: list[Track]) -> Table:
                 f"{action.actual_s:.2f} s",
             )
         table.add_row("", "sum", f"{track.predicted_s:.2f} s", f"{track.actual_s:.2f} s", style="bold")
-        kept = f"{track.ticks} ticks, {track.late_ticks} late by over 50 ms, {track.missed_ticks} missed"
-        table.add_row("", kept, "", "", end_section=True)
-    first, last = tracks[0].actual_s, tracks[-1].actual_s
-    if first > 0:
-        table.caption = f"refined against greedy: {last - first:+.2f} s, {100 * (1 - last / first):.1f} % improvement"
+        timing = f"{track.ticks} ticks, {track.late_ticks} late by over 50 ms, {track.missed_ticks} missed"
+        table.add_row("", timing, "", "", end_section=True)
+    greedy_s, refined_s = tracks[0].actual_s, tracks[-1].actual_s
+    if greedy_s > 0:
+        change = f"{refined_s - greedy_s:+.2f} s, {100 * (1 - refined_s / greedy_s):.1f} % improvement"
+        table.caption = f"refined against greedy: {change}"
     return table

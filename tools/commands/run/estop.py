@@ -13,8 +13,8 @@ from tailor.schemas.messages import DriverState, EStop
 from tailor.schemas.topics import TOPICS
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 
-WAIT_S = 1.5  # for every driver to confirm; they speak at 10 Hz
-AGAIN_S = 0.1  # until all have, repeat it: a publication may be lost
+WAIT_S = 1.5  # for every driver to confirm; drivers publish at 10 Hz
+REPEAT_S = 0.1  # a publication may be lost
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -23,26 +23,26 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 when every driver that speaks has stopped, 1 when one has not or none speaks."""
+    """0 if every driver on the bus has stopped, 1 if one has not or there is none."""
     with open_client(endpoint_of(arguments)) as session:
-        intake, subscribe_all = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
+        intake, subscription = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
         modes = _stop(session.publisher("estop", ""), intake)
-        subscribe_all.undeclare()
+        subscription.undeclare()
     for robot, mode in sorted(modes.items()):
         print(f"{robot} is {mode}")
     if not modes:
-        print("no driver speaks")
+        print("no driver is on the bus")
     return 0 if modes and set(modes.values()) == {"estopped"} else 1
 
 
-def _stop(outlet: Publisher, intake: IngestQueue) -> dict[str, str]:
-    """Each robot's mode after the e-stop was sent, repeatedly, for WAIT_S."""
+def _stop(publisher: Publisher, intake: IngestQueue) -> dict[str, str]:
+    """Send the emergency stop repeatedly for WAIT_S; returns the mode of each robot's driver."""
     modes: dict[str, str] = {}
     ends = time.monotonic() + WAIT_S
     while time.monotonic() < ends:
-        outlet.publish(EStop(True))
-        time.sleep(AGAIN_S)
-        for raw in intake.take():
+        publisher.publish(EStop(True))
+        time.sleep(REPEAT_S)
+        for raw in intake.drain():
             state = decode(DriverState, raw.payload)
             if isinstance(state, DriverState):
                 modes[raw.key.partition("/")[0]] = state.mode

@@ -1,4 +1,4 @@
-"""Run the executive on the bus: it connects, arms the robot's driver, and pursues the scenario's goal at 10 Hz."""
+"""Run the executive on the bus: connect, arm the robot's driver, pursue the scenario's goal at 10 Hz."""
 
 from __future__ import annotations
 
@@ -16,34 +16,37 @@ from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import configure_system, deployment, order_of
+from tailor.tools.cli.deployment import executive_config
+from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor executive`."""
     configure_system(parser)
-    parser.add_argument("--driver", metavar="FILE", help="the driver's declaration (default: the simulated robot's)")
+    parser.add_argument(
+        "--driver", metavar="FILE", help="specification of the driver (default: that of the simulated robot)"
+    )
     parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
-    parser.add_argument("--wait", action="store_true", help="start without a goal and wait for `tailor goal`")
+    parser.add_argument("--wait", action="store_true", help="start without a goal; `tailor goal` sends one")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compose, check everything, then tick until stopped."""
+    """Compose and check the configuration, then tick until stopped."""
     stop = stop_on_signals()
-    read = deployment(arguments)
-    order = order_of(arguments.domain, read)
-    context = build_context(order, sender="")  # every mistake of ours is told before the bus is touched
+    deployment = deployment_from(arguments)
+    config = executive_config(arguments.domain, deployment)
+    context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
-    with open_client(read.bus.endpoint) as session:
+    with open_client(deployment.bus.endpoint) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()
-        made_of = {**provenance(order, context), "machine": platform_fingerprint()}
-        made_of["realtime"] = realtime.prepare()
-        shell = Shell(context, session, MonotonicClock(), made_of)
+        origin = {**provenance(config, context), "machine": platform_fingerprint()}
+        origin["realtime"] = realtime.prepare()
+        shell = Shell(context, session, MonotonicClock(), origin)
         state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
     return 1 if arguments.once and state.task.result != "achieved" else 0
 
@@ -52,7 +55,7 @@ def _goal(context: Context, arguments: argparse.Namespace) -> str:
     if arguments.wait:
         return ""
     goal: str = arguments.goal or context.problem.goal_text
-    why_not = check_goal(context, goal)
-    if why_not:
-        raise UsageError(f"--goal {goal}: {why_not}")
+    problem = check_goal(context, goal)
+    if problem:
+        raise UsageError(f"--goal {goal}: {problem}")
     return goal

@@ -1,4 +1,4 @@
-"""Send a PDDL goal to the running executive, e.g. "(atball pos3)"; without one, the scenario's own again."""
+"""Send a PDDL goal to the running executive, e.g. "(atball pos3)"; the default is the goal of the scenario."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor goal`."""
-    parser.add_argument("goal", nargs="?", default="", help="PDDL goal (default: the scenario's)")
+    parser.add_argument("goal", nargs="?", default="", help="PDDL goal (default: the goal of the scenario)")
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Ask; 0 when it was accepted, 2 with the reason when not."""
+    """Send the goal; 0 if the executive accepted it, 2 with the reason if not."""
     with open_client(endpoint_of(arguments)) as session:
-        accepted, answer = session.ask("exec/goal", arguments.goal)
+        accepted, answer = session.call("exec/goal", arguments.goal)
     print(answer, file=sys.stdout if accepted else sys.stderr)
     return 0 if accepted else 2

@@ -24,7 +24,7 @@ from tailor.runtime.clock import wall_ns
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import selection
-from tailor.runtime.recordings.snapshot import Ring
+from tailor.runtime.recordings.snapshot import SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     with open_client(endpoint_of(arguments)) as session:
         if arguments.write:
-            done, said = session.ask(SNAPSHOT_KEY, "asked for")
+            done, said = session.call(SNAPSHOT_KEY, "asked for")
             print(said, file=sys.stdout if done else sys.stderr)
             return 0 if done else 1
         intake, subscribe_all = session.subscribe_all("**")
@@ -81,7 +81,7 @@ def _recorder(arguments: argparse.Namespace, intake: IngestQueue) -> Recorder | 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if arguments.snapshot:
-            return SnapshotRecorder(path, intake, wanted, Ring(round(arguments.snapshot * 1e9)), facts)
+            return SnapshotRecorder(path, intake, wanted, SnapshotBuffer(round(arguments.snapshot * 1e9)), facts)
         return Recorder(path, intake, wanted, limits, facts)
     except FileExistsError as error:
         raise UsageError(f"{error.filename or path}: exists already, expected the name of a new file") from error
@@ -96,7 +96,7 @@ def _record(
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
         connected = True
         while not stop.requested:
-            recorder.spin_once(time.monotonic_ns())
+            recorder.step(time.monotonic_ns())
             if session.connected != connected:
                 connected = not connected
                 print(BACK if connected else GONE, file=sys.stderr, flush=True)
@@ -111,7 +111,7 @@ def _answer(recorder: SnapshotRecorder, questions: ServiceServer) -> None:
     question = questions.poll()
     if question is None:
         return
-    if recorder.ask(question.text, time.monotonic_ns()):
+    if recorder.request_snapshot(question.text, time.monotonic_ns()):
         question.accept("the snapshot will be written")
     else:
         question.refuse("nothing has been heard on the bus yet, so there is nothing to write")

@@ -6,30 +6,38 @@ import argparse
 from pathlib import Path
 
 from tailor.runtime.stopping import stop_on_signals
-from tailor.tools.cli.deployment import configure_system, deployment, order_of
+from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
+from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.system import LaunchConfig, run_system
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
     configure_system(parser)
-    parser.add_argument("--record", metavar="FILE", type=Path, help="record everything into an MCAP file")
-    parser.add_argument("--letters", metavar="TEXT", help="what the arm is to write: short for --scenario word-TEXT")
+    parser.add_argument("--record", metavar="FILE", type=Path, help="record all messages into an MCAP file")
+    parser.add_argument("--letters", metavar="TEXT", help="text that the arm writes; short for --scenario word-TEXT")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run until Ctrl-C (0), or with --once until the goal is achieved (0) or has failed; 1 too if it ends by itself."""
+    """Run until Ctrl-C (0), or with --once until the goal is achieved (0) or has failed (1).
+
+    A system that ends by itself is a failure as well (1).
+    """
     stop = stop_on_signals()
     if arguments.letters:
         arguments.scenario = f"word-{arguments.letters.upper()}"
-    read = deployment(arguments)
-    plan = LaunchConfig(
-        order_of(arguments.domain, read), read.bus.endpoint, arguments.record, arguments.once, arguments.config or ""
+    deployment = deployment_from(arguments)
+    config = LaunchConfig(
+        executive_config(arguments.domain, deployment),
+        deployment.bus.endpoint,
+        arguments.record,
+        arguments.once,
+        arguments.config,
     )
     with screen() as shown:
-        result = run_system(plan, shown, stop)
+        result = run_system(config, shown, stop)
     print(result or "stopped")
     done = result == "achieved" if arguments.once else stop.requested
     return 0 if done else 1
