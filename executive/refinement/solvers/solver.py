@@ -6,7 +6,6 @@ where the last one stopped. It draws only from the generator handed in.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -107,6 +106,3 @@ class Solver:
         """Keep the best of the candidates, shape (n, d), if it is the best so far."""
         index = int(np.argmin(values))
         self._consider(candidates[index], float(values[index]))
-
-
-SolverFactory = Callable[[Objective, np.random.Generator, Array], Solver]
