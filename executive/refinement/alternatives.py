@@ -1,4 +1,4 @@
-"""Why a subgoal was chosen: what the models predict for the other values of one of its free parameters (Figure 11)."""
+"""Alternatives to a subgoal: predictions for the other values of one of its free parameters (Figure 11)."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ class Alternatives:
     variable: int  # id
     values: Array  # (n,) in the variable's unit
     durations_s: Array  # (actions, n) mean
-    spread_s: Array  # (actions, n) standard deviation
+    std_s: Array  # (actions, n) standard deviation
     failure: Array  # (actions, n) probability
-    total_s: Array  # (n,) what was minimised; +inf is INVALID
+    total_s: Array  # (n,) value of the objective; +inf is INVALID
 
     @property
     def best(self) -> float:
-        """The value with the least total."""
+        """Value with the least total."""
         return float(self.values[int(np.argmin(self.total_s))])
 
     @property
     def greedy(self) -> float:
-        """The value that makes the first action shortest, of those that are valid: what h = 1 would choose."""
+        """Value that minimises the first action's duration, of the valid ones: the choice with horizon 1."""
         first = np.where(np.isfinite(self.total_s), self.durations_s[0], np.inf)
         return float(self.values[int(np.argmin(first))])
 
@@ -45,27 +45,30 @@ def alternatives(
     variable: int,
     count: int = 73,
 ) -> Alternatives:
-    """Predictions along one free variable, end to end of its range.
+    """Predictions along one free variable, over its whole range.
 
     Args:
-      sequence: As it was refined.
+      sequence: The refined sequence, its variables still free.
       chosen: Values of the free variables by id.
+      models: Loaded models.
+      settings: Settings of refinement.
       variable: Id of a free variable that occurs within the horizon.
+      count: Number of values, equally spaced from end to end of the range.
 
     Raises:
       KeyError: The variable is not free within the horizon.
     """
     objective = SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
-    places = {identifier: place for place, identifier in enumerate(objective.ids)}
-    place = places[variable]
+    columns = {identifier: column for column, identifier in enumerate(objective.ids)}
+    column = columns[variable]
     candidates = np.tile(objective.vector(chosen), (count, 1))
-    candidates[:, place] = np.linspace(objective.ranges.lower[place], objective.ranges.upper[place], count)
-    said = [stage.predict(candidates[:, stage.columns]) for stage in objective.stages]
+    candidates[:, column] = np.linspace(objective.ranges.lower[column], objective.ranges.upper[column], count)
+    predictions = [stage.predict(candidates[:, stage.columns]) for stage in objective.stages]
     return Alternatives(
         variable,
-        candidates[:, place],
-        np.array([prediction.duration_s for prediction in said]),
-        np.array([prediction.spread_s for prediction in said]),
-        np.array([prediction.failure for prediction in said]),
+        candidates[:, column],
+        np.array([prediction.duration_s for prediction in predictions]),
+        np.array([prediction.std_s for prediction in predictions]),
+        np.array([prediction.failure for prediction in predictions]),
         objective(candidates),
     )

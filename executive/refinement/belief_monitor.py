@@ -1,6 +1,6 @@
-"""Watches the believed values that a running sequence is bound to: whether the world has moved them away.
+"""Monitors the believed values that a running sequence is bound to.
 
-Asked in every tick, so only those values are looked up that have a tolerance.
+Runs in every tick, so it looks up only values with a tolerance.
 """
 
 from __future__ import annotations
@@ -9,43 +9,44 @@ from collections.abc import Iterator
 
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Belief
-from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
+from tailor.executive.refinement.instantiation import Pattern
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 
 
 class BeliefMonitor:
-    """The values of one sequence, and how far each may move before the sequence has to be thought over.
+    """Bound values of one sequence, each with the tolerance beyond which the executive deliberates again.
 
     Args:
-      pattern: Of the plan that the sequence comes from.
-      sequence: As it was decided on, detours included.
+      pattern: Pattern of the plan that the sequence comes from.
+      sequence: The sequence as decided, asserted subgoals included.
     """
 
     def __init__(self, pattern: Pattern, sequence: ActionSequence) -> None:
         self._pattern = pattern
-        self._bounds = tuple(dict.fromkeys(_bounds(pattern, sequence)))
+        self._bindings = tuple(dict.fromkeys(_bindings(pattern, sequence)))
 
-    def moved(self, belief: Belief) -> bool:
-        """Whether a value is believed to be elsewhere by more than its tolerance, and the plan still makes sense."""
+    def bindings_violated(self, belief: Belief) -> bool:
+        """Whether a believed value has moved by more than its tolerance and the plan can still be instantiated."""
         try:
-            if not any(self._is_off(*bound, belief) for bound in self._bounds):
+            if not any(self._violated(*binding, belief) for binding in self._bindings):
                 return False
         except Conflict:
             return False
         return not isinstance(self._pattern.sequence(belief), Failure)
 
-    def _is_off(self, identifier: int, then: float, tolerance: float, belief: Belief) -> bool:
-        now = self._pattern.value(identifier, belief)
-        return now is not None and abs(then - now) > tolerance
+    def _violated(self, identifier: int, bound: float, tolerance: float, belief: Belief) -> bool:
+        believed = self._pattern.value(identifier, belief)
+        return believed is not None and abs(bound - believed) > tolerance
 
 
-def _bounds(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int, float, float]]:
-    """Variable of the pattern, value then, and tolerance, for each watched parameter of the sequence."""
+def _bindings(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int, float, float]]:
+    """Variable of the pattern, bound value and tolerance, for each monitored parameter of the sequence."""
     planned = {(action.step, action.action.name): action for action in pattern.actions}
     for action in sequence.actions:
         same = planned.get((action.step, action.action.name))
         if same is None:
-            continue  # a detour: the plan does not know it
-        for parameter, then, now in zip(action.action.parameters, action.variables, same.variables, strict=True):
-            value = sequence.variables[then].value
+            continue  # it leads to an asserted subgoal, which is not in the plan
+        for parameter, own, in_pattern in zip(action.action.parameters, action.variables, same.variables, strict=True):
+            value = sequence.variables[own].value
             if parameter.tolerance is not None and value is not None:
-                yield now, value, parameter.tolerance
+                yield in_pattern, value, parameter.tolerance

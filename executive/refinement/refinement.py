@@ -1,4 +1,4 @@
-"""Subgoal refinement: values for the free parameters that minimise the predicted cost of the next actions (paper 6).
+"""Subgoal refinement: values of the free parameters that minimise the predicted cost of the next actions (paper 6).
 
 Anytime and resumable: the first check yields the greedy answer, every further check may yield a better one.
 """
@@ -24,34 +24,32 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.executive.refinement.solvers.solver import Solver
 
-__all__ = ["Choice", "Refinement", "Report"]
-
-USEFUL_GAP_PCT = 25.0  # a bound that is farther off is no certificate
+MAX_GAP_PCT = 25.0  # a larger gap is not reported
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """How the search went."""
+    """Course and result of the search."""
 
     solver: str
-    evaluations: int  # action-model rows predicted
+    evaluations: int  # number of model inputs predicted
     checks: int
-    greedy_s: float  # the objective's value for the greedy choice
+    greedy_s: float  # value of the objective for the greedy choice
     best_s: float
     trace: tuple[tuple[int, float], ...]  # (evaluations, best value) at each improvement
-    verdict: Verdict = field(default_factory=Verdict)  # whether refining is worth it
-    gap_pct: float | None = None  # proven: `best_s` is at most so much above the models' optimum
+    verdict: Verdict = field(default_factory=Verdict)  # of the refinement gate
+    gap_pct: float | None = None  # proven upper bound on the gap between `best_s` and the models' optimum
 
 
 class Refinement:
-    """The refinement of one sequence from the belief of now.
+    """Refinement of one sequence that was instantiated from the current belief.
 
     Args:
-      sequence: Instantiated, with detours asserted.
-      models: The loaded models.
+      sequence: Instantiated, with asserted subgoals.
+      models: Loaded models.
       settings: Horizon, objective and solver.
       rng: The only source of randomness.
-      start: Values by variable id of an earlier answer, to begin with.
+      start: Values by variable id of an earlier answer, as an initial candidate.
     """
 
     def __init__(
@@ -67,33 +65,34 @@ class Refinement:
         self._settings = settings
         self._rng = rng
         self._start = start
-        stretch = (sequence.within(settings.horizon), sequence.variables, models, settings)
-        self._objective = SequenceObjective(*stretch)
-        self._judge = SequenceObjective(*stretch)  # its rows are not the search's
+        terms = (sequence.within(settings.horizon), sequence.variables, models, settings)
+        self._objective = SequenceObjective(*terms)
+        self._reporting = SequenceObjective(*terms)  # its evaluations do not count as the search's
         self._greedy: Greedy | None = None
         self._greedy_s = np.inf
         self._solver: Solver | None = None
         self._choice: Choice | None = None
-        self._alone: Choice | None = None  # the greedy choice
+        self._greedy_choice: Choice | None = None
         self._verdict = Verdict()
-        self._polish: LocalSearch | None = None
+        self._local_search: LocalSearch | None = None
         self._certificate: Certificate | NoBound | None = None
 
     @property
     def choice(self) -> Choice | None:
-        """The best answer so far, or the greedy one where refining is not worth it; None before the first check."""
-        return self._alone if self._verdict.keep_greedy else self._choice
+        """The best answer so far, or the greedy one if the gate keeps it; None before the first check."""
+        return self._greedy_choice if self._verdict.keep_greedy else self._choice
 
     @property
     def finished(self) -> bool:
-        """Whether more budget would change nothing."""
+        """Whether a larger budget would change nothing."""
         if self._greedy is None:
             return False
-        found = self._solver is None or self._solver.finished
-        return found and (not self._verdict.keep_greedy or (self._polish is not None and self._polish.finished))
+        searched = self._solver is None or self._solver.finished
+        local_search = self._local_search
+        return searched and (not self._verdict.keep_greedy or (local_search is not None and local_search.finished))
 
     def advance(self, budget: Budget) -> None:
-        """Search on until the budget is spent or the search is finished."""
+        """Resume the search until the budget is spent or the search is finished."""
         if self._greedy is None:
             if budget.spent():
                 return
@@ -104,21 +103,21 @@ class Refinement:
             if self._solver.best is not None and self._solver.value < before:
                 self._adopt(self._solver.best)
             if self._solver.finished and self._verdict.keep_greedy:
-                self._go_greedy(budget)
+                self._improve_greedy(budget)
 
     def certify(self, budget: Budget) -> None:
-        """Once the search is finished, prove how near its best answer is to the optimum; it changes no answer."""
-        choice, wanted = self._choice, self._settings.certify_checks > 0 and self._objective.ids
-        if not (wanted and self.finished and choice is not None and choice.valid):
+        """Prove the optimality gap of the best answer once the search is finished; it changes no answer."""
+        choice, enabled = self._choice, self._settings.certify_checks > 0 and self._objective.ids
+        if not (enabled and self.finished and choice is not None and choice.valid):
             return
         if self._certificate is None:
-            self._certificate = certificate(self._judge, self._judge.vector(choice.values), self._settings)
+            self._certificate = certificate(self._reporting, self._reporting.vector(choice.values), self._settings)
         if isinstance(self._certificate, Certificate):
             self._certificate.advance(budget)
 
     def report(self) -> Report:
-        """How the search went so far."""
-        searches = [search for search in (self._solver, self._polish) if search is not None]
+        """Course of the search so far."""
+        searches = [search for search in (self._solver, self._local_search) if search is not None]
         return Report(
             solver=type(self._solver).__name__ if self._solver else "",
             evaluations=self.evaluations,
@@ -132,35 +131,37 @@ class Refinement:
 
     @property
     def evaluations(self) -> int:
-        """Sequences that were judged so far."""
-        return self._first + self._objective.rows + (self._polish.rows if self._polish else 0)
+        """Number of model inputs predicted so far."""
+        local = self._local_search.evaluations if self._local_search else 0
+        return self._greedy_evaluations + self._objective.evaluations + local
 
     @property
-    def _first(self) -> int:
-        """Rows that were predicted for the greedy answer."""
-        return self._greedy.rows if self._greedy else 0
+    def _greedy_evaluations(self) -> int:
+        """Number of model inputs predicted for the greedy answer."""
+        return self._greedy.evaluations if self._greedy else 0
 
     def _trace(self) -> tuple[tuple[int, float], ...]:
-        """The improvements so far: the greedy answer, and what beat it."""
-        trace = [(self._first, self._greedy_s)] if np.isfinite(self._greedy_s) else []
+        """Improvements so far: the greedy answer, and all that are better."""
+        trace = [(self._greedy_evaluations, self._greedy_s)] if np.isfinite(self._greedy_s) else []
         if self._solver is not None:
-            found = zip(self._solver.trace.rows, self._solver.trace.values, strict=True)
-            trace += [(self._first + rows, value) for rows, value in found if value < self._greedy_s]
+            improvements = zip(self._solver.trace.evaluations, self._solver.trace.values, strict=True)
+            first = self._greedy_evaluations
+            trace += [(first + count, value) for count, value in improvements if value < self._greedy_s]
         return tuple(trace)
 
     @property
     def gap_pct(self) -> float | None:
-        """The gap that was proven, if it says anything."""
+        """Proven optimality gap in percent; None without a proof or above MAX_GAP_PCT."""
         gap = self._certificate.gap_pct if isinstance(self._certificate, Certificate) else None
-        return gap if gap is not None and gap <= USEFUL_GAP_PCT else None
+        return gap if gap is not None and gap <= MAX_GAP_PCT else None
 
     def _begin(self) -> None:
-        """The first check: the greedy answer, and the solver that goes on from it."""
+        """The first check: the greedy answer, and the solver that starts from it."""
         self._greedy = greedy(self._sequence, self._models, self._settings, self._rng)
         seed = self._objective.vector(self._greedy.values)
         self._adopt(seed)
         assert self._choice is not None
-        self._alone = self._choice
+        self._greedy_choice = self._choice
         self._greedy_s = self._choice.total_s
         if self._objective.ids:
             starts = [self._greedy.values] if self._start is None else [self._greedy.values, self._start]
@@ -168,20 +169,20 @@ class Refinement:
             self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
 
     def _adopt(self, candidate: Array) -> None:
-        """Make a candidate the answer, unless the one so far is better or greedy is nearly as good."""
-        total = float(self._judge(candidate[None])[0])
+        """Make a candidate the answer, unless it is no better or its gain over greedy is too small."""
+        total = float(self._reporting(candidate[None])[0])
         if self._choice is not None and total >= min(self._choice.total_s, self._greedy_s - self._settings.gain_min_s):
             return
-        self._choice = choice_of(self._judge, candidate)
-        if self._alone is not None:
-            self._verdict = judge(self._sequence, self._alone, self._choice, self._models.gate)
+        self._choice = choice_of(self._reporting, candidate)
+        if self._greedy_choice is not None:
+            self._verdict = judge(self._sequence, self._greedy_choice, self._choice, self._models.gate)
 
-    def _go_greedy(self, budget: Budget) -> None:
-        """Refining is not worth it: search the greedy choice out, as a horizon of one does."""
+    def _improve_greedy(self, budget: Budget) -> None:
+        """The gate keeps the greedy choice: complete its search, as with horizon 1."""
         assert self._greedy is not None
-        if self._polish is None:
-            self._polish = LocalSearch(self._sequence, self._greedy, self._models, self._settings, self._rng)
-        self._polish.advance(budget)
-        polished = choice_of(self._judge, self._judge.vector(self._polish.values))
-        if polished.valid:
-            self._alone = polished
+        if self._local_search is None:
+            self._local_search = LocalSearch(self._sequence, self._greedy, self._models, self._settings, self._rng)
+        self._local_search.advance(budget)
+        improved = choice_of(self._reporting, self._reporting.vector(self._local_search.values))
+        if improved.valid:
+            self._greedy_choice = improved

@@ -1,7 +1,7 @@
-"""The detour of subgoal assertion: an action put before another, with a free goal where the other one then starts.
+"""Asserted subgoal: an action inserted before another one, with a free goal from which the other one then starts.
 
-Which parameters belong to the state that an action starts from, and which to the one it leads to, is told by the
-index of the PDDL argument (Algorithm 2, line 8): the first argument that has parameters is "from", the last "to".
+The index of the PDDL argument (Algorithm 2, line 8) determines the state that a parameter belongs to: the first
+argument with parameters is the start state of the action, the last one its goal state.
 """
 
 from __future__ import annotations
@@ -13,58 +13,58 @@ from tailor.executive.refinement.objective.sequence import ActionSequence, Insta
 
 
 def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
-    """The sequence with the detour that the action at `position` names put before it (Algorithm 3, lines 16 to 20).
+    """The sequence with the subgoal action of the action at `position` inserted before it (Algorithm 3, lines 16-20).
 
-    The detour starts where the action started; its goal is a new label whose parameters are all free, in the default
-    ranges; the action starts from there.
+    The subgoal action starts where the action started. Its goal, the asserted subgoal, is a new label whose parameters
+    are all free in their default ranges; the action starts from there.
 
     Raises:
-      KeyError: The detour is not in the library, or asks for a quantity that the action's start does not have.
+      KeyError: The subgoal action is not in the library, or needs a quantity that the action's start does not have.
     """
-    late = sequence.actions[position]
-    subgoal_action = sequence.library[late.action.subgoal_action]
-    start = _by_quantity(late, places_from(late.action))
-    goal = _free_goal(subgoal_action, len(sequence.variables))
-    ends = {variable.quantity: variable.id for variable in goal}
-    reached = set(places_to(subgoal_action))
-    early = tuple(
-        ends[parameter.quantity] if j in reached else start[parameter.quantity]
+    action = sequence.actions[position]
+    subgoal_action = sequence.library[action.action.subgoal_action]
+    start = _by_quantity(action, start_indices(action.action))
+    subgoal = _free_subgoal(subgoal_action, len(sequence.variables))
+    subgoal_ids = {variable.quantity: variable.id for variable in subgoal}
+    goal_side = set(goal_indices(subgoal_action))
+    before = tuple(
+        subgoal_ids[parameter.quantity] if j in goal_side else start[parameter.quantity]
         for j, parameter in enumerate(subgoal_action.parameters)
     )
-    moved = {start[quantity]: identifier for quantity, identifier in ends.items() if quantity in start}
-    left = set(places_from(late.action))
-    rest = tuple(moved.get(i, i) if j in left else i for j, i in enumerate(late.variables))
-    pair = InstantiatedAction(subgoal_action, late.step, early, asserted=True), replace(late, variables=rest)
+    moved = {start[quantity]: identifier for quantity, identifier in subgoal_ids.items() if quantity in start}
+    start_side = set(start_indices(action.action))
+    after = tuple(moved.get(i, i) if j in start_side else i for j, i in enumerate(action.variables))
+    pair = InstantiatedAction(subgoal_action, action.step, before, asserted=True), replace(action, variables=after)
     actions = (*sequence.actions[:position], *pair, *sequence.actions[position + 1 :])
-    return replace(sequence, actions=actions, variables=(*sequence.variables, *goal))
+    return replace(sequence, actions=actions, variables=(*sequence.variables, *subgoal))
 
 
-def places_from(action: Action) -> tuple[int, ...]:
-    """Which parameters describe the state that the action starts from."""
+def start_indices(action: Action) -> tuple[int, ...]:
+    """Indices of the parameters that describe the start state of the action."""
     first = min(parameter.argument for parameter in action.parameters)
     return tuple(j for j, parameter in enumerate(action.parameters) if parameter.argument == first)
 
 
-def places_to(action: Action) -> tuple[int, ...]:
-    """Which parameters describe the state that the action leads to."""
+def goal_indices(action: Action) -> tuple[int, ...]:
+    """Indices of the parameters that describe the goal state of the action."""
     last = max(parameter.argument for parameter in action.parameters)
     return tuple(j for j, parameter in enumerate(action.parameters) if parameter.argument == last)
 
 
-def _by_quantity(instance: InstantiatedAction, places: tuple[int, ...]) -> dict[str, int]:
+def _by_quantity(instance: InstantiatedAction, indices: tuple[int, ...]) -> dict[str, int]:
     """Variable ids by quantity."""
-    return {instance.action.parameters[j].quantity: instance.variables[j] for j in places}
+    return {instance.action.parameters[j].quantity: instance.variables[j] for j in indices}
 
 
-def _free_goal(subgoal_action: Action, first_id: int) -> tuple[Variable, ...]:
-    """New free variables for the state that the detour leads to."""
-    goal: list[Variable] = []
-    for j in places_to(subgoal_action):
-        goal.append(_free(subgoal_action.parameters[j], first_id + len(goal), f"subgoal{first_id}"))
-    return tuple(goal)
+def _free_subgoal(subgoal_action: Action, first_id: int) -> tuple[Variable, ...]:
+    """New free variables for the goal state of the subgoal action."""
+    subgoal: list[Variable] = []
+    for j in goal_indices(subgoal_action):
+        subgoal.append(_free(subgoal_action.parameters[j], first_id + len(subgoal), f"subgoal{first_id}"))
+    return tuple(subgoal)
 
 
 def _free(parameter: Parameter, identifier: int, label: str) -> Variable:
-    """A variable that may be anything in the parameter's default range."""
+    """Free variable in the parameter's default range."""
     kind = (parameter.quantity, parameter.unit, parameter.lower, parameter.upper, parameter.periodic)
     return Variable(identifier, label, *kind, value=None)

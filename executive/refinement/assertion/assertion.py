@@ -1,6 +1,6 @@
-"""Subgoal assertion: where an action is predicted to fail, another one is put before it (paper 7, Algorithms 3 and 4).
+"""Subgoal assertion: inserts a subgoal before an action that is predicted to fail (paper 7, Algorithms 3 and 4).
 
-Works for every action that has a success model and names a detour. Where its subgoal lies is left to refinement.
+Works for every action that has a success model and names a subgoal action. Refinement chooses the asserted subgoal.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.assertion.feasibility_check import FeasibilityCheck
-from tailor.executive.refinement.assertion.subgoal_comparison import SubgoalComparison, accepting
+from tailor.executive.refinement.assertion.subgoal_comparison import SubgoalComparison, with_accepted_risk
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
-SLACK = 0.05  # above the least failure probability that was found; without it refinement had a single point to choose
+RISK_MARGIN = 0.05  # above the least failure probability of the samples; refinement needs more than a single point
 
 
 class Assertion:
-    """Goes through the next actions and asserts subgoals where they are needed; resumable.
+    """Checks the next actions one after another and asserts subgoals before those predicted to fail; resumable.
 
     Args:
       sequence: The instantiated actions.
-      models: The loaded models.
+      models: Loaded models.
       settings: Horizon, limits of the failure probability, number of samples, depth.
       rng: The only source of randomness.
     """
@@ -36,103 +36,104 @@ class Assertion:
         self._settings = settings
         self._rng = rng
         self._position = 0
-        self._examination: FeasibilityCheck | None = None
-        self._weighing: SubgoalComparison | None = None
-        self._plain = (sequence, 0, 1.0)  # before the first detour to the current action: position, least failure
+        self._feasibility: FeasibilityCheck | None = None
+        self._comparison: SubgoalComparison | None = None
+        # Before the first subgoal of the current action: sequence, position, least failure probability
+        self._without_subgoal = (sequence, 0, 1.0)
 
     def advance(self, budget: Budget) -> ActionSequence | Failure | None:
-        """Go on until the budget is spent (None) or every action in the horizon is predicted to succeed.
+        """Resume until the budget is spent (None) or every action in the horizon is predicted to succeed.
 
         Returns:
-          The sequence with its asserted subgoals, or why no detour helps.
+          The sequence with its asserted subgoals, or the reason why no subgoal makes it succeed.
         """
         while self._position < len(self._sequence.within(self._settings.horizon)):
             if not self._sequence.actions[self._position].action.success_model:
-                self._look_at(self._position + 1)
+                self._move_to(self._position + 1)
                 continue
-            decided = self._weigh(self._weighing, budget) if self._weighing else self._examine(budget)
+            decided = self._compare(self._comparison, budget) if self._comparison else self._check_feasibility(budget)
             if isinstance(decided, Failure):
                 return decided
             if not decided:
                 return None
         return self._sequence
 
-    def _look_at(self, position: int) -> None:
-        """Turn to another action."""
+    def _move_to(self, position: int) -> None:
+        """Make the action at `position` the current one."""
         self._position = position
-        self._examination = None
+        self._feasibility = None
 
-    def _examine(self, budget: Budget) -> bool | Failure:
-        """Look for values with which the current action succeeds, and act on it; False: the budget is spent."""
-        if self._examination is None:
+    def _check_feasibility(self, budget: Budget) -> bool | Failure:
+        """Search for values with which the current action succeeds, and decide; False: the budget is spent."""
+        if self._feasibility is None:
             if not self._depth():
-                self._sequence = accepting(self._sequence, self._position, self._settings.p_fail_assert)
-            self._examination = FeasibilityCheck(
+                self._sequence = with_accepted_risk(self._sequence, self._position, self._settings.p_fail_assert)
+            self._feasibility = FeasibilityCheck(
                 self._sequence, self._position, self._models, self._settings, self._rng
             )
-        succeeds = self._examination.advance(budget)
+        succeeds = self._feasibility.advance(budget)
         if succeeds is None:
             return False
         if succeeds:
-            self._sequence = self._sequence.starting_from(self._examination.starts)
-            self._look_at(self._position + 1)
+            self._sequence = self._sequence.starting_from(self._feasibility.starts)
+            self._move_to(self._position + 1)
             return True
-        return self._predicted_to_fail(self._examination.best_failure)
+        return self._resolve_failure(self._feasibility.best_failure)
 
-    def _predicted_to_fail(self, least: float) -> bool | Failure:
-        """Assert a subgoal, or settle for what is the best anywhere, or give up."""
+    def _resolve_failure(self, least_failure: float) -> bool | Failure:
+        """Assert a subgoal before the current action, accept its least risk, or fail."""
         instance, depth = self._sequence.actions[self._position], self._depth()
-        said = f"{instance.action.name} is predicted to fail (success {1 - least:.2f} at best)"
+        reason = f"{instance.action.name} is predicted to fail (success probability at most {1 - least_failure:.2f})"
         if instance.action.subgoal_action not in self._sequence.library:
-            return Failure(f"{said} and names no subgoal")
-        if depth and not instance.asserted and least <= self._settings.p_fail_settle:
-            self._settle(least + SLACK)
+            return Failure(f"{reason} and has no subgoal action")
+        if depth and not instance.asserted and least_failure <= self._settings.p_fail_settle:
+            self._accept_least_risk(least_failure + RISK_MARGIN)
             return True
         if depth >= self._settings.assertion_depth:
-            return Failure(f"{said} even after {depth} detours")
+            return Failure(f"{reason} even after {depth} asserted subgoals")
         if not depth:
-            self._plain = (self._sequence, self._position, least)
-        asserted = with_subgoal(self._sequence, self._position)
+            self._without_subgoal = (self._sequence, self._position, least_failure)
+        alternative = with_subgoal(self._sequence, self._position)
         if self._settings.compare_subgoals and not depth:
             args = (self._position, self._models, self._settings, self._rng)
-            self._weighing = SubgoalComparison(self._sequence, asserted, *args)
+            self._comparison = SubgoalComparison(self._sequence, alternative, *args)
         else:
-            self._take(asserted)
+            self._assert_subgoal(alternative)
         return True
 
-    def _settle(self, risk: float) -> None:
-        """No start keeps the limit: accept the least risk there is, and without the detour where it buys nothing."""
-        plain, position, least = self._plain
-        if least <= risk:
-            self._sequence, self._position = plain, position
-        elif self._examination is not None:
-            self._sequence = self._sequence.starting_from(self._examination.starts)
-        self._accept(risk)
+    def _accept_least_risk(self, risk: float) -> None:
+        """No start keeps the limit: accept the least risk, and drop the subgoal if it does not lower the risk."""
+        sequence, position, least_failure = self._without_subgoal
+        if least_failure <= risk:
+            self._sequence, self._position = sequence, position
+        elif self._feasibility is not None:
+            self._sequence = self._sequence.starting_from(self._feasibility.starts)
+        self._accept_risk(risk)
 
-    def _accept(self, risk: float) -> None:
-        """Let the current action fail with this probability and turn to the next one."""
-        self._sequence = accepting(self._sequence, self._position, risk)
-        self._look_at(self._position + 1)
+    def _accept_risk(self, risk: float) -> None:
+        """Accept this probability of failure for the current action and move to the next one."""
+        self._sequence = with_accepted_risk(self._sequence, self._position, risk)
+        self._move_to(self._position + 1)
 
-    def _weigh(self, weighing: SubgoalComparison, budget: Budget) -> bool:
-        """Decide which way is cheaper and take it; False: the budget is spent."""
-        pays = weighing.advance(budget)
-        if pays is None:
+    def _compare(self, comparison: SubgoalComparison, budget: Budget) -> bool:
+        """Decide between both sequences by expected cost; False: the budget is spent."""
+        cheaper = comparison.advance(budget)
+        if cheaper is None:
             return False
-        self._weighing = None
-        if pays:
-            self._take(with_subgoal(self._sequence, self._position))
+        self._comparison = None
+        if cheaper:
+            self._assert_subgoal(with_subgoal(self._sequence, self._position))
         else:
-            self._accept(1.0)
+            self._accept_risk(1.0)
         return True
 
-    def _take(self, asserted: ActionSequence) -> None:
-        """Go on with a detour, and look at it first: it stands where the current action stood."""
-        self._sequence = asserted
-        self._look_at(self._position)
+    def _assert_subgoal(self, sequence: ActionSequence) -> None:
+        """Adopt a sequence with a subgoal, and check the subgoal action first: it is now at the current position."""
+        self._sequence = sequence
+        self._move_to(self._position)
 
     def _depth(self) -> int:
-        """The detours already asserted for the current action, or for the one that it is a detour to."""
+        """Number of subgoals already asserted for the current action, or for the action that it leads to."""
         end = 0
         for unit in self._sequence.units():
             end += len(unit)

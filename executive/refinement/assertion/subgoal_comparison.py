@@ -1,6 +1,6 @@
-"""Whether a detour pays: the expected cost of going straight on against that of the way round (beyond the paper).
+"""Expected benefit of a subgoal: the expected cost without it against that with it (beyond the paper).
 
-A hard limit asserts subgoals that are not needed; here a failure has a price, and the cheaper way wins.
+A hard limit asserts subgoals that are not needed. Here a failure has a price, and the cheaper sequence wins.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from tailor.executive.refinement.solvers.selection import solver_for
 
 
 class SubgoalComparison:
-    """A short search on both sides, in turns; resumable.
+    """Short search on both sequences, one after the other; resumable.
 
     Args:
-      direct: The sequence as it is.
-      detoured: The same with a detour put at `position`.
-      position: Place of the action that may fail in `direct`.
-      models: The loaded models.
+      direct: The sequence without the subgoal.
+      with_subgoal: The same with a subgoal asserted at `position`.
+      position: Index in `direct` of the action that may fail.
+      models: Loaded models.
       settings: `risk_cost_s` is the price of a failure, `weighing_checks` the effort on each side.
       rng: The only source of randomness.
     """
@@ -32,35 +32,36 @@ class SubgoalComparison:
     def __init__(
         self,
         direct: ActionSequence,
-        asserted: ActionSequence,
+        with_subgoal: ActionSequence,
         position: int,
         models: Models,
         settings: RefinementSettings,
         rng: np.random.Generator,
     ) -> None:
         limited = replace(settings, checks_max=settings.weighing_checks)
-        arrived = frozenset(direct.actions[position - 1].variables) if position else frozenset()
-        stretches = (
-            (accepting(direct, position, 1.0), position + 1),
-            (accepting(asserted, position + 1, settings.p_fail_settle), position + 2),
+        arrival_ids = frozenset(direct.actions[position - 1].variables) if position else frozenset()
+        sides = (
+            (with_accepted_risk(direct, position, 1.0), position + 1),
+            (with_accepted_risk(with_subgoal, position + 1, settings.p_fail_settle), position + 2),
         )
         self._solvers = []
-        for sequence, end in stretches:
-            objective = SequenceObjective(sequence.actions[position:end], sequence.variables, models, limited, arrived)
+        for sequence, end in sides:
+            actions = sequence.actions[position:end]
+            objective = SequenceObjective(actions, sequence.variables, models, limited, arrival_ids)
             self._solvers.append(solver_for(objective, limited, rng, objective.vectors(sequence.starts)))
 
     def advance(self, budget: Budget) -> bool | None:
-        """Whether the detour costs less than the risk; None when the budget was spent before it is clear."""
-        direct, subgoal_action = self._solvers
+        """Whether the sequence with the subgoal has the lower expected cost; None if the budget was spent before."""
+        direct, with_subgoal = self._solvers
         for solver in self._solvers:
             solver.advance(budget)
-        if not (direct.finished and subgoal_action.finished):
+        if not (direct.finished and with_subgoal.finished):
             return None
-        return subgoal_action.value < direct.value
+        return with_subgoal.value < direct.value
 
 
-def accepting(sequence: ActionSequence, position: int, risk: float) -> ActionSequence:
-    """The sequence in which the action at `position` may fail with probability `risk`."""
+def with_accepted_risk(sequence: ActionSequence, position: int, risk: float) -> ActionSequence:
+    """The sequence with failure probability `risk` accepted for the action at `position`."""
     actions = list(sequence.actions)
     actions[position] = replace(actions[position], risk=risk)
     return replace(sequence, actions=tuple(actions))

@@ -1,1 +1,1 @@
-"""Lower bounds on the cost of any choice, by branch and bound."""
+"""Lower bounds on the cost of every choice, by branch and bound."""

@@ -1,4 +1,4 @@
-"""Boxes of a subgoal's free parameters, and how they are cut."""
+"""Boxes of a subgoal's free parameters, and their bisection."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Boxes:
         return (self.lower + self.upper) / 2
 
     def part(self, index: Any) -> Boxes:
-        """Some of them."""
+        """Subset of the boxes, by anything that indexes an array."""
         return Boxes(self.lower[index], self.upper[index])
 
     def halves(self, weight: Array) -> Boxes:
-        """Each cut in the middle of the side that is longest by `weight`, (d,): lower halves first, then upper ones."""
+        """Each box bisected along its longest side by `weight`, (d,): all lower halves, then all upper ones."""
         side = np.argmax(self.width * weight, axis=1)
         rows = np.arange(len(self))
         lower, upper = self.lower.copy(), self.upper.copy()
@@ -44,7 +44,7 @@ class Boxes:
         return Boxes(np.vstack([self.lower, lower]), np.vstack([upper, self.upper]))
 
 
-NOWHERE = Boxes(np.empty((1, 0)), np.empty((1, 0)))  # where nothing is free: one box without sides
+NO_PARAMETERS = Boxes(np.empty((1, 0)), np.empty((1, 0)))  # nothing is free: one box without dimensions
 
 
 def box_of(ranges: Ranges) -> Boxes:

@@ -1,7 +1,7 @@
-"""What an action costs at least while the free parameters of the subgoals before and after it lie in boxes.
+"""Lower bound on the cost of an action over boxes of the free parameters of the subgoals before and after it.
 
-Every displaced arrival is bounded by itself, every tree by the leaves that it can reach; a bag's spread from below by a
-plane that touches it, and only what is sure to be too likely to fail counts as INVALID.
+Each displaced arrival is bounded separately, each tree by its reachable leaves, the std of a bag by a tangent plane.
+Boxes count as INVALID only if every choice in them fails too probably.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from tailor.executive.interfaces.values import Array, Columns, Spans
 from tailor.executive.refinement.certificates.boxes import Boxes
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage import Stage
-from tailor.executive.refinement.solvers.chain import Link
+from tailor.executive.refinement.solvers.chain_structure import Link
 
-FIXED, BEFORE, OWN = -1, 0, 1  # whose box a parameter comes from
-AXES = {BEFORE: (slice(None), slice(None), None), OWN: (slice(None), None, slice(None))}  # ways, before, own
+FIXED, BEFORE, OWN = -1, 0, 1  # owner of a parameter: no box, the box before, the own box
+AXES = {BEFORE: (slice(None), slice(None), None), OWN: (slice(None), None, slice(None))}  # arrivals, before, own
 
 
 @dataclass(frozen=True, slots=True)
 class NoBound:
-    """Why nothing can be proven about an action."""
+    """Reason why an action has no lower bound."""
 
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
 class StageBound:
-    """The least cost of one stage over pairs of boxes."""
+    """Lower bound on the cost of one stage over pairs of boxes."""
 
     stage: Stage
     link: Link
@@ -45,20 +45,20 @@ class StageBound:
 
     @property
     def effort(self) -> int:
-        """Elementary comparisons that one pair of boxes takes, roughly."""
+        """Approximate number of elementary comparisons for one pair of boxes."""
         models = [model for model in (self.duration, self.success, self.energy) if model is not None]
-        return self.stage.ways * sum(model.effort for model in models)
+        return self.stage.n_arrivals * sum(model.effort for model in models)
 
     def within(self, before: Boxes, own: Boxes) -> StageBound:
-        """The same for boxes inside of these: quicker to compute."""
+        """The bound restricted to boxes inside the given ones: faster to compute."""
         arguments = self.spans(*self._parameters(before, own))
-        asked = (self.duration, self.success, self.energy)
-        duration, success, energy = (model and model.within(*arguments) for model in asked)
+        models = (self.duration, self.success, self.energy)
+        duration, success, energy = (model and model.within(*arguments) for model in models)
         assert duration is not None
         return replace(self, duration=duration, success=success, energy=energy)
 
     def least(self, before: Boxes, own: Boxes) -> Array:
-        """Seconds, shape (len(before), len(own)): no values in the two boxes cost less; +inf: all are INVALID."""
+        """Lower bound in seconds, shape (len(before), len(own)); +inf: all values in the two boxes are INVALID."""
         arguments = self.spans(*self._parameters(before, own))
         settings = self.settings
         cost = self.duration.lower_bound(*arguments, settings.k_std).mean(axis=0)
@@ -71,7 +71,7 @@ class StageBound:
         return np.broadcast_to(cost, (len(before), len(own)))
 
     def _parameters(self, before: Boxes, own: Boxes) -> tuple[Columns, Columns]:
-        """The action's parameters at both ends; each column broadcasts to (ways, before, own)."""
+        """Lower and upper ends of the action's parameters; each column broadcasts to (n_arrivals, before, own)."""
         sides = {
             BEFORE: self._ends(self.link.from_before, self.link.before, before),
             OWN: self._ends(~self.link.from_before, self.link.own, own),
@@ -79,41 +79,44 @@ class StageBound:
         ends: tuple[list[Array], list[Array]] = ([], [])
         for j, owner in enumerate(self.owners):
             side = BEFORE if owner == FIXED else owner
-            some = slice(0, 1) if owner == FIXED else slice(None)
-            for made, parameters in zip(ends, sides[side], strict=True):
-                made.append(parameters[:, some, j][AXES[side]])
+            boxes = slice(0, 1) if owner == FIXED else slice(None)
+            for columns, parameters in zip(ends, sides[side], strict=True):
+                columns.append(parameters[:, boxes, j][AXES[side]])
         return tuple(ends[0]), tuple(ends[1])
 
-    def _ends(self, mine: NDArray[np.bool_], places: NDArray[np.intp], boxes: Boxes) -> tuple[Array, Array]:
-        """All parameters at both ends of one side's boxes, shapes (ways, n, p); they rise with every free parameter."""
+    def _ends(self, mask: NDArray[np.bool_], indices: NDArray[np.intp], boxes: Boxes) -> tuple[Array, Array]:
+        """All parameters at both ends of one side's boxes, shapes (n_arrivals, n, p).
+
+        Every action parameter is monotonic in the free parameters, so the ends of a box are its bounds.
+        """
         values = np.vstack([boxes.lower, boxes.upper])
-        rows = np.zeros((len(values), len(mine)))
-        rows[:, mine] = values[:, places]
-        parameters = self.stage.parameters(rows).reshape(-1, len(values), len(self.owners))
+        samples = np.zeros((len(values), len(mask)))
+        samples[:, mask] = values[:, indices]
+        parameters = self.stage.parameters(samples).reshape(-1, len(values), len(self.owners))
         return parameters[:, : len(boxes)], parameters[:, len(boxes) :]
 
 
 def stage_bound(stage: Stage, link: Link, settings: RefinementSettings) -> StageBound | NoBound:
-    """The bound of a stage, or why there is none."""
+    """Lower bound of a stage, or the reason why there is none."""
     action, models = stage.action, stage.models
-    spans = _same if action.spans is None and action.arguments is unchanged else action.spans
+    spans = _identity if action.spans is None and action.arguments is unchanged else action.spans
     if spans is None:
-        return NoBound(f"{action.name}: its models' arguments are not known as intervals")
-    asked = (models.duration, models.success, models.energy)
-    duration, success, energy = (_bounds(model) for model in asked)
-    if duration is None or any(_bounds(model) is None for model in asked if model is not None):
-        return NoBound(f"{action.name}: nothing is known of what is inside its models")
+        return NoBound(f"{action.name}: its model arguments are not available as intervals")
+    used = (models.duration, models.success, models.energy)
+    duration, success, energy = (_bounds(model) for model in used)
+    if duration is None or any(_bounds(model) is None for model in used if model is not None):
+        return NoBound(f"{action.name}: its models have no bounds")
     owners = np.full(len(action.parameters), FIXED)
     owners[stage.slots] = np.where(link.from_before[stage.sources], BEFORE, OWN)
     return StageBound(stage, link, settings, owners, spans, duration, success, energy)
 
 
-def _same(lower: Columns, upper: Columns) -> tuple[Columns, Columns]:
-    """Arguments that are the parameters themselves."""
+def _identity(lower: Columns, upper: Columns) -> tuple[Columns, Columns]:
+    """Model arguments that equal the parameters."""
     return lower, upper
 
 
 def _bounds(model: object) -> ModelBounds | None:
-    """What a loaded model knows of its own bounds."""
-    found: ModelBounds | None = getattr(model, "bounds", None)
-    return found
+    """Bounds of a loaded model; None if it has none."""
+    bounds: ModelBounds | None = getattr(model, "bounds", None)
+    return bounds

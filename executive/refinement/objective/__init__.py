@@ -1,1 +1,1 @@
-"""What refinement minimises: sequences of instantiated actions and their predicted cost."""
+"""Objective of refinement: sequences of instantiated actions and their predicted cost."""

@@ -1,6 +1,6 @@
-"""Where the robot really is when it has arrived at a subgoal: a fixed design of small displacements.
+"""Deviation of the robot from a subgoal on arrival: a fixed design of small displacements.
 
-What is optimal only when hit exactly is not optimal, so the cost after a subgoal is averaged over these.
+A choice that is optimal only at the exact subgoal is not robust, so the cost is averaged over these displacements.
 """
 
 from __future__ import annotations
@@ -12,23 +12,26 @@ import numpy as np
 from tailor.executive.interfaces.values import Array
 
 
-def displacements(quantities: Sequence[str], spread: Mapping[str, float]) -> Array:
-    """Displacements of arrival, shape (m, q), the first all zero; m is 1 where nothing is displaced.
+def displacements(quantities: Sequence[str], std: Mapping[str, float]) -> Array:
+    """Displacements on arrival; the first one is zero.
 
-    For r displaced quantities there are r + 1 more, the corners of a regular simplex: the fewest points that have the
-    mean and the covariance of the spread. The simplex is turned so that every corner displaces all quantities.
+    For r displaced quantities there are r + 1 more, the corners of a regular simplex. These are the fewest points with
+    the mean and the covariance of the deviation. The simplex is rotated so that every corner displaces all quantities.
 
     Args:
-      quantities: The quantities of the arrival's parameters, length q.
-      spread: Standard deviation by quantity, in its unit; a quantity that is missing is hit exactly.
+      quantities: Quantities of the parameters at the arrival, length q.
+      std: Standard deviation by quantity, in its unit; a quantity that is missing is reached exactly.
+
+    Returns:
+      Displacements, shape (m, q); m is 1 if no quantity is displaced.
     """
-    deviations = np.array([spread.get(quantity, 0.0) for quantity in quantities], dtype=np.float64)
+    deviations = np.array([std.get(quantity, 0.0) for quantity in quantities], dtype=np.float64)
     displaced = np.flatnonzero(deviations > 0)
     count = len(displaced)
     if count == 0:
         return np.zeros((1, len(quantities)))
     points = np.zeros((count + 2, len(quantities)))
-    radius = np.sqrt(count * (count + 2) / (count + 1))  # all count + 2 points weigh the same
+    radius = np.sqrt(count * (count + 2) / (count + 1))  # all count + 2 points have the same weight
     points[1:, displaced] = radius * _simplex(count) * deviations[displaced]
     return points
 

@@ -1,4 +1,4 @@
-"""A choice of the free parameters, and what the models predict for it."""
+"""Choice of the free parameters with the predictions of the models."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Values for the free parameters within the horizon, and what the models predict for them.
+    """Values of the free parameters within the horizon, and the predictions for them.
 
-    Tuples have one entry for each action within the horizon, detours included. `total_s` is the objective's value
-    (mean + k std, penalties); +inf when the choice is not valid.
+    Tuples have one entry for each action within the horizon, asserted subgoals included. `total_s` is the value of the
+    objective (mean + k std, penalties); +inf if the choice is not valid.
     """
 
     values: dict[int, float]  # by variable id
     predicted_s: tuple[float, ...]
-    spread_s: tuple[float, ...]
+    std_s: tuple[float, ...]
     failure: tuple[float, ...]  # predicted probability of failure
     total_s: float
     valid: bool
 
 
 def choice_of(objective: SequenceObjective, candidate: Array) -> Choice:
-    """The choice that a candidate, shape (d,), stands for."""
+    """Choice for a candidate, shape (d,)."""
     total_s = float(objective(candidate[None])[0])
     predictions = objective.predict(candidate)
     return Choice(
         objective.values(candidate),
-        tuple(float(said.duration_s[0]) for said in predictions),
-        tuple(float(said.spread_s[0]) for said in predictions),
-        tuple(float(said.failure[0]) for said in predictions),
+        tuple(float(prediction.duration_s[0]) for prediction in predictions),
+        tuple(float(prediction.std_s[0]) for prediction in predictions),
+        tuple(float(prediction.failure[0]) for prediction in predictions),
         total_s,
         math.isfinite(total_s),
     )

@@ -1,4 +1,4 @@
-"""The objective of subgoal refinement: the summed cost of the next actions over their free parameters (paper 6.2)."""
+"""Objective of subgoal refinement: the summed cost of the next actions over their free parameters (paper 6.2)."""
 
 from __future__ import annotations
 
@@ -13,18 +13,21 @@ from tailor.executive.refinement.objective.ranges import ranges_of
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage import Prediction, Stage
-from tailor.executive.refinement.objective.subgoal_risk import spoiling
+from tailor.executive.refinement.objective.subgoal_risk import risk_to_next
 
 
 class SequenceObjective:
-    """Seconds that a stretch of actions is predicted to cost, for many candidates in one call an action.
+    """Predicted cost of consecutive actions in seconds; evaluates many candidates with one model call for each action.
 
     Args:
-      actions: The stretch, in order of execution.
-      variables: The sequence's table of variables; those without a value are the free ones.
-      models: The loaded models.
+      actions: Consecutive actions in order of execution.
+      variables: Variable table of the sequence; d of the variables are free and occur in `actions`.
+      models: Loaded models.
       settings: Weights and limits.
-      arrived: Variables at which the action before the stretch ends; empty when the stretch starts here and now.
+      arrival_ids: Variables at which the action before `actions` ends; empty if `actions` start from the belief.
+
+    Raises:
+      UsageError: An action names a model that is not loaded.
     """
 
     def __init__(
@@ -33,24 +36,24 @@ class SequenceObjective:
         variables: tuple[Variable, ...],
         models: Models,
         settings: RefinementSettings,
-        arrived: frozenset[int] = frozenset(),
+        arrival_ids: frozenset[int] = frozenset(),
     ) -> None:
         used = sorted({i for action in actions for i in action.variables if variables[i].free})
         self.ids = tuple(used)
         self.ranges = ranges_of(variables[i] for i in used)
-        places = {identifier: place for place, identifier in enumerate(used)}
+        columns = {identifier: column for column, identifier in enumerate(used)}
         stages = []
         for action, following in zip_longest(actions, actions[1:]):
-            shared = arrived & frozenset(action.variables)
-            spoils = spoiling(action, following, variables)
-            stages.append(Stage(action, variables, places, shared, models, settings, spoils))
-            arrived = frozenset(action.variables)
+            displaced_ids = arrival_ids & frozenset(action.variables)
+            risk = risk_to_next(action, following, variables)
+            stages.append(Stage(action, variables, columns, displaced_ids, models, settings, risk))
+            arrival_ids = frozenset(action.variables)
         self.stages = tuple(stages)
 
     @property
-    def rows(self) -> int:
-        """Action-model rows predicted so far."""
-        return sum(stage.rows for stage in self.stages)
+    def evaluations(self) -> int:
+        """Number of model inputs predicted so far."""
+        return sum(stage.evaluations for stage in self.stages)
 
     def __call__(self, candidates: Array) -> Array:
         """Cost in seconds, shape (n,), of candidates of shape (n, d); +inf is INVALID."""
@@ -60,18 +63,18 @@ class SequenceObjective:
         return total
 
     def predict(self, candidate: Array) -> tuple[Prediction, ...]:
-        """What the models say of each action for one candidate, shape (d,); fields of shape (1,)."""
+        """Predictions for one candidate, shape (d,), action by action; fields of shape (1,)."""
         return tuple(stage.predict(candidate[None, stage.columns]) for stage in self.stages)
 
     def vector(self, values: Mapping[int, float]) -> Array:
-        """The free vector, shape (d,), for values by variable id; the middle of the range where one is missing."""
+        """Candidate, shape (d,), from values by variable id; the middle of the range if one is missing."""
         middle = (self.ranges.lower + self.ranges.upper) / 2
         return np.array([values.get(i, default) for i, default in zip(self.ids, middle, strict=True)])
 
     def vectors(self, starts: Sequence[Mapping[int, float]]) -> Array:
-        """Free vectors, shape (s, d), for several starts."""
+        """Candidates, shape (s, d), from several starts."""
         return np.array([self.vector(start) for start in starts]).reshape(len(starts), len(self.ids))
 
     def values(self, candidate: Array) -> dict[int, float]:
-        """Values by variable id for a candidate of shape (d,)."""
+        """Values by variable id of a candidate, shape (d,)."""
         return {identifier: float(value) for identifier, value in zip(self.ids, candidate, strict=True)}

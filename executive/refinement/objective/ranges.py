@@ -1,4 +1,4 @@
-"""The search space: a box, some of whose sides wrap around."""
+"""Search space of the free parameters: a box with periodic dimensions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tailor.executive.refinement.objective.sequence import Variable
 
 @dataclass(frozen=True, slots=True)
 class Ranges:
-    """Where the free parameters may lie: `lower`, `upper` and `periodic`, each of shape (d,)."""
+    """Ranges of d free parameters: `lower`, `upper` and `periodic`, each of shape (d,)."""
 
     lower: Array
     upper: Array
@@ -22,7 +22,7 @@ class Ranges:
 
     @property
     def count(self) -> int:
-        """The number of free parameters, d."""
+        """Number of free parameters, d."""
         return len(self.lower)
 
     @property
@@ -31,31 +31,31 @@ class Ranges:
         return self.upper - self.lower
 
     def confine(self, candidates: Array) -> Array:
-        """Candidates, shape (n, d), brought into the ranges: angles wrap, the rest stops at the end."""
+        """Candidates, shape (n, d), moved into the ranges: angles are wrapped, all others are clipped."""
         confined: Array = np.minimum(np.maximum(candidates, self.lower), self.upper)
-        turning = np.flatnonzero(self.periodic)
-        if len(turning):
-            lower, upper = self.lower[turning], self.upper[turning]
-            turned = lower + np.mod(candidates[:, turning] - lower, upper - lower)
-            confined[:, turning] = np.minimum(turned, upper)  # rounding may put it a hair beyond the end
+        periodic = np.flatnonzero(self.periodic)
+        if len(periodic):
+            lower, upper = self.lower[periodic], self.upper[periodic]
+            wrapped = lower + np.mod(candidates[:, periodic] - lower, upper - lower)
+            confined[:, periodic] = np.minimum(wrapped, upper)  # rounding may exceed the upper end by one bit
         return confined
 
     def draw(self, count: int, rng: np.random.Generator) -> Array:
-        """Uniform candidates, shape (count, d), one from each of `count` layers of every parameter."""
-        layers = rng.permuted(np.tile(np.arange(count), (self.count, 1)), axis=1).T
-        return self.lower + self.width * (layers + rng.random((count, self.count))) / count
+        """Uniform candidates, shape (count, d), one from each of `count` strata of every parameter."""
+        strata = rng.permuted(np.tile(np.arange(count), (self.count, 1)), axis=1).T
+        return self.lower + self.width * (strata + rng.random((count, self.count))) / count
 
     def contain(self, candidates: Array) -> bool:
         """Whether every candidate, shape (n, d), lies within the ranges."""
         return bool(np.all((candidates >= self.lower) & (candidates <= self.upper)))
 
     def part(self, columns: NDArray[np.intp]) -> Ranges:
-        """The ranges of some of the parameters, by column."""
+        """Ranges of a subset of the parameters, by column."""
         return Ranges(self.lower[columns], self.upper[columns], self.periodic[columns])
 
 
 def ranges_of(variables: Iterable[Variable]) -> Ranges:
-    """The ranges of free variables, in their order."""
+    """Ranges of free variables, in the given order."""
     listed = tuple(variables)
     return Ranges(
         np.array([variable.lower for variable in listed], dtype=np.float64),

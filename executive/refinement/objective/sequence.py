@@ -1,7 +1,7 @@
 """Sequences of instantiated actions: values only.
 
-A parameter of an action is a variable with an ID. Parameters with one label and one quantity share the ID, across
-actions (paper 6.2.2, Figure 12). A variable whose value is not known is *free* and has a range.
+A parameter of an action is a variable with an id. Parameters with the same label and quantity share the id, across
+actions (paper 6.2.2, Figure 12). A variable without a value is *free* and has a range.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tailor.executive.interfaces.action import Action
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """What one or more action parameters stand for; bound when `value` is not None (then lower == upper == value)."""
+    """Variable of one or more action parameters; bound if `value` is not None (then lower == upper == value)."""
 
     id: int
     label: str
@@ -27,20 +27,20 @@ class Variable:
 
     @property
     def free(self) -> bool:
-        """Whether the value is still to be chosen."""
+        """Whether the variable has no value yet."""
         return self.value is None
 
     def bound_to(self, value: float) -> Variable:
-        """The same variable with its value fixed."""
+        """The variable with its value fixed."""
         return replace(self, lower=value, upper=value, value=value)
 
 
 @dataclass(frozen=True, slots=True)
 class InstantiatedAction:
-    """An executable action with the variables of its parameters.
+    """Executable action with the variables of its parameters.
 
-    `asserted` marks a detour: it belongs to the action after it and is not counted by the horizon. `risk` is the
-    probability of failure that was knowingly accepted for this action; None: the settings' limit stands.
+    `asserted` marks an action that leads to an asserted subgoal: it belongs to the action after it and does not count
+    in the horizon. `risk` is the accepted probability of failure of this action; None: the settings' limit applies.
     """
 
     action: Action
@@ -52,10 +52,10 @@ class InstantiatedAction:
 
 @dataclass(frozen=True, slots=True)
 class ActionSequence:
-    """Actions in the order of execution, and the table of their variables: `variables[i].id == i`.
+    """Actions in the order of execution, and their variable table: `variables[i].id == i`.
 
-    `library` holds the executable actions by name, from which assertion takes its detours. `starts` are values by
-    variable id for which success was predicted: where a search may begin.
+    `library` holds the executable actions by name; assertion takes the subgoal actions from it. `starts` are values by
+    variable id for which success was predicted: initial candidates for a search.
     """
 
     actions: tuple[InstantiatedAction, ...]
@@ -64,11 +64,11 @@ class ActionSequence:
     starts: tuple[Mapping[int, float], ...] = ()
 
     def free(self) -> tuple[Variable, ...]:
-        """The variables that are still to be chosen, by id."""
+        """Free variables, by id."""
         return tuple(variable for variable in self.variables if variable.free)
 
     def bind(self, values: Mapping[int, float]) -> ActionSequence:
-        """The sequence with the free variables in `values` (by id) fixed; bound ones stay as they are."""
+        """The sequence with the free variables in `values` (by id) fixed; bound ones are unchanged."""
         variables = tuple(
             variable.bound_to(values[variable.id]) if variable.free and variable.id in values else variable
             for variable in self.variables
@@ -76,34 +76,34 @@ class ActionSequence:
         return replace(self, variables=variables)
 
     def starting_from(self, starts: Sequence[Mapping[int, float]]) -> ActionSequence:
-        """The sequence with more known of where to start: each start joined with one that it had."""
+        """The sequence with further starts: each is merged with one of the sequence's own."""
         if not starts:
             return self
-        had = self.starts or ({},)
-        count = max(len(had), len(starts))
-        joined = tuple({**had[i % len(had)], **starts[i % len(starts)]} for i in range(count))
-        return replace(self, starts=joined)
+        own = self.starts or ({},)
+        count = max(len(own), len(starts))
+        merged = tuple({**own[i % len(own)], **starts[i % len(starts)]} for i in range(count))
+        return replace(self, starts=merged)
 
     def within(self, horizon: int) -> tuple[InstantiatedAction, ...]:
-        """The next `horizon` actions; a detour counts together with the action that it leads to."""
+        """The next `horizon` actions; an asserted subgoal counts together with the action after it."""
         return self.actions[: sum(len(unit) for unit in self.units()[:horizon])]
 
     def units(self) -> tuple[tuple[InstantiatedAction, ...], ...]:
-        """The actions, each grouped with the detours before it."""
+        """Actions, each grouped with the asserted subgoals before it."""
         units: list[tuple[InstantiatedAction, ...]] = []
-        subgoals: list[InstantiatedAction] = []
+        unit: list[InstantiatedAction] = []
         for action in self.actions:
-            subgoals.append(action)
+            unit.append(action)
             if not action.asserted:
-                units.append(tuple(subgoals))
-                subgoals = []
-        if subgoals:
-            units.append(tuple(subgoals))
+                units.append(tuple(unit))
+                unit = []
+        if unit:
+            units.append(tuple(unit))
         return tuple(units)
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Why no sequence could be made; a value, because a plan that does not fit the world is to be expected."""
+    """Reason why there is no sequence; a value, because a plan that does not fit the world is expected."""
 
     reason: str

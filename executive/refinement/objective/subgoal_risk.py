@@ -1,4 +1,4 @@
-"""The risk that a detour spoils what it is made for: a robot that runs into the ball on its way round it (paper 7)."""
+"""Risk that the way to an asserted subgoal spoils the action after it: the robot hits the ball, say (paper 7)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 
-Spoiling = Callable[[Array], Array]  # parameters of a detour, shape (n, p), to risks, shape (n,)
+RiskToNext = Callable[[Array], Array]  # parameters of a subgoal action, shape (n, p), to risks 0..1, shape (n,)
 
 
-def spoiling(
-    subgoal_action: InstantiatedAction, action: InstantiatedAction | None, variables: tuple[Variable, ...]
-) -> Spoiling | None:
-    """How a detour may spoil the action after it; None where it is no detour or nothing is known of such a risk.
+def risk_to_next(
+    action: InstantiatedAction, following: InstantiatedAction | None, variables: tuple[Variable, ...]
+) -> RiskToNext | None:
+    """Risk that `action` poses to the action after it; None if `action` leads to no asserted subgoal or poses no risk.
 
-    What the action leaves open counts as not a number: a risk that asks for it is none.
+    Free parameters of the following action are passed as NaN. A NaN risk counts as zero.
     """
-    if action is None or not subgoal_action.asserted or action.asserted or action.action.subgoal_risk is None:
+    if following is None or not action.asserted or following.asserted or following.action.subgoal_risk is None:
         return None
-    risk = action.action.subgoal_risk
-    known = np.array([np.nan if (value := variables[i].value) is None else value for i in action.variables])
-    return lambda parameters: np.nan_to_num(risk(parameters, known), nan=0.0)
+    risk = following.action.subgoal_risk
+    values = np.array([np.nan if (value := variables[i].value) is None else value for i in following.variables])
+    return lambda parameters: np.nan_to_num(risk(parameters, values), nan=0.0)

@@ -1,1 +1,1 @@
-"""Optimisers behind one interface: exact chain search, differential evolution, genetic algorithm."""
+"""Solvers behind one interface: chain solver, differential evolution, genetic algorithm."""

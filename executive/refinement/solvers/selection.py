@@ -1,4 +1,4 @@
-"""Which solver for which sequence."""
+"""Selection of the solver for a sequence."""
 
 from __future__ import annotations
 
@@ -7,35 +7,42 @@ import numpy as np
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.executive.refinement.solvers.chain import ChainSolver, Columns, blocks_of
+from tailor.executive.refinement.solvers.chain import ChainSolver
+from tailor.executive.refinement.solvers.chain_structure import Columns, blocks_of
 from tailor.executive.refinement.solvers.differential import DifferentialEvolution
 from tailor.executive.refinement.solvers.genetic import GeneticAlgorithm
 from tailor.executive.refinement.solvers.solver import Limits, Solver
 
-SUBGOALS_MIN = 3  # from so many on, dynamic programming beats evolution for the same number of model rows
-PARAMETERS_MAX = 2  # of one subgoal: a few candidates of more dimensions are too thin, under constraints above all
+MIN_SUBGOALS = 3  # from here on, dynamic programming beats evolution for the same number of model inputs
+MAX_PARAMETERS = 2  # of one subgoal: in more dimensions a few candidates are too sparse, above all under constraints
 
 
 def solver_for(
     objective: SequenceObjective, settings: RefinementSettings, rng: np.random.Generator, seeds: Array
 ) -> Solver:
-    """The solver that the settings name; "auto" goes by the structure of the sequence.
+    """Solver that the settings name; "auto" selects it by the structure of the sequence.
 
-    "chain" falls back to differential evolution where the sequence is no chain: no mistake of the user's.
+    "chain" falls back to differential evolution if the sequence is no chain: the structure is no user error.
+
+    Args:
+      objective: Cost to minimise.
+      settings: Name and limits of the solver.
+      rng: The only source of randomness.
+      seeds: Initial candidates, shape (s, d); s may be 0.
     """
     limits = Limits(settings.patience, settings.checks_max, settings.worth_s)
     blocks = blocks_of(objective.stages)
-    wanted = settings.solver
-    if wanted == "auto" and blocks is not None:
-        wanted = "chain" if _long_chain(blocks) else "differential"
-    if blocks is not None and (wanted == "chain" or not objective.ids):
+    name = settings.solver
+    if name == "auto" and blocks is not None:
+        name = "chain" if _is_long_chain(blocks) else "differential"
+    if blocks is not None and (name == "chain" or not objective.ids):
         return ChainSolver(objective, rng, seeds, settings.batch, limits)
-    if wanted == "genetic":
+    if name == "genetic":
         return GeneticAlgorithm(objective, rng, seeds)
     return DifferentialEvolution(objective, rng, seeds, limits)
 
 
-def _long_chain(blocks: tuple[Columns, ...]) -> bool:
-    """Whether there are several subgoals of few parameters each."""
+def _is_long_chain(blocks: tuple[Columns, ...]) -> bool:
+    """Whether there are several subgoals with few parameters each."""
     sizes = [len(block) for block in blocks if len(block)]
-    return len(sizes) >= SUBGOALS_MIN and max(sizes) <= PARAMETERS_MAX
+    return len(sizes) >= MIN_SUBGOALS and max(sizes) <= MAX_PARAMETERS

@@ -1,7 +1,7 @@
-"""What a solver is, and what it minimises: the one interface behind which all optimisers stand.
+"""Interface of all solvers, and of the objectives that they minimise.
 
-A solver is anytime and resumable: each check of the budget is one batch of candidates, and the next `advance` goes on
-where the last one stopped. It draws only from the generator handed in.
+A solver is anytime and resumable: each check of the budget is one batch of candidates, and the next `advance` resumes
+where the last one stopped. It draws only from the given generator.
 """
 
 from __future__ import annotations
@@ -17,56 +17,56 @@ from tailor.executive.refinement.objective.ranges import Ranges
 
 
 class Objective(Protocol):
-    """A cost to be minimised over a box; +inf is INVALID."""
+    """Cost to be minimised over a box; +inf is INVALID."""
 
     ranges: Ranges
 
     @property
-    def rows(self) -> int:
-        """Action-model rows predicted so far."""
+    def evaluations(self) -> int:
+        """Number of model inputs predicted so far."""
         ...
 
     def __call__(self, candidates: Array) -> Array:
-        """The cost of every candidate, shape (n, d) -> (n,)."""
+        """Cost of every candidate, shape (n, d) -> (n,)."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """When a search is finished: `patience` checks in which the value fell by no more than `worth`, or `checks_max`."""
+    """End of a search: `patience` checks in which the value fell by at most `min_gain`, or `max_checks`."""
 
     patience: int
-    checks_max: int
-    worth: float = 0.0
+    max_checks: int
+    min_gain: float = 0.0
 
 
 @dataclass(slots=True)
 class Trace:
-    """How the best value fell: at which check and after how many model rows."""
+    """Improvements of the best value: number of checks and of model inputs, and the value."""
 
     checks: list[int] = field(default_factory=list)
-    rows: list[int] = field(default_factory=list)
+    evaluations: list[int] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
 
-    def note(self, checks: int, rows: int, value: float) -> None:
+    def add(self, checks: int, evaluations: int, value: float) -> None:
         """Add an improvement."""
         self.checks.append(checks)
-        self.rows.append(rows)
+        self.evaluations.append(evaluations)
         self.values.append(value)
 
 
 class Solver:
-    """Keeps the best candidate, the trace, and when to stop; subclasses say what one check does.
+    """Base of all solvers: best candidate, trace and end of the search; a subclass defines one check.
 
     Args:
-      objective: What is minimised.
+      objective: Cost to minimise.
       rng: The only source of randomness.
-      seeds: Candidates to begin with, shape (s, d); s may be 0.
-      limits: When the search is finished.
+      seeds: Initial candidates, shape (s, d); s may be 0.
+      limits: End of the search.
     """
 
     def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array, limits: Limits) -> None:
-        self.best: Array | None = None  # shape (d,), None until a valid candidate has been seen
+        self.best: Array | None = None  # shape (d,); None until the first valid candidate
         self.value = np.inf
         self.trace = Trace()
         self.checks = 0
@@ -75,24 +75,24 @@ class Solver:
         self._seeds = objective.ranges.confine(seeds.reshape(len(seeds), objective.ranges.count))
         self._limits = limits
         self._idle = 0
-        self._milestone = np.inf  # the value when patience was last renewed
+        self._milestone = np.inf  # value at the last renewal of patience
 
     @property
     def finished(self) -> bool:
-        """Whether more budget would change nothing."""
-        return self._idle >= self._limits.patience or self.checks >= self._limits.checks_max
+        """Whether a larger budget would change nothing."""
+        return self._idle >= self._limits.patience or self.checks >= self._limits.max_checks
 
     def advance(self, budget: Budget) -> None:
-        """Search on until the budget is spent or the search is finished."""
+        """Resume the search until the budget is spent or the search is finished."""
         while not self.finished and not budget.spent():
             self.checks += 1
             self._idle += 1
             self._check()
-            if self.value < self._milestone - self._limits.worth:
+            if self.value < self._milestone - self._limits.min_gain:
                 self._milestone, self._idle = self.value, 0
 
     def _check(self) -> None:
-        """One batch of candidates."""
+        """Evaluate one batch of candidates."""
         raise NotImplementedError
 
     def _consider(self, candidate: Array, value: float) -> None:
@@ -100,7 +100,7 @@ class Solver:
         if value < self.value:
             self.best = candidate.copy()
             self.value = float(value)
-            self.trace.note(self.checks, self._objective.rows, self.value)
+            self.trace.add(self.checks, self._objective.evaluations, self.value)
 
     def _consider_all(self, candidates: Array, values: Array) -> None:
         """Keep the best of the candidates, shape (n, d), if it is the best so far."""

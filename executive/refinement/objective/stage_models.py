@@ -1,0 +1,37 @@
+"""Models of one action, looked up by the names that the action gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.models import DurationModel, Models, SuccessModel
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class StageModels:
+    """Models of one action; None if the action has none of the kind."""
+
+    duration: DurationModel
+    success: SuccessModel | None
+    energy: DurationModel | None
+
+
+def models_of(action: Action, models: Models, settings: RefinementSettings) -> StageModels:
+    """Models that an action names; the energy model only if energy has a weight.
+
+    Raises:
+      UsageError: A named model is not loaded.
+    """
+    energy_path = action.duration_model.rpartition("/")[0] + "/energy" if settings.energy_weight > 0 else ""
+    required = [(action.duration_model, models.durations), (energy_path, models.durations)]
+    for path, loaded in [*required, (action.success_model, models.successes)]:
+        if path and path not in loaded:
+            raise UsageError(f"action {action.name} needs the model {path}; loaded models: {sorted(loaded)}")
+    return StageModels(
+        models.durations[action.duration_model],
+        models.successes[action.success_model] if action.success_model else None,
+        models.durations[energy_path] if energy_path else None,
+    )
