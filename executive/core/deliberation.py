@@ -14,8 +14,10 @@ from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
-from tailor.executive.refinement.instantiation import ActionSequence, Failure, Pattern
-from tailor.executive.refinement.refinement import Choice, Refinement
+from tailor.executive.refinement.instantiation import Pattern
+from tailor.executive.refinement.objective.choice import Choice
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
+from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]

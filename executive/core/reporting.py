@@ -137,7 +137,7 @@ def _action(decision: Decision, index: int, action: InstantiatedAction) -> m.Ins
         step=action.step,
         asserted=action.asserted,
         predicted_s=choice.predicted_s[index] if predicted else 0.0,
-        spread_s=choice.spread_s[index] if predicted else 0.0,
+        spread_s=choice.std_s[index] if predicted else 0.0,
         parameters=tuple(_parameter(n, v, decision) for n, v in zip(names, variables, strict=True)),
     )
 

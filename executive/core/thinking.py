@@ -104,4 +104,4 @@ def _bindings_violated(state: State) -> bool:
     decision = state.task.decision
     if decision is None or state.task.running is None:
         return False
-    return decision.watch.moved(state.belief)
+    return decision.watch.bindings_violated(state.belief)

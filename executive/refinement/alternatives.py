@@ -21,8 +21,6 @@ class Alternatives:
     variable: int  # id
     values: Array  # (n,) in the variable's unit
     durations_s: Array  # (actions, n) mean
-    std_s: Array  # (actions, n) standard deviation
-    failure: Array  # (actions, n) probability
     total_s: Array  # (n,) value of the objective; +inf is INVALID
 
     @property
@@ -68,7 +66,5 @@ def alternatives(
         variable,
         candidates[:, column],
         np.array([prediction.duration_s for prediction in predictions]),
-        np.array([prediction.std_s for prediction in predictions]),
-        np.array([prediction.failure for prediction in predictions]),
         objective(candidates),
     )

@@ -62,7 +62,7 @@ def check_gate(model: RefinementGate) -> RefinementGate:
 def judge(sequence: ActionSequence, greedy: Choice, refined: Choice, model: RefinementGate | None) -> Verdict:
     """Compare two choices for the same actions with the gate, if it was trained for such a sequence.
 
-    The comparison is empty if a choice is not valid, if the greedy choice covers the same horizon, or if both are equal.
+    The comparison is empty if a choice is not valid, if there is only one action to refine, or if both are equal.
     """
     first = len(sequence.units()[0])
     if not (greedy.valid and refined.valid) or len(greedy.predicted_s) == first or greedy.values == refined.values:

@@ -1,26 +1,18 @@
 """Instantiation: a symbolic plan becomes a sequence of executable actions (paper 6.1, Algorithm 2).
 
-Causal links say which predicates hold for a label of the plan; the domain turns them into values or ranges.
+Causal links give the predicates that hold for a label of the plan; the domain turns them into values or ranges.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from tailor.executive.interfaces.action import Parameter
 from tailor.executive.interfaces.domain import Conflict, Domain, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Belief, Fact, Interval
 from tailor.executive.planning import Plan
-from tailor.executive.refinement.objective.sequence import (
-    ActionSequence,
-    Failure,
-    InstantiatedAction,
-    Variable,
-)
-
-__all__ = ["ActionSequence", "Failure", "InstantiatedAction", "Pattern", "Variable", "instantiate"]
-
-INITIAL = 0  # producer id of what holds in the initial state
+from tailor.executive.refinement.label_facts import LabelFacts, facts_by_label
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure, InstantiatedAction, Variable
 
 
 def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) -> ActionSequence | Failure:
@@ -28,54 +20,58 @@ def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) 
 
     Args:
       plan: Steps by start time, with causal links, those from the initial state included.
-      domain: Action library and meaning of the predicates.
-      belief: The domain's belief state of now.
-      scenario: What the labels mean.
+      domain: Action library and ranges of the predicates.
+      belief: The domain's current belief state.
+      scenario: Places and settings of the task.
 
     Returns:
-      The actions in plan order, or why the predicates over a label exclude each other.
+      The actions in plan order, or the reason why the predicates over a label exclude each other.
     """
     return Pattern(plan, domain, scenario).sequence(belief)
 
 
 class Pattern:
-    """Instantiation of one plan as far as it does not depend on the belief: which variable each parameter stands for.
+    """Part of a plan's instantiation that does not depend on the belief: the variable of each parameter.
 
     Args:
       plan: Steps by start time, with causal links, those from the initial state included.
-      domain: Action library and meaning of the predicates.
-      scenario: What the labels mean.
+      domain: Action library and ranges of the predicates.
+      scenario: Places and settings of the task.
     """
 
     def __init__(self, plan: Plan, domain: Domain, scenario: Scenario) -> None:
         self._domain, self._scenario = domain, scenario
-        self._linked = _facts_by_label(plan)
-        self._slots: list[_Slot] = []  # one for each label and quantity (lines 8 to 11), by id
-        self._uses: list[tuple[tuple[str, ...], int, Parameter]] = []  # action of the plan, slot, parameter; in order
+        self._label_facts = facts_by_label(plan)
+        self._slots: list[_Slot] = []  # one for each label and quantity (lines 8 to 11), by variable id
+        self._uses: list[_Use] = []  # in plan order
         ids: dict[tuple[str, str], int] = {}
         self.actions = tuple(self._action(step.action, step.id, ids) for step in plan.steps)
 
     def sequence(self, belief: Belief) -> ActionSequence | Failure:
-        """The plan's actions with what the belief says of their variables, or why that excludes itself."""
+        """The plan's actions with variables from the belief, or the reason why the predicates exclude each other."""
         variables: list[Variable] = []
-        for action, identifier, parameter in self._uses:
+        for use in self._uses:
             try:
-                if identifier == len(variables):
-                    variables.append(self._made(identifier, belief))
-                variables[identifier] = _narrowed(variables[identifier], parameter)
+                if use.variable == len(variables):
+                    variables.append(self._variable(use.variable, belief))
+                variables[use.variable] = _narrow(variables[use.variable], use.parameter)
             except Conflict as conflict:
-                return Failure(f"{' '.join(action)}: {conflict}")
+                return Failure(f"{' '.join(use.action)}: {conflict}")
         return ActionSequence(self.actions, tuple(variables), self._domain.actions)
 
     def value(self, identifier: int, belief: Belief) -> float | None:
-        """What `sequence` gives one variable; None if it is free. Raises Conflict if there is no sequence."""
-        said = self._said(self._slots[identifier], belief)
-        if said is not None and said.lower == said.upper:
-            return said.lower
-        variable = self._made(identifier, belief)
-        for _, used, parameter in self._uses:
-            if used == identifier:
-                variable = _narrowed(variable, parameter)
+        """Value of one variable in `sequence(belief)`; None if it is free.
+
+        Raises:
+          Conflict: There is no sequence for this belief.
+        """
+        interval = self._interval(self._slots[identifier], belief)
+        if interval is not None and interval.lower == interval.upper:
+            return interval.lower
+        variable = self._variable(identifier, belief)
+        for use in self._uses:
+            if use.variable == identifier:
+                variable = _narrow(variable, use.parameter)
         return variable.value
 
     def _action(self, symbolic: tuple[str, ...], step: int, ids: dict[tuple[str, str], int]) -> InstantiatedAction:
@@ -86,37 +82,34 @@ class Pattern:
             key = (labels[parameter.argument], parameter.quantity)
             if key not in ids:
                 ids[key] = len(ids)
-                self._slots.append(_Slot(key[0], parameter, *self._predicates(key[0])))
+                facts = self._label_facts.get(key[0], LabelFacts())
+                self._slots.append(_Slot(key[0], parameter, tuple(facts.holds), tuple(facts.achieved)))
             variables.append(ids[key])
-            self._uses.append((symbolic, ids[key], parameter))
+            self._uses.append(_Use(symbolic, ids[key], parameter))
         return InstantiatedAction(action, step, tuple(variables))
 
-    def _predicates(self, label: str) -> tuple[tuple[Fact, ...], tuple[Fact, ...]]:
-        linked = self._linked.get(label, _Linked())
-        return tuple(linked.holds), tuple(linked.achieved)
-
-    def _said(self, slot: _Slot, belief: Belief) -> Interval | None:
+    def _interval(self, slot: _Slot, belief: Belief) -> Interval | None:
         quantity = slot.parameter.quantity
         query = LabelQuery(quantity, slot.label, slot.holds, slot.achieved, belief, self._scenario)
         return self._domain.value(query)
 
-    def _made(self, identifier: int, belief: Belief) -> Variable:
+    def _variable(self, identifier: int, belief: Belief) -> Variable:
         slot = self._slots[identifier]
         parameter = slot.parameter
         default = Interval(parameter.lower, parameter.upper)
-        interval = self._said(slot, belief) or default
+        interval = self._interval(slot, belief) or default
         value = interval.lower if interval.lower == interval.upper else None
-        wraps = parameter.periodic and interval.upper - interval.lower >= default.upper - default.lower
-        if wraps:
+        periodic = parameter.periodic and interval.upper - interval.lower >= default.upper - default.lower
+        if periodic:
             interval = default
         return Variable(
-            identifier, slot.label, parameter.quantity, parameter.unit, interval.lower, interval.upper, wraps, value
+            identifier, slot.label, parameter.quantity, parameter.unit, interval.lower, interval.upper, periodic, value
         )
 
 
 @dataclass(frozen=True, slots=True)
 class _Slot:
-    """A variable before its value is known: the parameter that it was made for, and the predicates over its label."""
+    """Variable without a range: the first parameter that it stands for, and the predicates over its label."""
 
     label: str
     parameter: Parameter
@@ -125,40 +118,26 @@ class _Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class _Linked:
-    """The predicates over one label: what holds already, and what earlier actions achieve."""
+class _Use:
+    """Occurrence of a variable: symbolic action, variable id and parameter of the executable action."""
 
-    holds: list[Fact] = field(default_factory=list)
-    achieved: list[Fact] = field(default_factory=list)
-
-
-def _facts_by_label(plan: Plan) -> dict[str, _Linked]:
-    """`parseCausalLinks` of Algorithm 2: pos2 -> [0ball, 2atball]. What must *not* hold says nothing of values."""
-    linked: dict[str, _Linked] = {}
-    for link in plan.links:
-        if not link.literal.positive:
-            continue
-        fact = link.literal.fact
-        for label in dict.fromkeys(fact[1:]):
-            entry = linked.setdefault(label, _Linked())
-            facts = entry.holds if link.producer == INITIAL else entry.achieved
-            if fact not in facts:
-                facts.append(fact)
-    return linked
+    action: tuple[str, ...]
+    variable: int
+    parameter: Parameter
 
 
-def _narrowed(variable: Variable, parameter: Parameter) -> Variable:
-    """A free variable keeps to the default range of every parameter that it stands for.
+def _narrow(variable: Variable, parameter: Parameter) -> Variable:
+    """The variable, if free, restricted to the default range of a parameter that it stands for.
 
-    A known value stays as the belief says, even out of range: the robot is where it is. An angle's range may lie across
-    the ends of the default range, so that part of a turn is left as the predicates gave it.
+    A bound value is not changed, even out of range: the belief determines it. The range of an angle may cross the ends
+    of the default range, so a partial turn is not restricted either.
     """
     if not variable.free or parameter.periodic:
         return variable
     lower, upper = max(variable.lower, parameter.lower), min(variable.upper, parameter.upper)
     if lower > upper:
         raise Conflict(
-            f"{variable.quantity} of {variable.label} is asked to be in [{variable.lower:g}, {variable.upper:g}] "
+            f"{variable.quantity} of {variable.label} is restricted to [{variable.lower:g}, {variable.upper:g}] "
             f"but {parameter.name} has the range [{parameter.lower:g}, {parameter.upper:g}]"
         )
     narrowed = replace(variable, lower=lower, upper=upper)

@@ -10,7 +10,8 @@ import pytest
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.domain import Scenario
-from tailor.executive.refinement.instantiation import ActionSequence, instantiate
+from tailor.executive.refinement.instantiation import instantiate
+from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import declaration

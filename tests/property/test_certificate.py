@@ -20,10 +20,10 @@ from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
 from tests.support.random_trees import Trees
-from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints
+from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints, within
 
 seeds = st.integers(0, 2**32 - 1)
-kinds = st.sampled_from(["waypoints", "approach", "detour", "two places"])
+kinds = st.sampled_from(["waypoints", "approach", "subgoal", "two places"])
 SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.1), ("v", 0.05))
 
 
@@ -36,7 +36,7 @@ def task(kind: str, seed: int) -> ActionSequence:
     start = {"x": rng.uniform(-3, 3), "y": rng.uniform(-2, 2), "phi": 0.0, "v": 0.0}
     ball = {"x": 1.0, "y": 0.0, "v": (0.0, 0.3)}
     target = {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
-    if kind == "detour":
+    if kind == "subgoal":
         return sequence([GO, APPROACH, DRIBBLE], [start, {}, ball, target])
     return sequence([GO, GO, GO], [start, {}, {"v": 0.0}, target])
 
@@ -53,50 +53,52 @@ def objective(kind: str, seed: int, k_std: float, spread: bool) -> tuple[Sequenc
     return SequenceObjective(given_sequence.actions, given_sequence.variables, models, chosen), chosen
 
 
-def proof(kind: str, seed: int, k_std: float = 1.0, spread: bool = True, best: np.ndarray | None = None) -> Certificate:
+def new_proof(
+    kind: str, seed: int, k_std: float = 1.0, spread: bool = True, best: np.ndarray | None = None
+) -> Certificate:
     cost, chosen = objective(kind, seed, k_std, spread)
     if best is None:
         solver = solver_for(cost, chosen, np.random.default_rng(seed), np.empty((0, cost.ranges.count)))
         solver.advance(CheckBudget(15))
         best = solver.best if solver.best is not None else cost.vector({})
-    made = certificate(cost, best, chosen)
-    assert isinstance(made, Certificate)
-    return made
+    proof = certificate(cost, best, chosen)
+    assert isinstance(proof, Certificate)
+    return proof
 
 
 @settings(max_examples=40, deadline=None)
 @given(kinds, seeds, st.sampled_from([0.0, 1.0, 2.0]), st.booleans())
 def test_no_choice_costs_less_than_the_bound(kind, seed, k_std, spread):
-    made = proof(kind, seed, k_std, spread)
-    made.advance(CheckBudget(25))
+    proof = new_proof(kind, seed, k_std, spread)
+    proof.advance(CheckBudget(25))
     cost, _ = objective(kind, seed, k_std, spread)
     drawn = cost.ranges.draw(4000, np.random.default_rng(seed))
-    near = made.best + 0.02 * cost.ranges.width * np.random.default_rng(seed).standard_normal((1000, len(made.best)))
-    assert made.bound <= cost(np.vstack([drawn, cost.ranges.confine(near)])).min()
-    assert made.bound <= made.value
+    near = proof.best + 0.02 * cost.ranges.width * np.random.default_rng(seed).standard_normal((1000, len(proof.best)))
+    assert proof.bound <= cost(np.vstack([drawn, cost.ranges.confine(near)])).min()
+    assert proof.bound <= proof.value
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_one_subgoal_is_bounded_by_no_more_than_a_fine_grid_finds(seed):
-    made = proof("approach", seed)
-    made.advance(CheckBudget(150))
+    proof = new_proof("approach", seed)
+    proof.advance(CheckBudget(150))
     cost, _ = objective("approach", seed, 1.0, True)
     axes = [np.linspace(lo, hi, 201) for lo, hi in zip(cost.ranges.lower, cost.ranges.upper, strict=True)]
     grid = cost(np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)).min()
-    assert made.bound <= min(grid, made.value)
+    assert proof.bound <= min(grid, proof.value)
     if np.isfinite(grid):
-        assert made.bound > 0.9 * min(grid, made.value)  # and by hardly less
+        assert proof.bound > 0.9 * min(grid, proof.value)  # and by hardly less
 
 
 @settings(max_examples=25, deadline=None)
 @given(kinds, seeds)
 def test_bound_never_falls_and_choice_never_gets_worse(kind, seed):
-    made = proof(kind, seed)
-    bounds, values = [made.bound], [made.value]
+    proof = new_proof(kind, seed)
+    bounds, values = [proof.bound], [proof.value]
     for _ in range(30):
-        made.advance(CheckBudget(1))
-        bounds.append(made.bound)
-        values.append(made.value)
+        proof.advance(CheckBudget(1))
+        bounds.append(proof.bound)
+        values.append(proof.value)
     assert all(earlier <= later for earlier, later in pairwise(bounds))
     assert all(later <= earlier for earlier, later in pairwise(values))
 
@@ -104,7 +106,7 @@ def test_bound_never_falls_and_choice_never_gets_worse(kind, seed):
 @settings(max_examples=25, deadline=None)
 @given(kinds, seeds, st.lists(st.integers(1, 8), min_size=1, max_size=6))
 def test_slices_equal_one_run_with_the_same_checks(kind, seed, slices):
-    whole, sliced = proof(kind, seed), proof(kind, seed)
+    whole, sliced = new_proof(kind, seed), new_proof(kind, seed)
     whole.advance(CheckBudget(sum(slices)))
     for checks in slices:
         sliced.advance(CheckBudget(checks))
@@ -114,62 +116,62 @@ def test_slices_equal_one_run_with_the_same_checks(kind, seed, slices):
 
 def test_gap_that_is_good_enough_is_proven_for_one_subgoal_and_for_three():
     for kind in ("approach", "waypoints"):
-        made = proof(kind, 5, k_std=0.0, spread=False)
-        made.advance(CheckBudget(10_000))
-        assert made.finished
-        assert made.gap_pct <= 1.0 + 1e-9
+        proof = new_proof(kind, 5, k_std=0.0, spread=False)
+        proof.advance(CheckBudget(10_000))
+        assert proof.finished
+        assert proof.gap_pct <= 1.0 + 1e-9
 
 
 def test_better_choice_than_the_given_one_is_found_on_the_way():
     cost, _ = objective("waypoints", 3, 1.0, True)
     worst = max(cost.ranges.draw(200, np.random.default_rng(0)), key=lambda one: cost(one[None])[0])
-    made = proof("waypoints", 3, best=worst)
-    made.advance(CheckBudget(60))
-    assert made.value < cost(worst[None])[0]
-    assert made.value == cost(made.best[None])[0]
-    assert cost.ranges.contain(made.best)
+    proof = new_proof("waypoints", 3, best=worst)
+    proof.advance(CheckBudget(60))
+    assert proof.value < cost(worst[None])[0]
+    assert proof.value == cost(proof.best[None])[0]
+    assert within(cost.ranges, proof.best)
 
 
 def test_proof_ends_when_its_checks_are_used_up():
     cost, chosen = objective("two places", 0, 1.0, True)
-    made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=7))
+    proof = certificate(cost, cost.vector({}), replace(chosen, certify_checks=7))
     budget = CheckBudget(100)
-    made.advance(budget)
-    assert made.finished
-    assert budget.granted == made.checks == 7
+    proof.advance(budget)
+    assert proof.finished
+    assert budget.granted == proof.checks == 7
 
 
-def test_proof_stalls_only_where_its_bound_does_not_rise():
-    stalling, bounds = BoundStagnation(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
-    assert not any(stalling.stalls(bound, 2.0) for bound in bounds)
-    idle = [stalling.stalls(2.0, 2.0) for _ in range(PATIENCE + 1)]
+def test_proof_stagnates_only_if_its_bound_does_not_rise():
+    stagnation, bounds = BoundStagnation(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
+    assert not any(stagnation.update(bound, 2.0) for bound in bounds)
+    idle = [stagnation.update(2.0, 2.0) for _ in range(PATIENCE + 1)]
     assert idle == [False] * PATIENCE + [True]
 
 
 def test_proof_that_would_spend_its_checks_on_its_first_boxes_is_not_begun(monkeypatch):
     monkeypatch.setattr("tailor.executive.refinement.certificates.certificate.EFFORT", 1000)
-    cost, chosen = objective("detour", 0, 1.0, True)
-    made = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
-    made.advance(CheckBudget(100))
-    assert made.finished
-    assert made.checks < 10
-    assert made.gap_pct is None
+    cost, chosen = objective("subgoal", 0, 1.0, True)
+    proof = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
+    proof.advance(CheckBudget(100))
+    assert proof.finished
+    assert proof.checks < 10
+    assert proof.gap_pct is None
 
 
 def test_spent_budget_proves_nothing():
-    made = proof("approach", 0)
-    made.advance(CheckBudget(0))
-    assert made.gap_pct is None
-    assert not made.finished
+    proof = new_proof("approach", 0)
+    proof.advance(CheckBudget(0))
+    assert proof.gap_pct is None
+    assert not proof.finished
 
 
-def test_what_cannot_be_bounded_is_told_plainly():
+def test_missing_bounds_are_reported_with_the_reason():
     given_sequence = approach_dribble()
     chosen = RefinementSettings()
     unknown = SequenceObjective(given_sequence.actions, given_sequence.variables, MODELS, chosen)
-    said = certificate(unknown, unknown.vector({}), chosen)
-    assert isinstance(said, NoBound)
-    assert "inside its models" in said.reason
+    refusal = certificate(unknown, unknown.vector({}), chosen)
+    assert isinstance(refusal, NoBound)
+    assert "have no bounds" in refusal.reason
     shifted = tuple(
         replace(action, action=replace(action.action, arguments=lambda values: values + 1.0))
         for action in given_sequence.actions

@@ -15,7 +15,7 @@ from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
-from tests.support.synthetic_models import MODELS, approach_dribble, sequence, waypoints
+from tests.support.synthetic_models import MODELS, approach_dribble, sequence, waypoints, within
 
 SOLVERS = ("chain", "genetic", "differential")
 SPREAD = (("x", 0.03), ("y", 0.03), ("phi", 0.1))
@@ -44,7 +44,7 @@ def refinement(kind: str, seed: int, solver: str, horizon: int = 3) -> Refinemen
     return Refinement(task(kind, seed), MODELS, chosen, np.random.default_rng(seed))
 
 
-kinds = st.sampled_from(["waypoints", "approach", "detour"])
+kinds = st.sampled_from(["waypoints", "approach", "subgoal"])
 
 
 @settings(max_examples=25, deadline=None)
@@ -83,7 +83,7 @@ def test_choice_is_always_within_ranges_and_constraints(kind, seed, solver, chec
         assert variable.lower <= value <= variable.upper
     if choice.valid:
         limits = [0.05 if action.risk is None else action.risk for action in given_sequence.within(3)]
-        assert all(said <= limit for said, limit in zip(choice.failure, limits, strict=True))
+        assert all(failure <= limit for failure, limit in zip(choice.failure, limits, strict=True))
         assert np.isfinite(choice.total_s)
 
 
@@ -93,10 +93,10 @@ def test_first_check_answers_for_every_free_parameter_in_the_horizon(kind, seed,
     search = refinement(kind, seed, solver, horizon=2)
     assert search.choice is None
     search.advance(CheckBudget(1))
-    within = task(kind, seed).within(2)
+    actions = task(kind, seed).within(2)
     variables = task(kind, seed).variables
-    assert set(search.choice.values) == {i for action in within for i in action.variables if variables[i].free}
-    assert len(search.choice.predicted_s) == len(within)
+    assert set(search.choice.values) == {i for action in actions for i in action.variables if variables[i].free}
+    assert len(search.choice.predicted_s) == len(actions)
     assert search.report().checks == 1
 
 
@@ -161,7 +161,7 @@ def test_sequence_without_free_parameters_is_finished_after_one_check():
 def test_confined_values_lie_in_the_ranges(values, periodic):
     ranges = Ranges(np.array([-np.pi, 0.0]), np.array([np.pi, 0.3]), np.array([periodic, False]))
     confined = ranges.confine(np.array([values]))
-    assert ranges.contain(confined)
+    assert within(ranges, confined)
     if periodic:
         turns = (confined[0, 0] - values[0]) / (2 * np.pi)
         assert turns == pytest.approx(round(turns), abs=1e-6)
@@ -172,6 +172,6 @@ def test_draws_lie_in_the_ranges_and_cover_every_layer(count, seed):
     ranges = Ranges(np.array([-1.0, 0.0]), np.array([1.0, 0.3]), np.array([False, False]))
     drawn = ranges.draw(count, np.random.default_rng(seed))
     assert drawn.shape == (count, 2)
-    assert ranges.contain(drawn)
+    assert within(ranges, drawn)
     layers = np.floor((drawn - ranges.lower) / ranges.width * count)
     assert all(len(set(column)) == count for column in layers.T)

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.interfaces.models import Models
-from tailor.executive.refinement.certificates.boxes import NOWHERE, Boxes, box_of
+from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, box_of
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.executive.refinement.solvers.chain import blocks_of, links_of
+from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.refine_cases import Case, cases
 
@@ -49,11 +49,11 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, ta
     lower, upper = drawn_boxes(cost.ranges, rng)
     share = rng.choice([0.0, 1.0, 0.5, np.nan], (400, cost.ranges.count))
     inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
-    whole, before = NOWHERE, NOWHERE
+    whole, before = NO_PARAMETERS, NO_PARAMETERS
     for stage, link, block in zip(cost.stages, links_of(cost.stages, blocks), blocks, strict=True):
         everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
         bound = stage_bound(stage, link, chosen)
         assert isinstance(bound, StageBound)
-        least = bound.within(whole, everywhere).least(before, own).item()
+        least = bound.within(whole, everywhere).lower_bound(before, own).item()
         assert least <= stage.cost(inside[:, stage.columns]).min()
         whole, before = everywhere, own

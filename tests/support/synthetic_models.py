@@ -9,9 +9,14 @@ import numpy as np
 from tailor.executive.interfaces.action import Action, Control, Parameter
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
+from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 
 PI = float(np.pi)
+
+
+def within(ranges: Ranges, candidates: Array) -> bool:
+    return bool(np.all((candidates >= ranges.lower) & (candidates <= ranges.upper)))
 
 
 def norm(angle: Array) -> Array:
@@ -58,7 +63,7 @@ class NeverSucceeds:
 
 @dataclass
 class NotANumber:
-    """A duration model that knows nothing about goals in the right half."""
+    """A duration model that predicts NaN for goals in the right half."""
 
     inner: PoseDuration = field(default_factory=PoseDuration)
 
@@ -94,20 +99,27 @@ MODELS = Models(
 
 
 def sequence(actions: list[Action], places: list[dict[str, float | tuple[float, float]]]) -> ActionSequence:
-    """Actions from place to place; a place gives values or (lower, upper) ranges, what it lacks is free."""
+    """Actions from place to place; a place gives values or (lower, upper) ranges; missing quantities are free."""
     variables: list[Variable] = []
     ids: list[dict[str, int]] = []
     for place_index, place in enumerate(places):
         ids.append({})
         for parameter in pose_parameters()[:4]:
-            said = place.get(parameter.quantity, (parameter.lower, parameter.upper))
-            lower, upper = said if isinstance(said, tuple) else (said, said)
+            given = place.get(parameter.quantity, (parameter.lower, parameter.upper))
+            lower, upper = given if isinstance(given, tuple) else (given, given)
             value = lower if lower == upper else None
-            wraps = parameter.periodic and upper - lower >= 2 * PI
+            periodic = parameter.periodic and upper - lower >= 2 * PI
             ids[-1][parameter.quantity] = len(variables)
             variables.append(
                 Variable(
-                    len(variables), f"pos{place_index}", parameter.quantity, parameter.unit, lower, upper, wraps, value
+                    len(variables),
+                    f"pos{place_index}",
+                    parameter.quantity,
+                    parameter.unit,
+                    lower,
+                    upper,
+                    periodic,
+                    value,
                 )
             )
     instances = tuple(

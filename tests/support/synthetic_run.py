@@ -116,11 +116,11 @@ def subgoals(tick: int, sequence, choice, done: int) -> m.Subgoals:
         parameters = tuple(
             _parameter(n, sequence.variables[v], choice) for n, v in zip(names, action.variables, strict=True)
         )
-        predicted, spread = choice.predicted_s[i], choice.spread_s[i]
+        predicted, std = choice.predicted_s[i], choice.std_s[i]
         if i == done:  # where the robot is, everything is known
             parameters = tuple(replace(p, bound=p.bound or not p.name.endswith("g")) for p in parameters)
         actions.append(
-            m.InstantiatedAction(action.action.name, len(sequence.actions) - i, False, predicted, spread, parameters)
+            m.InstantiatedAction(action.action.name, len(sequence.actions) - i, False, predicted, std, parameters)
         )
     return m.Subgoals(tick * PERIOD_NS, tick, 2, tuple(actions[done:]))
 
@@ -195,17 +195,17 @@ def _parameter(name, variable, choice) -> m.Parameter:
 
 
 def _report(tick: int, refinement: Refinement) -> m.RefinementReport:
-    said = refinement.report()
+    report = refinement.report()
     return m.RefinementReport(
         tick * PERIOD_NS,
         tick,
         2,
-        said.solver,
+        report.solver,
         refinement.finished,
-        said.evaluations,
-        said.checks,
-        said.greedy_s,
-        said.best_s,
-        tuple(e for e, _ in said.trace),
-        tuple(s for _, s in said.trace),
+        report.evaluations,
+        report.checks,
+        report.greedy_s,
+        report.best_s,
+        tuple(e for e, _ in report.trace),
+        tuple(s for _, s in report.trace),
     )

@@ -28,7 +28,7 @@ class PairBound(Protocol):
         """Approximate number of elementary comparisons for one pair."""
         ...
 
-    def least(self, before: Boxes, own: Boxes) -> Array:
+    def lower_bound(self, before: Boxes, own: Boxes) -> Array:
         """Seconds, shape (len(before), len(own))."""
         ...
 
@@ -122,7 +122,7 @@ class BoxChain:
         width = max(1, n_pairs // height)
         for i, j in product(range(0, len(before), height), range(0, len(own), width)):
             rows, columns = before[i : i + height], own[j : j + width]
-            least = self._bounds[index].least(first.part(rows), self.boxes[index].part(columns))
+            bounds = self._bounds[index].lower_bound(first.part(rows), self.boxes[index].part(columns))
             block = np.ix_(rows, columns)
-            table[block] = np.maximum(table[block], least)
+            table[block] = np.maximum(table[block], bounds)
             yield

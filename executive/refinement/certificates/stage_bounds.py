@@ -57,7 +57,7 @@ class StageBound:
         assert duration is not None
         return replace(self, duration=duration, success=success, energy=energy)
 
-    def least(self, before: Boxes, own: Boxes) -> Array:
+    def lower_bound(self, before: Boxes, own: Boxes) -> Array:
         """Lower bound in seconds, shape (len(before), len(own)); +inf: all values in the two boxes are INVALID."""
         arguments = self.spans(*self._parameters(before, own))
         settings = self.settings

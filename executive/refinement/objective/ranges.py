@@ -45,10 +45,6 @@ class Ranges:
         strata = rng.permuted(np.tile(np.arange(count), (self.count, 1)), axis=1).T
         return self.lower + self.width * (strata + rng.random((count, self.count))) / count
 
-    def contain(self, candidates: Array) -> bool:
-        """Whether every candidate, shape (n, d), lies within the ranges."""
-        return bool(np.all((candidates >= self.lower) & (candidates <= self.upper)))
-
     def part(self, columns: NDArray[np.intp]) -> Ranges:
         """Ranges of a subset of the parameters, by column."""
         return Ranges(self.lower[columns], self.upper[columns], self.periodic[columns])

@@ -1,4 +1,4 @@
-"""The alternatives of a subgoal are what the objective says of them, and greedy is told apart from refined."""
+"""Alternatives of a subgoal have the value of the objective, and greedy differs from refined."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def test_alternatives_agree_with_the_choice():
     search = Refinement(given, MODELS, SETTINGS, np.random.default_rng(0))
     search.advance(CheckBudget(500))
     angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
-    said = alternatives(given, search.choice.values, MODELS, SETTINGS, angle, 721)
-    assert said.durations_s.shape == (2, 721)
-    valid = np.isfinite(said.total_s)
-    np.testing.assert_allclose(said.durations_s.sum(axis=0)[valid], said.total_s[valid])
-    assert said.total_s.min() >= search.choice.total_s - 1e-9
-    assert said.best == pytest.approx(search.choice.values[angle], abs=0.02)
+    predicted = alternatives(given, search.choice.values, MODELS, SETTINGS, angle, 721)
+    assert predicted.durations_s.shape == (2, 721)
+    valid = np.isfinite(predicted.total_s)
+    np.testing.assert_allclose(predicted.durations_s.sum(axis=0)[valid], predicted.total_s[valid])
+    assert predicted.total_s.min() >= search.choice.total_s - 1e-9
+    assert predicted.best == pytest.approx(search.choice.values[angle], abs=0.02)
 
 
 def test_greedy_alternative_is_what_horizon_one_chooses():
@@ -34,9 +34,9 @@ def test_greedy_alternative_is_what_horizon_one_chooses():
     alone = Refinement(given, MODELS, replace(SETTINGS, horizon=1), np.random.default_rng(0))
     alone.advance(CheckBudget(500))
     angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
-    said = alternatives(given, alone.choice.values, MODELS, SETTINGS, angle, 721)
-    assert said.greedy == pytest.approx(alone.choice.values[angle], abs=0.02)
-    assert said.best != pytest.approx(said.greedy, abs=0.05)
+    predicted = alternatives(given, alone.choice.values, MODELS, SETTINGS, angle, 721)
+    assert predicted.greedy == pytest.approx(alone.choice.values[angle], abs=0.02)
+    assert predicted.best != pytest.approx(predicted.greedy, abs=0.05)
 
 
 def test_bound_variable_has_no_alternatives():

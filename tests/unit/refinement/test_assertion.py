@@ -1,4 +1,4 @@
-"""Subgoal assertion puts a detour where an action is predicted to fail, and says so when it cannot."""
+"""Subgoal assertion inserts a subgoal before an action that is predicted to fail, or fails with a reason."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_subgoal_does_not_count_in_the_horizon():
     assert len(result.within(2)) == 3
 
 
-def test_only_actions_in_the_horizon_are_looked_at():
+def test_only_actions_in_the_horizon_are_checked():
     start, ball = {"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}
     given = sequence([DRIBBLE, APPROACH], [TARGET, start, ball])
     assert names(asserted(given, replace(SETTINGS, horizon=1))) == ["dribbleBall", "approachBall"]
@@ -93,18 +93,18 @@ def test_action_without_a_subgoal_fails_with_a_reason():
     failure = asserted(approach(3.0, (-0.3, 0.3), (lonely, DRIBBLE)))
     assert isinstance(failure, Failure)
     assert "approachBall" in failure.reason
-    assert "no subgoal" in failure.reason
+    assert "no subgoal action" in failure.reason
 
 
 def test_hopeless_action_fails_after_the_bounded_depth():
     hopeless = Models(MODELS.durations, {"goToPose/success": NeverSucceeds()})
     failure = asserted(approach(-1.0, (-3.0, 3.0)), replace(HARD, assertion_depth=2), hopeless)
     assert isinstance(failure, Failure)
-    assert "after 2 detours" in failure.reason
+    assert "after 2 asserted subgoals" in failure.reason
 
 
-def test_subgoal_that_is_itself_predicted_to_fail_ends():
-    """A detour with a success model of its own is looked at too; the depth bounds the whole unit."""
+def test_subgoal_action_that_is_itself_predicted_to_fail_is_a_failure():
+    """A subgoal action with a success model of its own is checked too; the depth bounds the whole unit."""
     wary = replace(GO, success_model="goToPose/success")
     given = replace(
         approach(3.0, (-0.3, 0.3)), library=LIBRARY | {"goToPose": replace(wary, subgoal_action="goToPose")}
@@ -113,8 +113,8 @@ def test_subgoal_that_is_itself_predicted_to_fail_ends():
     assert isinstance(asserted(given, models=models), Failure)
 
 
-def test_margin_decides():
-    """From the side success is likely, not certain: a strict limit asks for a detour, a lax one does not."""
+def test_limit_of_the_failure_probability_decides():
+    """From the side success is likely, not certain: a strict limit asserts a subgoal, a lax one does not."""
     start, ball = {"x": 1.0, "y": -2.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}
     given = sequence([APPROACH], [start, ball])
     probability = ConeSuccess().probability(np.array([[1, -2, 0, 0, 1, 0, 0.65, 0.0]]))[0]
@@ -124,7 +124,7 @@ def test_margin_decides():
 
 
 def test_displaced_arrivals_must_succeed_too():
-    """The margin counts for where the robot may really arrive, not only for the subgoal itself."""
+    """The limit applies to displaced arrivals, not only to the subgoal itself."""
     wide = replace(HARD, arrival_spread=(("x", 0.05), ("y", 0.05)))
     result = asserted(approach(3.0, (-0.3, 0.3)), wide)
     worst = []
@@ -148,15 +148,15 @@ def test_slices_give_what_one_run_gives(slice_checks):
     assert results[-1] == asserted(given)
 
 
-class TwoSecondsAndTheWay:
-    """Every action takes 2 s and 1 s a metre, so a detour always costs something."""
+class TwoSecondsAndOneAMetre:
+    """Every action takes 2 s and 1 s a metre, so a subgoal always costs time."""
 
     def predict(self, arguments):
         distance = np.hypot(*(arguments[:, 4:6] - arguments[:, :2]).T)
         return 2 + distance, np.zeros(len(arguments))
 
 
-PLAIN = Models({"goToPose/duration": TwoSecondsAndTheWay()}, MODELS.successes)
+PLAIN = Models({"goToPose/duration": TwoSecondsAndOneAMetre()}, MODELS.successes)
 FROM_THE_SIDE = sequence(
     [APPROACH],
     [{"x": 1.0, "y": -2.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.65, "v": 0.0}],
@@ -164,8 +164,8 @@ FROM_THE_SIDE = sequence(
 
 
 @pytest.mark.parametrize(("price_s", "expected"), [(1.0, ["approachBall"]), (100.0, ["goToPose", "approachBall"])])
-def test_subgoal_must_pay_when_it_is_weighed(price_s, expected):
-    """An approach that fails in three of ten tries: a cheap failure is risked, a dear one is driven around."""
+def test_subgoal_is_asserted_only_at_a_lower_expected_cost(price_s, expected):
+    """An approach that fails in three of ten tries: a cheap failure is risked, an expensive one is avoided."""
     settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=price_s)
     result = asserted(FROM_THE_SIDE, settings, PLAIN)
     assert names(result) == expected
@@ -174,7 +174,7 @@ def test_subgoal_must_pay_when_it_is_weighed(price_s, expected):
     assert refinement.choice.valid
 
 
-def test_weighing_goes_on_where_the_budget_stopped_it():
+def test_comparison_resumes_where_the_budget_stopped_it():
     settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=100.0)
     sliced = Assertion(FROM_THE_SIDE, PLAIN, settings, np.random.default_rng(0))
     results = [sliced.advance(CheckBudget(3)) for _ in range(60)]
@@ -183,7 +183,7 @@ def test_weighing_goes_on_where_the_budget_stopped_it():
 
 
 class AtBest:
-    """A model that is never surer than `best`, and that only where the cone says yes."""
+    """A model whose success probability is at most `best`, and that only inside the cone."""
 
     def __init__(self, best):
         self.best = best
@@ -192,8 +192,8 @@ class AtBest:
         return self.best * ConeSuccess().probability(arguments)
 
 
-def test_unsure_model_is_settled_with_instead_of_given_up():
-    """No start keeps the limit: the detour goes where success is likeliest, at the risk that is left."""
+def test_least_risk_is_accepted_if_no_start_keeps_the_limit():
+    """The subgoal lies where success is likeliest, at the remaining risk."""
     unsure = Models(MODELS.durations, {"goToPose/success": AtBest(0.86)})
     result = asserted(approach(3.0, (-0.3, 0.3)), models=unsure)
     assert names(result) == ["goToPose", "approachBall", "dribbleBall"]
@@ -203,20 +203,20 @@ def test_unsure_model_is_settled_with_instead_of_given_up():
     assert refinement.choice.valid
 
 
-def test_subgoal_that_buys_no_certainty_is_not_made():
+def test_subgoal_that_does_not_lower_the_risk_is_not_asserted():
     unsure = Models(MODELS.durations, {"goToPose/success": AtBest(0.86)})
     result = asserted(approach(-1.0, (-0.3, 0.3)), models=unsure)
     assert names(result) == ["approachBall", "dribbleBall"]
     assert 0.14 < result.actions[0].risk < 0.25
 
 
-def test_model_that_is_against_it_everywhere_is_believed():
+def test_failure_that_is_likely_everywhere_is_a_failure():
     against = Models(MODELS.durations, {"goToPose/success": AtBest(0.3)})
     assert isinstance(asserted(approach(3.0, (-0.3, 0.3)), models=against), Failure)
 
 
-def test_arrival_beside_the_subgoal_is_not_driven_around_again():
-    """Between the limit for subgoals and the one for detours an approach goes on, at the risk that it has."""
+def test_arrival_beside_the_subgoal_asserts_no_second_subgoal():
+    """Between p_fail_max and p_fail_assert an approach continues at its own risk."""
     start, ball = {"x": 1.0, "y": -2.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.72, "v": 0.0}
     risk = 1 - ConeSuccess().probability(np.array([[1, -2, 0, 0, 1, 0, 0.72, 0.0]]))[0]
     lenient = replace(SETTINGS, p_fail_assert=0.2)
@@ -228,9 +228,9 @@ def test_arrival_beside_the_subgoal_is_not_driven_around_again():
     assert refinement.choice.valid
 
 
-def test_subgoal_is_weighed_even_where_no_start_is_certain():
-    """A model that is never surer than 86 % still tells a good start from a bad one."""
-    unsure = Models({"goToPose/duration": TwoSecondsAndTheWay()}, {"goToPose/success": AtBest(0.86)})
+def test_subgoal_is_compared_even_if_no_start_is_certain():
+    """A model with at most 86 % success still distinguishes a good start from a bad one."""
+    unsure = Models({"goToPose/duration": TwoSecondsAndOneAMetre()}, {"goToPose/success": AtBest(0.86)})
     settings = replace(SETTINGS, compare_subgoals=True, risk_cost_s=20.0, p_fail_assert=0.2)
     behind = sequence(
         [APPROACH], [{"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}]

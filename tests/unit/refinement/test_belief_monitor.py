@@ -1,4 +1,4 @@
-"""A watched sequence notices exactly what instantiating the plan anew would show, and looks up less."""
+"""The belief monitor detects exactly the changes that a new instantiation would show, with fewer look-ups."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
-from tailor.executive.refinement.instantiation import Failure, Pattern, instantiate
-from tailor.executive.refinement.objective.sequence import InstantiatedAction
+from tailor.executive.refinement.instantiation import Pattern, instantiate
+from tailor.executive.refinement.objective.sequence import Failure, InstantiatedAction
 from tests.support.synthetic_models import LIBRARY
 from tests.unit.refinement.test_instantiation import paper_plan
 
@@ -32,21 +32,21 @@ class ShiftingDomain:
     executables: dict[str, str] = field(
         default_factory=lambda: {"approachball": "approachBall", "dribbleball": "dribbleBall"}
     )
-    asked: int = 0
+    queries: int = 0
 
     def value(self, query):
         quantity, belief = query.quantity, query.belief
-        self.asked += 1
+        self.queries += 1
         for fact in query.holds:
             if fact[0] == "ball" and belief["ball"] is None:
                 raise Conflict("the ball has not been seen")
-            known = belief.get(fact[0])
-            if known is not None and quantity in known:
-                return Interval(known[quantity], known[quantity])
+            values = belief.get(fact[0])
+            if values is not None and quantity in values:
+                return Interval(values[quantity], values[quantity])
         return Interval(-belief["width"], belief["width"]) if quantity == "phi" else None
 
 
-def places_moved_by_definition(plan, domain, then, belief):
+def violated_by_definition(plan, domain, then, belief):
     """Instantiate anew and compare every value that has a tolerance."""
     now = instantiate(plan, domain, belief, None)
     if isinstance(now, Failure):
@@ -69,33 +69,33 @@ START = {"robot": {"x": 0.0, "y": 0.0}, "ball": {"x": 3.0, "y": 0.0}, "final": {
 
 
 @given(belief=beliefs)
-def test_watch_says_what_a_new_instantiation_would(belief):
+def test_violation_is_what_a_new_instantiation_shows(belief):
     plan, domain = paper_plan(), ShiftingDomain()
     then = instantiate(plan, domain, START, None)
-    watch = BeliefMonitor(Pattern(plan, domain, None), then)
-    assert watch.moved(belief) == places_moved_by_definition(plan, domain, then, belief)
+    monitor = BeliefMonitor(Pattern(plan, domain, None), then)
+    assert monitor.bindings_violated(belief) == violated_by_definition(plan, domain, then, belief)
 
 
-def test_watch_notices_a_moved_ball_but_not_one_that_is_out_of_sight():
+def test_moved_ball_is_a_violation_but_one_out_of_sight_is_not():
     plan, domain = paper_plan(), ShiftingDomain()
-    watch = BeliefMonitor(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
-    assert not watch.moved(START)
-    assert watch.moved({**START, "ball": {"x": 3.0, "y": 0.2}})
-    assert not watch.moved({**START, "ball": None})
+    monitor = BeliefMonitor(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
+    assert not monitor.bindings_violated(START)
+    assert monitor.bindings_violated({**START, "ball": {"x": 3.0, "y": 0.2}})
+    assert not monitor.bindings_violated({**START, "ball": None})
 
 
-def test_watch_asks_for_no_more_than_the_values_with_a_tolerance():
+def test_only_values_with_a_tolerance_are_looked_up():
     plan, domain = paper_plan(), ShiftingDomain()
     sequence = instantiate(plan, domain, START, None)
-    watch, domain.asked = BeliefMonitor(Pattern(plan, domain, None), sequence), 0
-    watch.moved(START)
-    watched = {
+    monitor, domain.queries = BeliefMonitor(Pattern(plan, domain, None), sequence), 0
+    monitor.bindings_violated(START)
+    monitored = {
         v for a in sequence.actions for p, v in zip(a.action.parameters, a.variables, strict=True) if p.tolerance
     }
-    assert 0 < domain.asked <= len(watched) < len(sequence.variables)
+    assert 0 < domain.queries <= len(monitored) < len(sequence.variables)
 
 
-def test_a_subgoal_is_not_watched():
+def test_asserted_subgoal_is_not_monitored():
     plan, domain = paper_plan(), ShiftingDomain()
     pattern = Pattern(plan, domain, None)
     sequence = pattern.sequence(START)
@@ -104,4 +104,4 @@ def test_a_subgoal_is_not_watched():
         replace(first.action, name="goToPose"), first.step, first.variables, asserted=True
     )
     alone = replace(sequence, actions=(subgoal_action,))
-    assert not BeliefMonitor(pattern, alone).moved({**START, "ball": {"x": 9.0, "y": 9.0}})
+    assert not BeliefMonitor(pattern, alone).bindings_violated({**START, "ball": {"x": 9.0, "y": 9.0}})

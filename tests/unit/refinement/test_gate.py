@@ -1,4 +1,4 @@
-"""When not to refine: the tree's advice is followed where it holds, told, and judged by what it did."""
+"""The refinement gate is applied where it is valid, reported, and evaluated by its effect."""
 
 import dataclasses
 
@@ -21,17 +21,17 @@ KIND = ("approachBall", "dribbleBall")
 
 
 @dataclasses.dataclass(frozen=True)
-class Advisor:
-    """Says the same of every situation, and keeps them."""
+class ConstantGate:
+    """Predicts the same for every situation, and records them."""
 
     probability: float
     sequences: frozenset[tuple[str, ...]] = frozenset({KIND})
     input_names: tuple[str, ...] = SITUATION
     threshold: float = 0.5
-    heard: list[tuple[float, ...]] = dataclasses.field(default_factory=list)
+    recorded: list[tuple[float, ...]] = dataclasses.field(default_factory=list)
 
     def p_slowdown(self, situations):
-        self.heard.extend(map(tuple, situations.tolist()))
+        self.recorded.extend(map(tuple, situations.tolist()))
         return np.full(len(situations), self.probability)
 
 
@@ -44,8 +44,8 @@ def searched(gate, slices: int = 1, horizon: int = 2) -> Refinement:
     return search
 
 
-def test_a_tree_that_fears_a_loss_keeps_the_greedy_choice_searched_out_as_a_horizon_of_one_does() -> None:
-    free, kept = searched(None), searched(Advisor(0.9))
+def test_predicted_slowdown_keeps_the_greedy_choice_searched_as_with_horizon_one() -> None:
+    free, kept = searched(None), searched(ConstantGate(0.9))
     assert free.choice.total_s < kept.choice.total_s  # the refined choice is better by the models
     alone = searched(None, horizon=1).choice
     assert kept.choice.predicted_s[0] == pytest.approx(alone.predicted_s[0], abs=0.02)
@@ -53,59 +53,59 @@ def test_a_tree_that_fears_a_loss_keeps_the_greedy_choice_searched_out_as_a_hori
     assert (verdict.p_slowdown, verdict.keep_greedy) == (0.9, True)
 
 
-def test_a_tree_that_fears_nothing_changes_nothing() -> None:
-    free, refined = searched(None), searched(Advisor(0.5))
+def test_gate_below_its_threshold_changes_nothing() -> None:
+    free, refined = searched(None), searched(ConstantGate(0.5))
     assert refined.choice == free.choice
     assert refined.report().verdict.p_slowdown == 0.5
     assert not refined.report().verdict.keep_greedy
 
 
-def test_a_tree_is_not_asked_about_sequences_that_it_was_not_learned_for() -> None:
-    stranger = Advisor(1.0, sequences=frozenset({("goToPose", "goToPose")}))
-    assert searched(stranger).choice == searched(None).choice
-    assert stranger.heard == []
+def test_gate_is_not_queried_for_sequences_that_it_was_not_trained_for() -> None:
+    other = ConstantGate(1.0, sequences=frozenset({("goToPose", "goToPose")}))
+    assert searched(other).choice == searched(None).choice
+    assert other.recorded == []
 
 
-def test_a_tree_that_gives_no_number_is_not_obeyed() -> None:
-    search = searched(Advisor(float("nan")))
+def test_prediction_that_is_not_a_number_is_ignored() -> None:
+    search = searched(ConstantGate(float("nan")))
     assert search.choice == searched(None).choice
     assert search.report().verdict.p_slowdown == -1
 
 
-def test_nothing_is_asked_when_nothing_is_looked_ahead() -> None:
-    advisor = Advisor(1.0)
-    assert searched(advisor, horizon=1).report().verdict.situation == ()
-    assert advisor.heard == []
+def test_gate_is_not_queried_with_horizon_one() -> None:
+    gate = ConstantGate(1.0)
+    assert searched(gate, horizon=1).report().verdict.situation == ()
+    assert gate.recorded == []
 
 
-def test_advice_is_the_same_in_slices() -> None:
-    assert searched(Advisor(0.9), slices=2000).choice == searched(Advisor(0.9)).choice
+def test_decision_is_the_same_in_slices() -> None:
+    assert searched(ConstantGate(0.9), slices=2000).choice == searched(ConstantGate(0.9)).choice
 
 
-def test_the_situation_tells_gain_price_and_return_in_seconds() -> None:
-    search = searched(Advisor(0.0))
-    said = dict(zip(SITUATION, search.report().verdict.situation, strict=True))
+def test_situation_contains_gain_price_and_return_in_seconds() -> None:
+    search = searched(ConstantGate(0.0))
+    values = dict(zip(SITUATION, search.report().verdict.situation, strict=True))
     greedy, refined = searched(None, horizon=1).choice, search.choice
-    assert said["gain_s"] == pytest.approx(search.report().greedy_s - refined.total_s)
-    assert said["first_s"] + said["price_s"] == pytest.approx(refined.predicted_s[0])
-    assert said["rest_s"] - said["return_s"] == pytest.approx(refined.predicted_s[1])
-    assert said["first_s"] == pytest.approx(greedy.predicted_s[0], abs=0.1)
-    assert 0 < said["turned_rad"] <= np.pi
+    assert values["gain_s"] == pytest.approx(search.report().greedy_s - refined.total_s)
+    assert values["first_s"] + values["price_s"] == pytest.approx(refined.predicted_s[0])
+    assert values["rest_s"] - values["return_s"] == pytest.approx(refined.predicted_s[1])
+    assert values["first_s"] == pytest.approx(greedy.predicted_s[0], abs=0.1)
+    assert 0 < values["turned_rad"] <= np.pi
 
 
-def test_an_angle_is_compared_the_short_way_round() -> None:
+def test_angles_are_compared_in_the_shorter_direction() -> None:
     sequence = approach_dribble()
     heading = next(v.id for v in sequence.free() if v.periodic)
     speed = next(v.id for v in sequence.free() if not v.periodic)
     one = searched(None).choice
     greedy = dataclasses.replace(one, values={heading: 3.1, speed: 0.3})
     refined = dataclasses.replace(one, values={heading: -3.1, speed: 0.0})
-    said = dict(zip(SITUATION, situation(sequence, greedy, refined), strict=True))
-    assert said["turned_rad"] == pytest.approx(2 * np.pi - 6.2)
-    assert said["moved"] == 1.0
+    values = dict(zip(SITUATION, situation(sequence, greedy, refined), strict=True))
+    assert values["turned_rad"] == pytest.approx(2 * np.pi - 6.2)
+    assert values["moved"] == 1.0
 
 
-def test_why_says_what_the_tree_advised() -> None:
+def test_explanation_contains_the_decision_of_the_gate() -> None:
     report = RefinementReport(
         0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, p_slowdown=0.62, kept_greedy=True
     )
@@ -117,18 +117,18 @@ def test_why_says_what_the_tree_advised() -> None:
 DONE = Outcome(1, "h2", True, 10.0, "achieved", (), (), (), (), False, 0.0, (), ())
 
 
-def test_only_pairs_that_both_arrived_and_had_a_choice_are_learned_from() -> None:
+def test_only_pairs_that_both_arrived_and_had_a_choice_are_training_data() -> None:
     seen = dataclasses.replace(DONE, situation=(1.0, 2.0), duration_s=9.0)
     lost = dataclasses.replace(DONE, achieved=False)
-    found = pairs_of([(DONE, seen), (lost, seen), (DONE, DONE)])
-    assert (found.situations.tolist(), found.greedy_s.tolist(), found.refined_s.tolist()) == ([[1, 2]], [10], [9])
+    pairs = pairs_of([(DONE, seen), (lost, seen), (DONE, DONE)])
+    assert (pairs.situations.tolist(), pairs.greedy_s.tolist(), pairs.refined_s.tolist()) == ([[1, 2]], [10], [9])
 
 
-def test_a_gate_is_judged_by_what_it_did() -> None:
+def test_gate_is_evaluated_by_its_effect() -> None:
     fast, slow = dataclasses.replace(DONE, duration_s=8.0), dataclasses.replace(DONE, duration_s=12.0)
-    asked = dataclasses.replace(slow, situation=tuple([0.0] * len(SITUATION)))
-    starts = [(DONE, fast, fast), (DONE, asked, DONE), (DONE, fast, fast), (DONE, slow, slow)]
-    row = judging.summary(starts, Advisor(0.9))
+    gated = dataclasses.replace(slow, situation=tuple([0.0] * len(SITUATION)))
+    starts = [(DONE, fast, fast), (DONE, gated, DONE), (DONE, fast, fast), (DONE, slow, slow)]
+    row = judging.summary(starts, ConstantGate(0.9))
     assert row["right_pct"] == 75.0
     assert row["always_refining_right_pct"] == 50.0
     assert row["kept_pct"] == 25.0
@@ -139,7 +139,7 @@ def test_a_gate_is_judged_by_what_it_did() -> None:
     assert row["lost_s"] == 1.0
 
 
-def test_foreknowledge_is_of_the_other_runs_and_never_of_the_one_that_is_judged() -> None:
+def test_foreknowledge_comes_from_the_other_runs_and_never_from_the_evaluated_one() -> None:
     greedy_s = np.full((2, 5), 10.0)
     refined_s = np.array([[11.0, 11, 11, 11, 9], [9.0, 9, 9, 11, 9]])
     row = gate_ceiling.judged(greedy_s, refined_s)

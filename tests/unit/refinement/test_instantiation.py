@@ -1,4 +1,4 @@
-"""Instantiation gives the paper's worked example (Figure 10, Algorithm 2 line 14), and says why when it cannot."""
+"""Instantiation gives the paper's worked example (Figure 10, Algorithm 2 line 14), or fails with a reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
 from tailor.executive.planning import Link, Literal, Plan, Search, parse_domain, parse_problem
-from tailor.executive.refinement.instantiation import ActionSequence, Failure, instantiate
+from tailor.executive.refinement.instantiation import instantiate
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tests.support.synthetic_models import LIBRARY, PI
 
 DOMAIN = """
@@ -40,16 +41,16 @@ class PaperDomain:
     executables: dict[str, str] = field(
         default_factory=lambda: {"approachball": "approachBall", "dribbleball": "dribbleBall"}
     )
-    asked: list[Any] = field(default_factory=list)
+    queries: list[Any] = field(default_factory=list)
 
     def value(self, query):
         quantity = query.quantity
-        self.asked.append((query.label, query.holds, query.achieved))
-        said = [KNOWN[fact[0]][quantity] for fact in query.holds if quantity in KNOWN[fact[0]]]
-        if len(set(said)) > 1:
-            raise Conflict(f"{quantity} of {query.label} cannot be {said}")
-        if said:
-            return Interval(said[0], said[0])
+        self.queries.append((query.label, query.holds, query.achieved))
+        values = [KNOWN[fact[0]][quantity] for fact in query.holds if quantity in KNOWN[fact[0]]]
+        if len(set(values)) > 1:
+            raise Conflict(f"{quantity} of {query.label} cannot be {values}")
+        if values:
+            return Interval(values[0], values[0])
         if quantity == "v" and any(fact[0] == "atball" for fact in query.achieved):
             return Interval(0.0, 0.3)
         return None
@@ -63,14 +64,14 @@ def paper_plan(extra: tuple[Link, ...] = ()) -> Plan:
 
 
 def instantiated() -> ActionSequence:
-    made = instantiate(paper_plan(), PaperDomain(), None, None)
-    assert isinstance(made, ActionSequence)
-    return made
+    sequence = instantiate(paper_plan(), PaperDomain(), None, None)
+    assert isinstance(sequence, ActionSequence)
+    return sequence
 
 
-def test_worked_example_binds_and_frees_what_the_paper_says():
+def test_worked_example_binds_and_frees_the_parameters_as_in_the_paper():
     sequence = instantiated()
-    said = [
+    ranges = [
         [
             (sequence.variables[i].value,) if sequence.variables[i].value is not None
             else (sequence.variables[i].lower, sequence.variables[i].upper)
@@ -79,8 +80,8 @@ def test_worked_example_binds_and_frees_what_the_paper_says():
         for action in sequence.actions
     ]  # fmt: skip
     assert [action.action.name for action in sequence.actions] == ["approachBall", "dribbleBall"]
-    assert said[0] == [(0.0,), (1.0,), (0.0,), (0.0,), (3.0,), (1.0,), (-PI, PI), (0.0, 0.3)]
-    assert said[1] == [(3.0,), (1.0,), (-PI, PI), (0.0, 0.3), (1.0,), (3.0,), (2.6,), (0.0,)]
+    assert ranges[0] == [(0.0,), (1.0,), (0.0,), (0.0,), (3.0,), (1.0,), (-PI, PI), (0.0, 0.3)]
+    assert ranges[1] == [(3.0,), (1.0,), (-PI, PI), (0.0, 0.3), (1.0,), (3.0,), (2.6,), (0.0,)]
 
 
 def test_shared_label_and_quantity_is_one_variable():
@@ -91,12 +92,12 @@ def test_shared_label_and_quantity_is_one_variable():
     assert {variable.quantity for variable in sequence.free()} == {"phi", "v"}
 
 
-def test_domain_is_asked_with_the_causal_links_of_the_label():
+def test_domain_is_queried_with_the_causal_links_of_the_label():
     domain = PaperDomain()
     instantiate(paper_plan(), domain, None, None)
-    asked = {label: (holds, achieved) for label, holds, achieved in domain.asked}
-    assert asked["pos2"] == ((("ball", "pos2"),), (("atball", "pos2"),))
-    assert asked["pos3"] == ((("final", "pos3"),), (("atball", "pos3"),))
+    queries = {label: (holds, achieved) for label, holds, achieved in domain.queries}
+    assert queries["pos2"] == ((("ball", "pos2"),), (("atball", "pos2"),))
+    assert queries["pos3"] == ((("final", "pos3"),), (("atball", "pos3"),))
 
 
 def test_contradicting_predicates_fail_with_the_step_and_the_reason():
@@ -110,8 +111,8 @@ def test_contradicting_predicates_fail_with_the_step_and_the_reason():
 def test_range_outside_the_parameters_range_fails():
     class TooFast(PaperDomain):
         def value(self, query):
-            said = super().value(query)
-            return Interval(1.0, 2.0) if (query.quantity, query.label) == ("v", "pos2") else said
+            interval = super().value(query)
+            return Interval(1.0, 2.0) if (query.quantity, query.label) == ("v", "pos2") else interval
 
     failure = instantiate(paper_plan(), TooFast(), None, None)
     assert isinstance(failure, Failure)
@@ -122,8 +123,8 @@ def test_range_outside_the_parameters_range_fails():
 def test_angle_wraps_only_when_the_whole_turn_is_free(lower, upper, wraps):
     class Sector(PaperDomain):
         def value(self, query):
-            said = super().value(query)
-            return Interval(lower, upper) if (query.quantity, query.label) == ("phi", "pos2") else said
+            interval = super().value(query)
+            return Interval(lower, upper) if (query.quantity, query.label) == ("phi", "pos2") else interval
 
     sequence = instantiate(paper_plan(), Sector(), None, None)
     assert isinstance(sequence, ActionSequence)
@@ -140,7 +141,7 @@ def test_binding_keeps_bound_variables_and_other_ids():
     assert bound.variables[0].value == 0.0
 
 
-def test_what_must_not_hold_says_nothing_of_values():
+def test_negative_link_restricts_no_value():
     domain = PaperDomain()
     instantiate(paper_plan((Link(0, Literal(("robot", "pos2"), positive=False), 1),)), domain, None, None)
-    assert ("robot", "pos2") not in {fact for _, holds, _ in domain.asked for fact in holds}
+    assert ("robot", "pos2") not in {fact for _, holds, _ in domain.queries for fact in holds}

@@ -1,4 +1,4 @@
-"""The objective adds up what the models say, and calls INVALID what must not be chosen."""
+"""The objective sums the predictions of the models, and is INVALID for choices that are not allowed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.support.synthetic_models import MODELS, NotANumber, PoseDuration, app
 
 
 def exact(**given) -> RefinementSettings:
-    """Arrivals hit, failures cost nothing, unless asked for."""
+    """Exact arrivals and free failures by default."""
     return RefinementSettings(**{"arrival_spread": (), "risk_cost_s": 0.0} | given)
 
 
@@ -36,8 +36,8 @@ def arguments(angle: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
-    said = objective(exact(k_std=2.0, p_fail_max=1.0))(CANDIDATES)
-    for value, (angle, speed) in zip(said, CANDIDATES, strict=True):
+    cost = objective(exact(k_std=2.0, p_fail_max=1.0))(CANDIDATES)
+    for value, (angle, speed) in zip(cost, CANDIDATES, strict=True):
         approach, dribble = arguments(angle, speed)
         first = MODELS.durations["goToPose/duration"].predict(approach)
         second = MODELS.durations["dribbleBall/duration"].predict(dribble)
@@ -46,17 +46,17 @@ def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
 
 
 def test_horizon_one_is_the_first_action_alone():
-    said = objective(exact(horizon=1, k_std=0.0))(CANDIDATES)
+    cost = objective(exact(horizon=1, k_std=0.0))(CANDIDATES)
     first = MODELS.durations["goToPose/duration"].predict(arguments(*CANDIDATES[1])[0])[0]
-    assert said[1] == pytest.approx(first[0])
+    assert cost[1] == pytest.approx(first[0])
 
 
 def test_likely_failure_is_invalid():
     settings = exact(p_fail_max=0.05)
     angles = np.linspace(-3, 3, 61)
-    said = objective(settings)(np.column_stack([angles, np.zeros(61)]))
+    cost = objective(settings)(np.column_stack([angles, np.zeros(61)]))
     failing = 1 - MODELS.successes["goToPose/success"].probability(np.vstack([arguments(a, 0)[0] for a in angles]))
-    np.testing.assert_array_equal(np.isinf(said), failing > 0.05)
+    np.testing.assert_array_equal(np.isinf(cost), failing > 0.05)
 
 
 def test_accepted_risk_of_an_action_replaces_the_limit():
@@ -75,7 +75,7 @@ def test_risk_costs_seconds():
     assert priced - free == pytest.approx(10 * failure)
 
 
-def test_energy_is_weighed_when_asked_for():
+def test_energy_costs_its_weight():
     models = Models(MODELS.durations | {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()},
                     MODELS.successes)  # fmt: skip
     plain = objective(exact(k_std=0.0))(CANDIDATES[:1])
@@ -84,11 +84,11 @@ def test_energy_is_weighed_when_asked_for():
     assert priced - plain == pytest.approx(0.1 * energy)
 
 
-def test_no_number_is_invalid():
+def test_prediction_that_is_not_a_number_is_invalid():
     models = Models({"goToPose/duration": NotANumber(), "dribbleBall/duration": PoseDuration()}, MODELS.successes)
-    said = objective(exact(), None, models)(np.array([[0.2, 0.1], [-0.2, 0.1]]))
-    assert np.isinf(said[0])
-    assert np.isfinite(said[1])
+    cost = objective(exact(), None, models)(np.array([[0.2, 0.1], [-0.2, 0.1]]))
+    assert np.isinf(cost[0])
+    assert np.isfinite(cost[1])
 
 
 def test_missing_model_is_named():
@@ -98,7 +98,7 @@ def test_missing_model_is_named():
 
 def test_displaced_arrivals_average_the_second_action_only():
     settings = exact(k_std=0.0, arrival_spread=(("phi", 0.2),))
-    said = objective(settings)(CANDIDATES[:1])[0]
+    cost = objective(settings)(CANDIDATES[:1])[0]
     angle, speed = CANDIDATES[0]
     first = MODELS.durations["goToPose/duration"].predict(arguments(angle, speed)[0])[0][0]
     off = 0.2 * np.sqrt(1.5)  # two points and the middle have a standard deviation of 0.2
@@ -106,22 +106,22 @@ def test_displaced_arrivals_average_the_second_action_only():
         MODELS.durations["dribbleBall/duration"].predict(arguments(angle + off, speed)[1])[0][0]
         for off in (-off, 0.0, off)
     ]
-    assert said == pytest.approx(first + np.mean(second))
+    assert cost == pytest.approx(first + np.mean(second))
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_displacements_have_the_mean_and_the_covariance_asked_for(count):
+def test_displacements_have_mean_zero_and_the_requested_covariance(count):
     quantities = [*["a", "b", "c", "d"][:count], "exact"]
-    spread = {"a": 0.1, "b": 0.2, "c": 0.3, "d": 0.4}
-    points = displacements(quantities, spread)
+    std = {"a": 0.1, "b": 0.2, "c": 0.3, "d": 0.4}
+    points = displacements(quantities, std)
     assert points.shape == (2 + count, count + 1)
     np.testing.assert_array_equal(points[0], 0)
     np.testing.assert_allclose(points.mean(axis=0), 0, atol=1e-12)
     covariance = points.T @ points / (count + 2)
-    np.testing.assert_allclose(covariance, np.diag([spread[q] ** 2 for q in quantities[:-1]] + [0]), atol=1e-12)
+    np.testing.assert_allclose(covariance, np.diag([std[q] ** 2 for q in quantities[:-1]] + [0]), atol=1e-12)
 
 
-def test_settings_refuse_nonsense():
+def test_settings_out_of_range_are_refused_by_name():
     for wrong in ({"horizon": 0}, {"k_std": -1.0}, {"p_fail_max": 1.5}, {"batch": 0}, {"risk_cost_s": float("nan")}):
         with pytest.raises(UsageError, match=next(iter(wrong))):
             RefinementSettings(**wrong)

@@ -12,7 +12,8 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.executive.refinement.solvers.chain import ChainSolver, blocks_of
+from tailor.executive.refinement.solvers.chain import ChainSolver
+from tailor.executive.refinement.solvers.chain_structure import blocks_of
 from tailor.executive.refinement.solvers.differential import DifferentialEvolution
 from tailor.executive.refinement.solvers.genetic import GeneticAlgorithm
 from tailor.executive.refinement.solvers.selection import solver_for
@@ -26,7 +27,7 @@ class Function:
 
     ranges: Ranges
     function: Callable[[np.ndarray], np.ndarray]
-    rows: int = 0
+    evaluations: int = 0
 
     @property
     def stages(self):
@@ -36,9 +37,9 @@ class Function:
     def columns(self):
         return np.arange(self.ranges.count)
 
-    def cost(self, rows):
-        self.rows += len(rows)
-        return self.function(rows)
+    def cost(self, samples):
+        self.evaluations += len(samples)
+        return self.function(samples)
 
     __call__ = cost
 
@@ -75,10 +76,10 @@ def solver(name: str, objective, seed: int = 1):
     [(de_jong, 5.12, 3, 1e-3), (schwefel, 500.0, 3, 1.0), (ackley, 32.768, 3, 0.02)],
 )
 def test_benchmark_minimum_is_found(name, function, half, count, close):
-    found = solver(name, Function(cube(half, count), function))
-    found.advance(CheckBudget(10_000))
-    assert found.finished
-    assert -1e-9 <= found.value < close
+    search = solver(name, Function(cube(half, count), function))
+    search.advance(CheckBudget(10_000))
+    assert search.finished
+    assert -1e-9 <= search.value < close
 
 
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
@@ -89,17 +90,17 @@ def test_solver_is_as_good_as_a_brute_force_grid(name):
     assert objective.ranges.count == 2
     axes = [np.linspace(lo, hi, 400) for lo, hi in zip(objective.ranges.lower, objective.ranges.upper, strict=True)]
     grid = objective(np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)).min()
-    found = solver_for(objective, settings, np.random.default_rng(3), np.empty((0, 2)))
-    found.advance(CheckBudget(10_000))
-    assert found.value <= grid + 1e-6
+    search = solver_for(objective, settings, np.random.default_rng(3), np.empty((0, 2)))
+    search.advance(CheckBudget(10_000))
+    assert search.value <= grid + 1e-6
 
 
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_nothing_valid_is_no_answer(name):
-    found = solver(name, Function(cube(1.0, 2), lambda x: np.full(len(x), np.inf)))
-    found.advance(CheckBudget(20))
-    assert found.best is None
-    assert found.value == np.inf
+    search = solver(name, Function(cube(1.0, 2), lambda x: np.full(len(x), np.inf)))
+    search.advance(CheckBudget(20))
+    assert search.best is None
+    assert search.value == np.inf
 
 
 @pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
@@ -111,28 +112,28 @@ def test_small_valid_region_is_found_from_a_seed(name):
         return np.where(away < 0.005, away, np.inf)
 
     objective, rng, seeds = Function(cube(1.0, 2), pocket), np.random.default_rng(0), np.array([[0.504, 0.504]])
-    found = {
+    search = {
         "genetic": lambda: GeneticAlgorithm(objective, rng, seeds),
         "differential": lambda: DifferentialEvolution(objective, rng, seeds, Limits(80, 800)),
         "chain": lambda: ChainSolver(objective, rng, seeds, 512, Limits(200, 800)),
     }[name]()
-    found.advance(CheckBudget(100))
-    assert found.value <= 0.004 + 1e-9
+    search.advance(CheckBudget(100))
+    assert search.value <= 0.004 + 1e-9
 
 
 def test_genetic_algorithm_has_25_chromosomes_a_parameter_and_stops_after_50_idle_generations():
     objective = Function(cube(1.0, 4), lambda x: np.zeros(len(x)))
-    found = solver("genetic", objective)
-    found.advance(CheckBudget(10_000))
-    assert found.checks == 51  # the first one found a value
-    assert objective.rows == 51 * 25 * 4
+    search = solver("genetic", objective)
+    search.advance(CheckBudget(10_000))
+    assert search.checks == 51  # the first one found a value
+    assert objective.evaluations == 51 * 25 * 4
 
 
 def test_genetic_algorithm_stops_after_500_generations():
     values = iter(range(10_000, 0, -1))
-    found = solver("genetic", Function(cube(1.0, 1), lambda x: np.full(len(x), float(next(values)))))
-    found.advance(CheckBudget(10_000))
-    assert found.checks == 500
+    search = solver("genetic", Function(cube(1.0, 1), lambda x: np.full(len(x), float(next(values)))))
+    search.advance(CheckBudget(10_000))
+    assert search.checks == 500
 
 
 def test_subgoals_are_blocks_of_the_chain():
@@ -143,7 +144,7 @@ def test_subgoals_are_blocks_of_the_chain():
     assert [block.tolist() for block in blocks] == [[0, 1], [2]]
 
 
-def test_parameter_in_distant_actions_is_no_chain_and_falls_back():
+def test_parameter_in_distant_actions_is_no_chain_and_falls_back_to_differential_evolution():
     given = approach_dribble()
     doubled = (*given.actions, given.actions[0])
     objective = SequenceObjective(doubled, given.variables, MODELS, RefinementSettings())
@@ -152,11 +153,11 @@ def test_parameter_in_distant_actions_is_no_chain_and_falls_back():
     assert isinstance(chosen, DifferentialEvolution)
 
 
-def test_search_ends_when_improvements_are_not_worth_it():
+def test_search_ends_when_improvements_are_too_small():
     values = iter(1 + 0.5**k for k in range(10_000))
     objective = Function(cube(1.0, 1), lambda x: np.full(len(x), next(values)))
     none = np.empty((0, 1))
-    eager = DifferentialEvolution(objective, np.random.default_rng(0), none, Limits(5, 1000, worth=0.1))
+    eager = DifferentialEvolution(objective, np.random.default_rng(0), none, Limits(5, 1000, min_gain=0.1))
     eager.advance(CheckBudget(10_000))
     assert eager.finished
     assert eager.checks < 15
