@@ -74,7 +74,7 @@ class OnnxGate:
 
     @property
     def sequences(self) -> frozenset[tuple[str, ...]]:
-        """Kinds of sequences that it was learned for: names of actions, detours left out."""
+        """Kinds of sequences that it was learned for: names of actions, asserted subgoals left out."""
         return frozenset(tuple(names) for names in self.card["sequences"])
 
     def p_slowdown(self, situations: Array) -> Array:

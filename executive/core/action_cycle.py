@@ -110,7 +110,7 @@ def _ended(context: Context, state: State, running: Running, control: Control) -
 
 
 def _with_effects(context: Context, task: Task, running: Running) -> Task:
-    """The abstract state after a plan step is done; a detour changes nothing in it."""
+    """The abstract state after a plan step is done; an asserted subgoal changes nothing in it."""
     if running.asserted or task.plan is None:
         return task
     action = next(step.action for step in task.plan.steps if step.id == running.step)

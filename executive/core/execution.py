@@ -17,7 +17,7 @@ class Running:
 
     action: Action
     step: int  # id of the plan step that it serves
-    asserted: bool  # a detour: its end does not complete the plan step
+    asserted: bool  # leads to an asserted subgoal: its end does not complete the plan step
     parameters: tuple[float, ...]
     predicted_s: float
     started_ns: int

@@ -30,10 +30,10 @@ class Controller(Protocol):
 
 
 class SubgoalRisk(Protocol):
-    """What a detour may do to the action that it is made for: run into its ball, say."""
+    """Risk that the way to an asserted subgoal spoils the action after it: the robot hits the ball, say."""
 
     def __call__(self, subgoals: Array, action: Array) -> Array:
-        """Risks, shape (n,), 0 to 1, of a detour's parameters, shape (n, p), before an action's, shape (q,)."""
+        """Risks, shape (n,), 0 to 1, of a subgoal action's parameters, shape (n, p), before an action's, shape (q,)."""
         ...
 
 
@@ -75,7 +75,7 @@ class Action:
     duration_model: str  # "goToPose/duration": path in the robot's model zoo
     success_model: str = ""  # empty: never predicted to fail
     subgoal_action: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
-    subgoal_risk: SubgoalRisk | None = None  # that the detour itself spoils this action; None: it cannot
+    subgoal_risk: SubgoalRisk | None = None  # that the way to the subgoal spoils this action; None: it cannot
     arguments: Callable[[Array], Array] = unchanged
     spans: Spans | None = None  # `arguments` on intervals, for certificates; None: unknown, unless nothing is changed
     time_limit_factor: float = 3.0  # times the predicted duration

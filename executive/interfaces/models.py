@@ -35,7 +35,7 @@ class RefinementGate(Protocol):
 
     @property
     def sequences(self) -> frozenset[tuple[str, ...]]:
-        """Kinds of sequences that it was learned for: names of actions, detours left out."""
+        """Kinds of sequences that it was learned for: names of actions, asserted subgoals left out."""
         ...
 
     @property

@@ -26,7 +26,7 @@ class GateProvenance:
 
     robot: str
     names: tuple[str, ...]  # of the situations' columns
-    sequences: tuple[tuple[str, ...], ...]  # of actions that it was learned for, detours left out
+    sequences: tuple[tuple[str, ...], ...]  # of actions that it was learned for, asserted subgoals left out
     models: Mapping[str, str]  # SHA-256 of the action models by "action/kind": it judges their choices alone
     settings: Mapping[str, Any]  # of refinement
     episodes: Mapping[str, Any]  # where the pairs come from

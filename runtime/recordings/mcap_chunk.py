@@ -1,4 +1,4 @@
-"""The records inside an unpacked chunk of an MCAP file: messages by the thousand, so they are read without detours."""
+"""Records inside an unpacked chunk of an MCAP file; there are thousands, so they are read directly."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def models() -> Models:
 @pytest.fixture(scope="module")
 def tasks(models) -> list[Case]:
     drawn = cases(models, TASKS)
-    return [task for name in ("2 free", "4 free", "5 free, detour") for task in drawn[name]]
+    return [task for name in ("2 free", "4 free", "5 free, subgoal") for task in drawn[name]]
 
 
 def drawn_boxes(ranges, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The tasks of the refinement benchmark: waypoint sequences of AGILO, and an approach that needs a detour."""
+"""Tasks of the refinement benchmark: waypoint sequences of AGILO, and an approach that needs a subgoal."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def cases(models: Models, count: int) -> dict[str, list[Case]]:
         name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
         for name, legs in LEGS.items()
     }
-    made["5 free, detour"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
+    made["5 free, subgoal"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
     return made
 
 
@@ -56,12 +56,12 @@ def _needs_subgoal(library: Mapping[str, Action], models: Models, rng: np.random
     actions = [library["approachBall"], library["dribbleBall"]]
     while True:
         turned = {"phi": rng.uniform(-3, 3), "v": 0.0}
-        drawn = _chain("detour", actions, [_place(rng, turned), _place(rng, turned), _place(rng, turned)])
+        drawn = _chain("subgoal", actions, [_place(rng, turned), _place(rng, turned), _place(rng, turned)])
         free = [replace(v, value=None, lower=0.0, upper=0.3) if v.id == 7 else v for v in drawn.variables]
         given = ActionSequence(drawn.actions, tuple(free), library)
         asserted = Assertion(given, models, RefinementSettings(), rng).advance(CheckBudget(1000))
         if isinstance(asserted, ActionSequence) and len(asserted.actions) == 3:
-            return Case("detour", asserted.actions, asserted.variables, asserted.starts)
+            return Case("subgoal", asserted.actions, asserted.variables, asserted.starts)
 
 
 def _place(rng: np.random.Generator, known: dict[str, float]) -> dict[str, float]:

@@ -52,7 +52,7 @@ class Outcome:
     outcomes: tuple[str, ...]
     predicted_s: tuple[float, ...]
     actual_s: tuple[float, ...]
-    asserted: bool  # whether any detour was made
+    asserted: bool  # whether any subgoal was asserted
     disturbance_m: float  # how far the ball had moved when the approach ended; 0 without an approach
     free: tuple[tuple[str, str, float, float, float], ...]  # first choice: label, quantity, lower, upper, value
     bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value

@@ -1,4 +1,4 @@
-"""Whether a detour on the way to a ball runs into that ball: goToPose knows of none, so no model of it can tell."""
+"""Risk that the way to an asserted subgoal runs into the ball: the models of goToPose have no ball."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CLEAR_M = 0.55  # with what noise may add
 
 @dataclass(frozen=True, slots=True)
 class BallContactRisk:
-    """See tailor.executive.interfaces.action.DetourRisk: the risk that the robot touches the ball on its way."""
+    """See tailor.executive.interfaces.action.SubgoalRisk: the risk that the robot touches the ball on its way."""
 
     ways: ArrivalPath  # goToPose's
 
@@ -26,7 +26,7 @@ class BallContactRisk:
         """Risks, 0 to 1.
 
         Args:
-          detours: goToPose's parameters, shape (n, 8).
+          subgoals: goToPose's parameters, shape (n, 8).
           action: Those of the approach that follows, shape (8,); its goal is the ball's place.
         """
         off = self._way(subgoals) - action[[XG, YG]]

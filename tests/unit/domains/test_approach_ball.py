@@ -1,4 +1,4 @@
-"""An approach keeps its goal where the ball is seen, arrives without a swing, and its detours avoid it."""
+"""An approach keeps its goal where the ball is seen, arrives without a swing, and its asserted subgoals avoid it."""
 
 import math
 from dataclasses import replace

@@ -77,8 +77,8 @@ def test_ball_on_the_way_of_a_subgoal_is_a_certain_bump(start, share, vg):
     # the points that are looked at are not so near to each other that long straights had none far from any
     assume(path.pieces[0][1] < 3.0)
     action = np.array([0.0, 0.0, 0.0, 0.0, ball[0], ball[1], 0.0, 0.0])
-    subgoal_action = np.array([[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, vg]])
-    assert BallContactRisk(WAYS)(subgoal_action, action)[0] == 1.0
+    subgoal = np.array([[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, vg]])
+    assert BallContactRisk(WAYS)(subgoal, action)[0] == 1.0
 
 
 def test_bump_risk_knows_the_subgoals_of_the_domain():

@@ -140,10 +140,10 @@ def test_ground_is_drawn(asserted, tmp_path):
 
 def test_figure_15_counts_the_starts_at_which_a_subgoal_was_asserted():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
-    subgoal_action = replace(
+    with_subgoal = replace(
         approach, asserted=True, predicted_actions=(("goToPose", True, 2.0), ("approachBall", False, 1.5))
     )
-    found = {"blind": {1: replace(approach, disturbance_m=0.2)}, "asserted": {1: subgoal_action}}
+    found = {"blind": {1: replace(approach, disturbance_m=0.2)}, "asserted": {1: with_subgoal}}
     row = figure15._summary(found, [1])
     assert (row["n"], row["success_before_pct"], row["success_after_pct"]) == (1, 0.0, 100.0)
     assert (row["predicted_s"], row["took_s"], row["bias_s"]) == (3.5, 4.0, -0.5)

@@ -140,9 +140,9 @@ def test_oracle_chooses_for_the_plan_not_for_subgoals():
 def test_assertion_is_counted_as_the_paper_counts_it():
     approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
     bumped = replace(approach, disturbance_m=0.2)
-    subgoal_action = replace(approach, asserted=True, actual_s=(4.4,))
+    with_subgoal = replace(approach, asserted=True, actual_s=(4.4,))
     before = {1: approach, 2: bumped, 3: approach, 4: approach}
-    after = {1: approach, 2: subgoal_action, 3: subgoal_action, 4: replace(subgoal_action, actual_s=(4.8,))}
+    after = {1: approach, 2: with_subgoal, 3: with_subgoal, 4: replace(with_subgoal, actual_s=(4.8,))}
     row = figure16.summary(before, after)
     assert row["success_before_pct"] == 75.0
     assert row["success_after_pct"] == 100.0

@@ -130,7 +130,7 @@ def test_the_command_learns_from_pairs_and_ships_a_tree_that_the_executive_takes
     assert "slower episodes" in capsys.readouterr().out
     assert [(v.refinement.horizon, v.refinement.gate) for v in ran] == [(1, False), (2, False)]
     tree = load_models("agilo", str(tmp_path), gated=True).gate
-    assert tree.sequences == {KIND}  # the detour is left out
+    assert tree.sequences == {KIND}  # the asserted subgoal is left out
     assert tree.card["episodes"]["seed"] < tree.card["episodes"]["seed"] + 300 <= 1_000_000
     assert "refinement/benefit" not in tree.card["models"]
     again = tree.card["command"].split()[1:]

@@ -52,13 +52,13 @@ def test_approach_that_fails_for_every_angle_gets_a_subgoal_with_a_free_goal():
     given = approach(3.0, (-0.3, 0.3))
     result = asserted(given)
     assert names(result) == ["goToPose", "approachBall", "dribbleBall"]
-    subgoal_action, late, dribble = result.actions
-    assert subgoal_action.asserted
-    assert not late.asserted
-    assert subgoal_action.variables[:4] == given.actions[0].variables[:4]
-    assert subgoal_action.variables[4:] == late.variables[:4] == (12, 13, 14, 15)
-    assert late.variables[4:] == dribble.variables[:4] == given.actions[0].variables[4:]
-    goal = [result.variables[i] for i in subgoal_action.variables[4:]]
+    to_subgoal, approach_ball, dribble = result.actions
+    assert to_subgoal.asserted
+    assert not approach_ball.asserted
+    assert to_subgoal.variables[:4] == given.actions[0].variables[:4]
+    assert to_subgoal.variables[4:] == approach_ball.variables[:4] == (12, 13, 14, 15)
+    assert approach_ball.variables[4:] == dribble.variables[:4] == given.actions[0].variables[4:]
+    goal = [result.variables[i] for i in to_subgoal.variables[4:]]
     assert [(v.lower, v.upper, v.free) for v in goal] == [(p.lower, p.upper, True) for p in GO.parameters[4:]]
 
 

@@ -100,8 +100,6 @@ def test_asserted_subgoal_is_not_monitored():
     pattern = Pattern(plan, domain, None)
     sequence = pattern.sequence(START)
     first = sequence.actions[0]
-    subgoal_action = InstantiatedAction(
-        replace(first.action, name="goToPose"), first.step, first.variables, asserted=True
-    )
-    alone = replace(sequence, actions=(subgoal_action,))
+    to_subgoal = InstantiatedAction(replace(first.action, name="goToPose"), first.step, first.variables, asserted=True)
+    alone = replace(sequence, actions=(to_subgoal,))
     assert not BeliefMonitor(pattern, alone).bindings_violated({**START, "ball": {"x": 9.0, "y": 9.0}})

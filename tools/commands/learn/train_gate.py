@@ -169,7 +169,7 @@ def pairs_of(outcomes: Sequence[tuple[Outcome, Outcome]]) -> Pairs:
 
 
 def _sequences(outcomes: Any) -> tuple[tuple[str, ...], ...]:
-    """The kinds of sequences that were compared: names of actions within the horizon, detours left out."""
+    """The kinds of sequences that were compared: names of actions within the horizon, asserted subgoals left out."""
     kinds = {
         tuple(name for name, asserted, _ in outcome.predicted_actions if not asserted)[:2]
         for outcome in outcomes

@@ -38,7 +38,7 @@ class Reason:
     def title(self) -> str:
         """When, and which actions."""
         actions = self.decision.subgoals.actions
-        names = ", then ".join(a.action + " (detour)" * a.asserted for a in actions[:NAMED])
+        names = ", then ".join(a.action + " (asserted subgoal)" * a.asserted for a in actions[:NAMED])
         more = f" and {len(actions) - NAMED} more" if len(actions) > NAMED else ""
         return f"{self.decision.at_s:.1f} s: {names}{more}"
 

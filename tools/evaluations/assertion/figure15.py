@@ -85,7 +85,7 @@ def _summary(found: Mapping[str, Mapping[int, Outcome]], seeds: Sequence[int]) -
 def _looked_at(
     task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
 ) -> tuple[dict[str, Any], SubgoalMap | None]:
-    """One start with a subgoal; the ground is None where two detours were made in a row."""
+    """One start with a subgoal; the ground is None if two subgoals were asserted in a row."""
     watched, context = trace_run(task, _asserting(), seed)
     ground = subgoal_map_of(watched.subgoals[0], context)
     before, after = found["blind"][seed], found["asserted"][seed]

@@ -31,7 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when at least 98 % succeed and at most 10 % of the detours were needless."""
+    """Evaluate and tell; 0 when at least 98 % succeed and at most 10 % of the asserted subgoals were needless."""
     row = evaluate(arguments)
     plots = {}
     if arguments.report is not None:
@@ -71,7 +71,7 @@ def succeeded(outcome: Outcome) -> bool:
 
 
 def approached_s(outcome: Outcome) -> float:
-    """Seconds until the first approach had ended, detours included; what comes after it is not its doing."""
+    """Seconds until the first approach had ended, asserted subgoals included; what comes after it is not its doing."""
     return sum(outcome.actual_s[: outcome.actions.index("approachBall") + 1])
 
 

@@ -58,7 +58,7 @@ class SubgoalMap:
 
 @dataclass(frozen=True, slots=True)
 class _Decision:
-    """A detour and the action after it, with the subgoal that was chosen between them."""
+    """A subgoal action and the action after it, with the subgoal chosen between them."""
 
     sequence: ActionSequence
     objective: SequenceObjective
@@ -79,7 +79,7 @@ class _Decision:
 
 
 def subgoal_map_of(message: Subgoals, context: Context) -> SubgoalMap | None:
-    """The ground for the first decision of an episode; None unless it puts one detour before its next action."""
+    """The ground for the first decision of an episode; None unless it asserts one subgoal before its next action."""
     decision = _decision(message, context)
     if decision is None:
         return None

@@ -1,6 +1,6 @@
 """The paper's Figure 11: predicted durations over the free angle of approach, and what the same sweep takes simulated.
 
-Every angle is forced upon the executive in turn, which predicts both actions (detours included) and then executes them.
+Every angle is forced upon the executive in turn. It predicts both actions, asserted subgoals included, then executes them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ REMARKS = (
     "too, and as refinement chose it",
     "regret_pct: how much longer the simulated episode takes at the model's best angle than at the best angle of all "
     "(the best of many noisy runs: a perfect model has a little regret, too)",
-    "ring: the executive puts a detour before the approach, which is part of that action's time",
+    "ring: the executive asserts a subgoal before the approach, which is part of that action's time",
 )
 
 

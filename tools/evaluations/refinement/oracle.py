@@ -34,7 +34,7 @@ class Oracle:
 
 
 def subgoal_parameters(outcome: Outcome) -> list[Free]:
-    """The free parameters that the first choice of an episode had, those of detours left out."""
+    """The free parameters that the first choice of an episode had, those of asserted subgoals left out."""
     return [(label, quantity, lo, hi) for label, quantity, lo, hi, _ in outcome.free if not label.startswith("subgoal")]
 
 
@@ -85,7 +85,7 @@ def _judged(seed: int, outcomes: Sequence[Outcome], zero: Outcome) -> Oracle:
 
 
 def _first_action_s(outcome: Outcome) -> float:
-    """Until the first action that belongs to the plan is done, detours included; never, where it failed at first."""
+    """Seconds until the first action of the plan is done, asserted subgoals included; inf if it failed at first."""
     end = next((i for i, name in enumerate(outcome.actions) if name != "goToPose" or not outcome.asserted), 0)
     return sum(outcome.actual_s[: end + 1]) if outcome.outcomes[end] == "done" else float("inf")
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """n angles. Rows of the tables are: approach with its detours, all that comes after it, the sum; NaN: failed."""
+    """n angles. Rows of the tables: approach with its asserted subgoals, everything after it, the sum; NaN: failed."""
 
     seed: int
     angles: Array  # (n,) rad, ascending from -pi, equally spaced round the circle
@@ -73,7 +73,7 @@ def sweep_of(
 
 
 def _foreseen_s(run: Outcome) -> tuple[float, float, float]:
-    """Predicted at the outset: approach with detours, what comes after, sum."""
+    """Predicted at the outset: approach with asserted subgoals, what comes after, sum."""
     names = [name for name, _, _ in run.predicted_actions]
     if "approachBall" not in names:
         return float("nan"), float("nan"), float("nan")

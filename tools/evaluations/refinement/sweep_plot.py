@@ -14,7 +14,7 @@ from tailor.tools.figures.paths import draw_side_by_side
 from tailor.tools.figures.track import Track
 
 MODEL, SIMULATED, BAND = "#1f77b4", "#2c3e50", "#b8c4cc"
-TITLES = ("approachBall, with detours", "dribbleBall", "sum")
+TITLES = ("approachBall, with asserted subgoals", "dribbleBall", "sum")
 
 
 def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
@@ -48,7 +48,7 @@ def _draw(axis: Any, sweep: Sweep, number: int) -> None:
 
 
 def _draw_curves(axis: Any, sweep: Sweep, number: int) -> None:
-    """What was predicted and what was simulated, with the spread of the runs and the angles that take a detour."""
+    """Predicted and simulated seconds, with the range of the runs and the angles with an asserted subgoal."""
     angles = np.append(sweep.angles, sweep.angles[0] + 2 * np.pi)
     predicted = sweep.predicted_s[number]
     axis.fill_between(
@@ -68,7 +68,7 @@ def _draw_curves(axis: Any, sweep: Sweep, number: int) -> None:
         markerfacecolor="none",
         color=MODEL,
         markersize=5,
-        label="with a detour",
+        label="with an asserted subgoal",
     )
 
 

@@ -104,7 +104,9 @@ def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSeq
                 declared.periodic and wide,
                 parameter.value if parameter.bound else None,
             )
-    unused = Variable(0, "", "", "", 0.0, 0.0, False, 0.0)  # ids have gaps where a detour replaced a variable
+    unused = Variable(
+        0, "", "", "", 0.0, 0.0, False, 0.0
+    )  # ids have gaps where an asserted subgoal replaced a variable
     variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
     actions = tuple(
         InstantiatedAction(library[a.action], a.step, tuple(p.id for p in a.parameters), a.asserted)
