@@ -26,13 +26,13 @@ def run(certify_checks: int, checks: int = 12):
     context = build_context(ExecutiveConfig("soccer", "waypoints", Settings(seed=3, refinement=refinement)), SENDER)
     ticks, outputs = [], []
 
-    def witness(tick, said):
+    def on_tick(tick, published):
         ticks.append(tick)
-        outputs.append(said)
+        outputs.append(published)
 
     _, start = domains.seeded_scenario("soccer", "waypoints", 3)
     body = make_world(context.domain.robot, "waypoints", 3).body
-    run_lockstep(context, body, start, 3, limit_s=5.0, checks=checks, witness=witness)
+    run_lockstep(context, body, start, 3, limit_s=5.0, checks=checks, on_tick=on_tick)
     return context, ticks, outputs
 
 

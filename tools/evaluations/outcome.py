@@ -1,4 +1,4 @@
-"""What an evaluation runs and what comes of it: task, variant, outcome."""
+"""Task, variant and outcome of the runs that an evaluation compares."""
 
 from __future__ import annotations
 
@@ -7,15 +7,22 @@ from dataclasses import dataclass, field
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import RefinementReport, Subgoals
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
 
-FIRST_SEED = 1_000_000  # evaluation seeds; models are trained and settings chosen on smaller ones
+FIRST_SEED = 1_000_000  # of evaluations; models are trained and settings are chosen on smaller seeds
 
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One way to run an episode. `pins` forces choices: (label, quantity, value); `noise` draws other noise."""
+    """Settings of a run.
+
+    Attributes:
+      name: Unique within an evaluation.
+      refinement: Settings of refinement.
+      pins: Choices that the run is forced to make: label, quantity, value.
+      noise: Added to the seed of the body's noise.
+    """
 
     name: str
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
@@ -25,10 +32,15 @@ class Variant:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """Which world: domain and scenario, with the profile of its body ("", or "degraded").
+    """Scenario that an evaluation runs.
 
-    `goal` is a PDDL goal in place of the scenario's; `drawn` are quantities that every seed pins to a value of its
-    own: label, quantity, lower, upper.
+    Attributes:
+      domain: Name of the domain.
+      scenario: Name of the scenario.
+      profile: Of the body: "", or "degraded".
+      zoo: Folder of action models; empty: the shipped ones.
+      goal: PDDL goal that replaces the scenario's; empty: the scenario's own.
+      drawn: Quantities that are pinned to a random value for each seed: label, quantity, lower, upper.
     """
 
     domain: str
@@ -41,7 +53,27 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of an episode; durations in seconds, actions in order of execution."""
+    """Summary of one run; durations in seconds, actions in order of execution.
+
+    Attributes:
+      seed: Of the run.
+      variant: Name of its settings.
+      achieved: Whether the goal was reached.
+      duration_s: From the start of the first action to the end of the last one.
+      result: "achieved", or the reason of the failure.
+      actions: Names of the finished actions.
+      outcomes: Of each finished action.
+      predicted_s: Of each finished action when it started.
+      actual_s: Of each finished action.
+      asserted: Whether any subgoal was asserted.
+      disturbance_m: Displacement of an object that should have stayed in place; see `TaskSampler.disturbance_m`.
+      free: Free variables of the first choice: label, quantity, lower, upper, value.
+      bound: Bound variables of the first choice: label, quantity, value.
+      greedy_cost_s: Objective of the greedy values in the first choice.
+      refined_cost_s: Objective of the refined values in the first choice.
+      predicted_actions: Of the first choice: action, whether it was asserted, predicted seconds.
+      situation: Features that a refinement gate receives of the first choice (tailor.executive.refinement.gate).
+    """
 
     seed: int
     variant: str
@@ -52,86 +84,71 @@ class Outcome:
     outcomes: tuple[str, ...]
     predicted_s: tuple[float, ...]
     actual_s: tuple[float, ...]
-    asserted: bool  # whether any subgoal was asserted
-    disturbance_m: float  # how far the ball had moved when the approach ended; 0 without an approach
-    free: tuple[tuple[str, str, float, float, float], ...]  # first choice: label, quantity, lower, upper, value
-    bound: tuple[tuple[str, str, float], ...]  # the situation then: label, quantity, value
-    greedy_cost_s: float = float("nan")  # the objective of the first choice: greedy, and as refined
+    asserted: bool
+    disturbance_m: float
+    free: tuple[tuple[str, str, float, float, float], ...]
+    bound: tuple[tuple[str, str, float], ...]
+    greedy_cost_s: float = float("nan")
     refined_cost_s: float = float("nan")
-    predicted_actions: tuple[
-        tuple[str, bool, float], ...
-    ] = ()  # first choice: action, whether asserted, predicted seconds
-    situation: tuple[float, ...] = ()  # what a benefit tree sees of the first choice (tailor.executive.refinement.gate)
+    predicted_actions: tuple[tuple[str, bool, float], ...] = ()
+    situation: tuple[float, ...] = ()
 
 
-def outcome_of(episode: Run, domain: Domain, variant: str, seed: int) -> Outcome:
-    """Sum an episode up."""
-    finished = episode.finished
-    free, bound = _situation(episode.subgoals[0], domain) if episode.subgoals else ((), ())
+def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
+    """Summary of a run."""
+    finished = run.finished
+    free, bound = _variables(run.subgoals[0], domain) if run.subgoals else ((), ())
     return Outcome(
         seed,
         variant,
-        episode.achieved,
-        episode.duration_s,
-        episode.result,
+        run.achieved,
+        run.duration_s,
+        run.result,
         tuple(action.action for action in finished),
         tuple(action.outcome for action in finished),
         tuple(round(action.predicted_s, 4) for action in finished),
         tuple(round(action.actual_s, 4) for action in finished),
-        any(action.asserted for subgoals in episode.subgoals for action in subgoals.actions),
-        _ball_moved_m(episode),
+        any(action.asserted for subgoals in run.subgoals for action in subgoals.actions),
+        sampler_of(domain).disturbance_m(finished, run.truth),
         free,
         bound,
-        *_costs_s(episode),
-        _foreseen(episode),
-        _compared(episode),
+        *_costs_s(run),
+        _predicted_actions(run),
+        _gate_situation(run),
     )
 
 
-def _foreseen(episode: Run) -> tuple[tuple[str, bool, float], ...]:
-    actions = episode.subgoals[0].actions if episode.subgoals else ()
+def _predicted_actions(run: Run) -> tuple[tuple[str, bool, float], ...]:
+    actions = run.subgoals[0].actions if run.subgoals else ()
     return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
 
 
-def _compared(episode: Run) -> tuple[float, ...]:
-    """The first finished refinement's comparison of its choice with the greedy one; empty where they are the same."""
-    reports = (message for message in episode.messages if isinstance(message, RefinementReport) and message.finished)
+def _gate_situation(run: Run) -> tuple[float, ...]:
+    """Comparison of the first finished refinement's choice with the greedy one; empty if they are equal."""
+    reports = (message for message in run.messages if isinstance(message, RefinementReport) and message.finished)
     first = next(reports, None)
     return tuple(round(value, 6) for value in first.situation) if first is not None else ()
 
 
-def _costs_s(episode: Run) -> tuple[float, float]:
-    """What the first finished refinement said of the greedy choice and of its own."""
-    for message in episode.messages:
+def _costs_s(run: Run) -> tuple[float, float]:
+    """Objective of the greedy and of the refined choice in the first finished refinement."""
+    for message in run.messages:
         if isinstance(message, RefinementReport) and message.finished:
             return message.greedy_s, message.best_s
     return float("nan"), float("nan")
 
 
-def _situation(
+def _variables(
     subgoals: Subgoals, domain: Domain
 ) -> tuple[tuple[tuple[str, str, float, float, float], ...], tuple[tuple[str, str, float], ...]]:
     """Free and bound variables of the first choice, each once."""
     free, bound = {}, {}
     for instance in subgoals.actions:
-        quantities = {parameter.name: parameter.quantity for parameter in domain.actions[instance.action].parameters}
-        for said in instance.parameters:
-            quantity = quantities[said.name]
-            if said.bound:
-                bound[said.id] = (said.label, quantity, said.value)
+        quantities = {declared.name: declared.quantity for declared in domain.actions[instance.action].parameters}
+        for parameter in instance.parameters:
+            quantity = quantities[parameter.name]
+            if parameter.bound:
+                bound[parameter.id] = (parameter.label, quantity, parameter.value)
             else:
-                free[said.id] = (said.label, quantity, said.lower, said.upper, said.value)
+                free[parameter.id] = (parameter.label, quantity, parameter.lower, parameter.upper, parameter.value)
     return tuple(free.values()), tuple(bound.values())
-
-
-def _ball_moved_m(episode: Run) -> float:
-    """How far the ball was from its start when the first approach ended; it should have been left alone till then."""
-    ended_ns = [action.stamp_ns for action in episode.finished if action.action == "approachBall"]
-    if not ended_ns or not episode.truth:
-        return 0.0
-    first, *later = episode.truth
-    return max((_apart_m(first, truth) for truth in later if truth.stamp_ns <= ended_ns[0]), default=0.0)
-
-
-def _apart_m(first: SoccerGroundTruth, second: SoccerGroundTruth) -> float:
-    return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)

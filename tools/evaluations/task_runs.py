@@ -6,7 +6,7 @@ An episode is fixed by scenario, seed and variant, so a broken-off evaluation go
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -86,7 +86,7 @@ def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     return run_lockstep(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
 
 
-def paired(first: dict[int, Outcome], second: dict[int, Outcome]) -> tuple[list[float], list[float]]:
+def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple[list[float], list[float]]:
     """Durations of the episodes that reached their goal in both."""
     seeds = [seed for seed in sorted(first) if seed in second and first[seed].achieved and second[seed].achieved]
     return [first[seed].duration_s for seed in seeds], [second[seed].duration_s for seed in seeds]

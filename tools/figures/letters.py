@@ -69,7 +69,7 @@ def _draw(axis: Any, said: WritingTrack, line: Array, points: Array) -> LineColl
     drawn = LineCollection(list(segments), cmap=COLOURS, capstyle="round")
     drawn.set_array(0.5 * (speed[:-1] + speed[1:]))
     drawn.set_clim(0.0, MAX_RADPS)
-    drawn.set_linewidths(np.where(said.pen_down()[1:], 2.4, 0.5).tolist())
+    drawn.set_linewidth(np.where(said.pen_down()[1:], 2.4, 0.5).tolist())
     axis.add_collection(drawn)
     axis.autoscale_view()
     axis.plot(*points.T, "o", color="black", markersize=3, zorder=3)

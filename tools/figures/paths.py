@@ -48,7 +48,7 @@ def _draw_scale(axis: Any, limits: tuple[tuple[float, float], tuple[float, float
 
 def draw_path(axis: Any, track: Track) -> None:
     """One run: lines across the heading, ball, subgoals, and a legend with the actions' durations."""
-    names = []
+    names: list[str] = []
     for number in sorted({point.action for point in track.points}):
         points = [point for point in track.points if point.action == number]
         colour = COLOURS[len(names) % len(COLOURS)]

@@ -65,8 +65,8 @@ def record(golden: Golden, path: Path) -> None:
         golden.seed,
         world.events,
         checks=CHECKS,
-        witness=recording.witness,
-        wire=recording.wire,
+        on_tick=recording.on_tick,
+        transport=recording.transport,
     )
     tape.close()
 

@@ -1,1 +1,1 @@
-"""Executive and simulated body joined in one process, as fast as the CPU allows."""
+"""Lock-step simulation: executive and simulated body in one process, faster than real time."""

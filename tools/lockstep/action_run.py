@@ -1,6 +1,6 @@
-"""Single actions in lock-step: a body, a belief and a controller joined in one process, as fast as it goes.
+"""Runs of single actions in lock-step: body, belief and controller in one process.
 
-This is where episodes to learn from come from (paper 5.1). The whole executive in lock-step is episodes.py.
+They yield the random episodes that action models learn from (paper 5.1). `run.py` runs the whole executive.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array, Belief
-from tailor.schemas.messages import Message, Sample
+from tailor.schemas.messages import ActionFinished, Message, Sample
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.body import Body, Reading
 
 PERIOD_NS = 100_000_000  # 10 Hz
-LIMIT_S = 40.0  # an action that takes longer has failed
+TIME_LIMIT_S = 40.0  # an action that takes longer has failed
 BODIES = {"soccer": "tailor.simnodes.agilo.body:AgiloBody", "arm": "tailor.simnodes.powercube.body:PowerCubeBody"}
 SAMPLERS = {
     "soccer": "tailor.tools.lockstep.samplers.soccer:SoccerSampler",
@@ -29,36 +29,60 @@ SAMPLERS = {
 
 
 class TaskSampler(Protocol):
-    """How a robot's actions are tried out."""
+    """What a robot adds to the sampling of its actions and to the reading of its runs.
+
+    `arguments` are controller arguments, shape (k,); see `Action.arguments`.
+    """
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Random controller arguments, shape (k,)."""
+        """Return random controller arguments, shape (k,)."""
         ...
 
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
-        """The body's start state for controller arguments, give or take what these do not tell."""
+        """Return the body's start state for controller arguments; what they leave open is drawn from `rng`."""
         ...
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> Belief:
-        """What the robot believes in that state."""
+        """Return a noisy belief state of the robot at that start."""
         ...
 
     def arguments_now(self, action: Action, belief: Belief, arguments: Array) -> list[float]:
-        """Controller arguments with the believed state in place of the start."""
+        """Return the controller arguments with the believed state in place of the start."""
         ...
 
     def work_j(self, before: Message, after: Message) -> float:
-        """Joules that the drives have taken between two true states; NaN if that cannot be told."""
+        """Return the work of the drives between two states of motion in joules; NaN for other messages."""
         ...
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
-        """What has gone wrong in the world by now, or ""."""
+        """Return the failure that the ground truth shows, or ""."""
+        ...
+
+    def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
+        """Return the belief values that start parameters stand for, where their names differ.
+
+        Args:
+          action: An executable action of the domain.
+          parameters: Values of its parameters, shape (p,).
+        """
+        ...
+
+    def motion(self, message: Message, newest: Message | None) -> Message | None:
+        """Return the newest state of motion after a message: the ground truth, else what the sensors measured."""
+        ...
+
+    def observed_start(self, message: Message) -> dict[str, float] | None:
+        """Return what `failure` compares with, from the first ground truth of an action; None for other messages."""
+        ...
+
+    def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
+        """Return how far an object was displaced before the first action that may disturb it had ended, metres."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """One tick of an episode."""
+    """One traced tick of an action run."""
 
     time_s: float
     belief: Belief
@@ -70,36 +94,48 @@ class Tick:
 class ActionRun:
     """One execution of one action.
 
-    `failure` is "" or what went wrong: "collision" (the ball was knocked away; the action may still have ended),
-    "time limit", or the controller's own reason. `success` is: no failure.
+    Attributes:
+      action: Its name.
+      arguments: Controller arguments, shape (k,).
+      ticks: Controller arguments with the belief of each 10 Hz tick in place of the start, shape (T, k).
+      duration_s: Time until the controller reported its goal.
+      success: No failure.
+      failure: "", the sampler's ("collision"), "time limit", or the controller's own reason.
+      done: The controller reached its goal, even if a collision makes the run a failure.
+      work_j: Joules of the drives from each tick to the next, shape (T,); 0 at the last.
+      trace: Beliefs, ground truth and commands; empty unless `traced`.
     """
 
     action: str
-    arguments: Array  # (k,), controller arguments
-    ticks: Array  # (T, k), controller arguments with the belief of each 10 Hz tick in place of the start
-    duration_s: float  # until the controller said done
+    arguments: Array
+    ticks: Array
+    duration_s: float
     success: bool
     failure: str
-    done: bool  # the controller reached its goal, whatever else happened
-    work_j: Array  # (T,), joules of the drives from each tick to the next; 0 at the last
-    trace: tuple[Tick, ...] = ()  # only if asked for
+    done: bool
+    work_j: Array
+    trace: tuple[Tick, ...] = ()
 
 
 def sample_arguments(domain: Domain, action_name: str, rng: np.random.Generator) -> Array:
-    """Random controller arguments of an action, shape (k,), from the ranges that it declares."""
+    """Random controller arguments of an action, shape (k,), within its declared ranges.
+
+    Raises:
+      KeyError: The domain has no such action.
+    """
     return sampler_of(domain).sample(domain.actions[action_name], rng)
 
 
 def new_body(domain: Domain) -> Body:
-    """A body for the domain's robot; use it again for every episode."""
-    body: Body = _named(BODIES[domain.name])()
+    """A simulated body of the domain's robot. Reuse it for every run: making one is slow."""
+    body: Body = _object_at(BODIES[domain.name])()
     return body
 
 
 def sampler_of(domain: Domain) -> TaskSampler:
-    """The domain's trials."""
-    made: TaskSampler = _named(SAMPLERS[domain.name])()
-    return made
+    """The domain's task sampler."""
+    sampler: TaskSampler = _object_at(SAMPLERS[domain.name])()
+    return sampler
 
 
 def run_action(
@@ -109,31 +145,34 @@ def run_action(
     arguments: Array,
     rng: np.random.Generator,
     *,
-    limit_s: float = LIMIT_S,
+    limit_s: float = TIME_LIMIT_S,
     traced: bool = False,
 ) -> ActionRun:
-    """Run one action from its start state until it is done, has failed, or time is up.
+    """Run one action from its start state until it is done, has failed, or the time limit is reached.
 
     Args:
       body: Reset here, with noise from `rng`.
-      domain: Gives controller and belief.
+      domain: Provides the controller and the belief filter.
       action_name: An executable action of the domain.
       arguments: Controller arguments, shape (k,): state at the start and at the goal.
-      rng: All noise. The same arguments and generator state give the same episode, bit for bit.
-      limit_s: Seconds of simulated time.
-      traced: Keep beliefs, truth and commands too.
+      rng: Source of all noise. Equal arguments and generator states give equal runs, bit for bit.
+      limit_s: Limit of the simulated time.
+      traced: Also keep beliefs, ground truth and commands.
+
+    Returns:
+      The run with its duration, outcome and the training examples of all its ticks.
     """
-    action, trials = domain.actions[action_name], sampler_of(domain)
-    start = trials.start(action, arguments, rng)
-    belief = trials.belief(start, rng)
+    action, sampler = domain.actions[action_name], sampler_of(domain)
+    start = sampler.start(action, arguments, rng)
+    belief = sampler.belief(start, rng)
     body.reset(rng, start)
     memory: Any = None
-    failure, rows, work, trace = "", [], [], []
+    failure, examples, work, trace = "", [], [], []
     truth = body.ground_truth()
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        failure = failure or trials.failure(action, start, truth)
-        rows.append(trials.arguments_now(action, belief, arguments))
+        failure = failure or sampler.failure(action, start, truth)
+        examples.append(sampler.arguments_now(action, belief, arguments))
         control = action.controller(memory, now_ns, belief, arguments)
         if traced:
             trace.append(Tick(now_ns * 1e-9, belief, truth, control.command))
@@ -144,15 +183,15 @@ def run_action(
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
         before, truth = truth, body.ground_truth()
-        work.append(trials.work_j(before, truth))
+        work.append(sampler.work_j(before, truth))
     done = control.outcome == "done"
     failure = failure or ("" if done else control.reason or "time limit")
-    ticks, worked = np.array(rows), np.array([*work, 0.0])[: len(rows)]
-    return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, worked, tuple(trace))
+    ticks, work_j = np.array(examples), np.array([*work, 0.0])[: len(examples)]
+    return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, work_j, tuple(trace))
 
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
-    """The newest sensor reading of each topic, as a ring of depth one hands it over on the bus."""
+    """The newest sensor reading of each topic, as a subscriber of queue depth one receives it."""
     last = {reading.topic: reading for reading in readings}
     return tuple(
         Sample(reading.topic, reading.message, reading.time_ns, 0)
@@ -161,6 +200,6 @@ def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
     )
 
 
-def _named(path: str) -> Any:
+def _object_at(path: str) -> Any:
     module, name = path.split(":")
     return getattr(importlib.import_module(module), name)

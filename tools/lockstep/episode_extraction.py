@@ -1,12 +1,11 @@
-"""Cuts episodes of single actions out of what an executive said: recordings of real runs, or whole runs in lock-step.
+"""Extracts episodes of single actions from the messages of whole runs: live recordings, or runs in lock-step.
 
-An episode begins where an action got its last goal: one that was changed on the way is a new task from there on.
+An episode begins where an action received its last goal: a goal that changes on the way starts a new task.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -17,66 +16,63 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import (
-    ActionFinished,
-    ExecStatus,
-    InstantiatedAction,
-    JointState,
-    Message,
-    Odometry,
-    Subgoals,
-)
-from tailor.schemas.messages.soccer import SoccerGroundTruth
-from tailor.tools.lockstep.action_run import sampler_of
-from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
+from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Message, Subgoals
+from tailor.tools.lockstep.action_run import TaskSampler, sampler_of
 
 MIN_TICKS = 3
 
 
 @dataclass(slots=True)
 class _Running:
-    """An action while it is read: its goal, and the believed states since it got that goal."""
+    """An action while it is read: its goal, and the believed states since it received that goal."""
 
     index: int
-    said: InstantiatedAction
+    instance: InstantiatedAction
     action: Action
     goal: Array
     ticks: list[Array] = field(default_factory=list)
-    motions: list[Message | None] = field(default_factory=list)  # at each tick; None: not told
+    motions: list[Message | None] = field(default_factory=list)  # at each tick; None: not recorded
     begun_s: float = 0.0  # after the action's start
-    ball: tuple[float, float] | None = None
-    collided: bool = False
+    start: dict[str, float] | None = None  # of the ground truth; None: not recorded
+    failure: str = ""  # that the ground truth shows
 
 
-@dataclass(slots=True)
 class EpisodeExtractor:
-    """Reads messages in order; `cut` holds (data set's action, episode) as they end."""
+    """Reads the messages of one executive in order and collects the episodes as they end.
 
-    domain: Domain
-    cut: list[tuple[str, Episode]] = field(default_factory=list)
-    _newest: Subgoals | None = None
-    _running: _Running | None = None
-    _motion: Message | None = None  # the newest: the truth, or what the sensors say where nobody tells it
+    Args:
+      domain: Domain of the recorded robot.
+
+    Attributes:
+      episodes: Name of the duration model's data set, and the episode.
+    """
+
+    def __init__(self, domain: Domain) -> None:
+        self.episodes: list[tuple[str, Episode]] = []
+        self._domain = domain
+        self._sampler: TaskSampler = sampler_of(domain)
+        self._subgoals: Subgoals | None = None  # the newest
+        self._running: _Running | None = None
+        self._motion: Message | None = None  # the newest
 
     def read(self, messages: Iterable[Message]) -> list[tuple[str, Episode]]:
-        """Episodes in these messages, by the action whose duration model they teach."""
+        """Read messages and return all episodes so far.
+
+        Raises:
+          UsageError: The messages name an action that the domain does not have.
+        """
         for message in messages:
+            self._motion = self._sampler.motion(message, self._motion)
+            self._observe(message)
             match message:
                 case Subgoals():
-                    self._newest = message
-                    self._changed(message)
+                    self._subgoals = message
+                    self._adopt(message)
                 case ExecStatus() if message.action:
                     self._tick(message)
-                case SoccerGroundTruth():
-                    self._motion = message
-                    self._see(message)
-                case JointState():
-                    self._motion = message
-                case Odometry() if not isinstance(self._motion, SoccerGroundTruth):
-                    self._motion = message
                 case ActionFinished():
                     self._finish(message)
-        return self.cut
+        return self.episodes
 
     def _tick(self, status: ExecStatus) -> None:
         if self._running is None or self._running.index != status.action_index:
@@ -89,74 +85,69 @@ class EpisodeExtractor:
             run.motions.append(self._motion)
 
     def _begin(self, status: ExecStatus) -> _Running | None:
-        if self._newest is None or not self._newest.actions or self._newest.actions[0].action != status.action:
+        if self._subgoals is None or not self._subgoals.actions or self._subgoals.actions[0].action != status.action:
             return None
-        if status.action not in self.domain.actions:
-            known = ", ".join(self.domain.actions)
-            raise UsageError(f"action '{status.action}' is recorded, expected those of {self.domain.robot}: {known}")
-        said, action = self._newest.actions[0], self.domain.actions[status.action]
-        return _Running(status.action_index, said, action, _goal(action, said))
+        if status.action not in self._domain.actions:
+            names = ", ".join(self._domain.actions)
+            raise UsageError(f"recorded action '{status.action}', expected one of {self._domain.robot}: {names}")
+        instance, action = self._subgoals.actions[0], self._domain.actions[status.action]
+        return _Running(status.action_index, instance, action, _goal(action, instance))
 
-    def _changed(self, subgoals: Subgoals) -> None:
+    def _adopt(self, subgoals: Subgoals) -> None:
+        """Start the episode anew if the goal of the running action changed."""
         run = self._running
         if run is None or not subgoals.actions:
             return
-        said = subgoals.actions[0]
-        same = (said.action, said.step, said.asserted) == (run.said.action, run.said.step, run.said.asserted)
-        if same and not np.allclose(_goal(run.action, said), run.goal, atol=1e-6):
-            run.said, run.goal, run.ticks, run.motions = said, _goal(run.action, said), [], []
+        new, old = subgoals.actions[0], run.instance
+        same = (new.action, new.step, new.asserted) == (old.action, old.step, old.asserted)
+        if same and not np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
+            run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
 
     def _arguments(self, run: _Running, status: ExecStatus) -> Array:
-        """The controller's arguments with the believed state in place of the start, as instantiation tells it."""
-        names = (name.split(" ")[0] for name in self.domain.belief_names)
-        believed = dict(zip(names, status.belief, strict=True))
-        values = np.array([parameter.value for parameter in run.said.parameters])
-        from_ball = _starts_at_ball(run.action, values)
+        """The controller's arguments with the believed state in place of the start, as instantiation computes it."""
+        names = (name.split(" ")[0] for name in self._domain.belief_names)
+        belief = dict(zip(names, status.belief, strict=True))
+        values = np.array([parameter.value for parameter in run.instance.parameters])
+        other_names = self._sampler.start_names(run.action, values)
         for k, parameter in enumerate(run.action.parameters):
             if parameter.argument == 0:
-                name = f"ball_{parameter.name}" if from_ball and parameter.name in ("x", "y") else parameter.name
-                values[k] = believed[name]
+                values[k] = belief[other_names.get(parameter.name, parameter.name)]
         arguments = run.action.arguments(values[None, :])[0]
         return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 
-    def _see(self, truth: SoccerGroundTruth) -> None:
+    def _observe(self, message: Message) -> None:
+        """Judge the running action by the ground truth."""
         run = self._running
-        if run is None:
+        start = None if run is None else self._sampler.observed_start(message)
+        if run is None or start is None:
             return
-        run.ball = run.ball or (truth.ball_x, truth.ball_y)
-        run.collided = run.collided or math.dist(run.ball, (truth.ball_x, truth.ball_y)) > COLLIDED_M
+        run.start = run.start or start
+        run.failure = run.failure or self._sampler.failure(run.action, run.start, message)
 
     def _finish(self, finished: ActionFinished) -> None:
         run, self._running = self._running, None
         if run is None or len(run.ticks) < MIN_TICKS or finished.outcome == "aborted":
             return
-        failure = "" if finished.outcome == "done" else finished.reason
-        if not run.action.success_model or run.ball is None:  # nobody watched the ball
-            failure = failure or UNOBSERVED
-        elif run.collided:
-            failure = "collision"
+        done = finished.outcome == "done"
+        failure = "" if done else finished.reason
+        observed = bool(run.action.success_model) and run.start is not None
+        failure = run.failure or failure if observed else failure or UNOBSERVED
         ticks = np.stack(run.ticks)
         duration_s = finished.actual_s - run.begun_s
-        done = finished.outcome == "done"
         work_j = self._work(run.motions)
-        episode = Episode(len(self.cut), ticks[0], ticks, duration_s, not failure, failure, done, work_j)
-        self.cut.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
+        episode = Episode(len(self.episodes), ticks[0], ticks, duration_s, not failure, failure, done, work_j)
+        self.episodes.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
 
     def _work(self, motions: list[Message | None]) -> Array | None:
-        """Joules of the drives from each tick to the next; None where a motion was not told."""
+        """Joules of the drives from each tick to the next; None if a state of motion is missing."""
         if None in motions:
             return None
-        told = sampler_of(self.domain).work_j
-        work_j = np.array([*(told(a, b) for a, b in itertools.pairwise(motions) if a and b), 0.0])
+        work = self._sampler.work_j
+        work_j = np.array([*(work(a, b) for a, b in itertools.pairwise(motions) if a and b), 0.0])
         return work_j if np.isfinite(work_j).all() else None
 
 
-def _goal(action: Action, said: InstantiatedAction) -> Array:
-    values = np.array([[parameter.value for parameter in said.parameters]])
-    return action.arguments(values)[0]
-
-
-def _starts_at_ball(action: Action, values: Array) -> bool:
-    """Whether the start is the ball's place: the controller then takes another pose than the parameters say."""
-    half = len(values) // 2
-    return not np.allclose(action.arguments(values[None, :])[0, :half], values[:half])
+def _goal(action: Action, instance: InstantiatedAction) -> Array:
+    values = np.array([[parameter.value for parameter in instance.parameters]])
+    goal: Array = action.arguments(values)[0]
+    return goal

@@ -1,6 +1,6 @@
-"""Whole episodes in lock-step: the executive's core and a simulated world joined in one process, as fast as it goes.
+"""Whole runs in lock-step: the executive's core and a simulated world in one process, faster than real time.
 
-The same core as live, and on the robot's side the same driver and guard as on the bus.
+Core, driver and guard are the same as in a live run over the bus.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import declaration
 from tailor.simnodes.world import Event, World
 
-CHECKS_PER_TICK = 300  # what a quiet machine grants in 60 ms, roughly
+CHECKS_PER_TICK = 300  # about what an idle machine grants in 60 ms
 SENDER = "00" * 16
-DRIVER = "d1" * 16  # sender of what the world's side says
+DRIVER = "d1" * 16  # sender of the driver's messages
 EPOCH = 1
 
-Witness = Callable[[RecordedTick, tuple[Output, ...]], None]  # of what a tick was given, and what it answered
-Wire = Callable[[Message], Message]  # what becomes of a reading on its way to the core
+TickObserver = Callable[[RecordedTick, tuple[Output, ...]], None]  # receives inputs and outputs of each tick
+Transport = Callable[[Message], Message]  # returns a reading as the core receives it
 
 
 @dataclass(slots=True)
 class Run:
-    """What happened; times in seconds since the start."""
+    """One run of the executive; times in seconds since its start."""
 
     result: str = "failed: time limit"
     started_s: float = math.nan  # first action
@@ -43,7 +43,7 @@ class Run:
     subgoals: list[Subgoals] = field(default_factory=list)
     truth: list[Message] = field(default_factory=list)
     status: list[ExecStatus] = field(default_factory=list)
-    messages: list[Message] = field(default_factory=list)  # all that the core said, and the truth, in order
+    messages: list[Message] = field(default_factory=list)  # outputs of the core and ground truth, in order
 
     @property
     def achieved(self) -> bool:
@@ -64,70 +64,75 @@ def run_lockstep(
     events: Sequence[Event] = (),
     limit_s: float = 90.0,
     checks: int = CHECKS_PER_TICK,
-    witness: Witness | None = None,
-    wire: Wire | None = None,
+    on_tick: TickObserver | None = None,
+    transport: Transport | None = None,
 ) -> Run:
-    """Run the scenario's goal from `start` until it is achieved, has failed, or `limit_s` of simulated time is over.
+    """Pursue the scenario's goal from `start` until it is achieved, has failed, or the time limit is reached.
 
     Args:
-      context: Composed with sender `SENDER`.
+      context: Built with sender `SENDER`.
       body: Reset here; its noise is drawn from stream 1 of `seed`.
       start: Start state, as `Body.reset` takes it.
-      seed: Of the body's noise.
-      events: What happens on the way.
-      limit_s: Simulated seconds.
-      checks: What each tick's deliberation is granted.
-      witness: Called after each tick.
-      wire: Changes every reading as the bus does; None: the core hears the very values.
+      seed: Seed of the body's noise.
+      events: Disturbances during the run.
+      limit_s: Limit of the simulated time.
+      checks: Budget of each tick's deliberation.
+      on_tick: Called after each tick.
+      transport: Passes readings on as the bus does; None: the core receives the very values.
+
+    Returns:
+      Result, actions, subgoals, ground truth and all messages of the run.
     """
-    link = _Link(context.domain, World(body, start, seed, events), wire)
-    episode, state = Run(), initial_state(context)
-    goal, samples = context.problem.goal_text, link.advance(0, episode)
+    link = _Link(context.domain, World(body, start, seed, events), transport)
+    run, state = Run(), initial_state(context)
+    goal, samples = context.problem.goal_text, link.advance(0, run)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         inputs, budget = Inputs(samples, goal), CheckBudget(checks)
         state, outputs = step(context, state, now_ns, inputs, budget)
-        if witness is not None:
-            witness(RecordedTick(tick, now_ns, inputs, budget.granted), outputs)
+        if on_tick is not None:
+            on_tick(RecordedTick(tick, now_ns, inputs, budget.granted), outputs)
         goal = ""
-        _note(episode, state, outputs, now_ns / 1e9)
+        _add(run, state, outputs, now_ns / 1e9)
         if not state.task.active:
-            episode.result = state.task.result
+            run.result = state.task.result
             break
-        link.take(outputs, now_ns, tick)
-        samples = link.advance(now_ns, episode)
-    return episode
+        link.send(outputs, now_ns, tick)
+        samples = link.advance(now_ns, run)
+    return run
 
 
 class _Link:
-    """What the bus is live: carries commands to the driver and readings back, with no delay and nothing lost."""
+    """Replaces the bus: carries commands to the driver and readings back, without delay or loss."""
 
-    def __init__(self, domain: Domain, world: World, wire: Wire | None) -> None:
-        self._robot, self._sensors, self._world, self._wire = domain.robot, domain.sensors, world, wire
-        self._declared = declaration(domain.robot)
-        self._driver = Driver(self._declared, EPOCH)
-        self._sequences: Counter[str] = Counter()  # one for each topic, as publishers number
+    def __init__(self, domain: Domain, world: World, transport: Transport | None) -> None:
+        self._robot, self._sensors, self._world, self._transport = domain.robot, domain.sensors, world, transport
+        self._spec = declaration(domain.robot)
+        self._driver = Driver(self._spec, EPOCH)
+        self._sequences: Counter[str] = Counter()  # by topic, as publishers count
 
-    def take(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
-        """Hand the tick's commands and requests to the driver."""
-        heard = (self._declared.command_topic, "arm_request")
+    def send(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
+        """Pass the tick's commands and requests to the driver."""
+        received = (self._spec.command_topic, "arm_request")
         samples = [
-            Sample(key_of(o.topic, self._robot), o.message, now_ns, tick, SENDER) for o in outputs if o.topic in heard
+            Sample(key_of(o.topic, self._robot), o.message, now_ns, tick, SENDER)
+            for o in outputs
+            if o.topic in received
         ]
         self._driver.take(samples, {}, now_ns)
         if any(not isinstance(sample.message, ArmRequest) for sample in samples):
             self._world.begin()
 
-    def advance(self, now_ns: int, episode: Run) -> tuple[Sample, ...]:
-        """One period of the world under the guard's output; the newest reading of each topic and the driver's state."""
+    def advance(self, now_ns: int, run: Run) -> tuple[Sample, ...]:
+        """Advance the world by one period; return the newest reading of each topic and the driver's state."""
         self._world.body.command(self._driver.guard.output(now_ns))
         newest: dict[str, Reading] = {}
         for reading in self._world.advance(PERIOD_NS):
             newest[reading.topic] = reading
         for topic in [topic for topic in newest if TOPICS[topic].source == "simulator"]:
             truth = newest.pop(topic).message
-            episode.truth.append(truth)
-            episode.messages.append(truth)
+            run.truth.append(truth)
+            run.messages.append(truth)
         samples = [self._sample(r.topic, r.message, r.time_ns) for r in newest.values() if r.topic in self._sensors]
         after_ns = now_ns + PERIOD_NS
         driver = self._driver.state(after_ns, after_ns)
@@ -136,21 +141,21 @@ class _Link:
         return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
 
     def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
-        heard = message if self._wire is None else self._wire(message)
+        received = message if self._transport is None else self._transport(message)
         self._sequences[topic] += 1
-        return Sample(key_of(topic, self._robot), heard, arrival_ns, self._sequences[topic], DRIVER)
+        return Sample(key_of(topic, self._robot), received, arrival_ns, self._sequences[topic], DRIVER)
 
 
-def _note(episode: Run, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
-    if state.task.running is not None and math.isnan(episode.started_s):
-        episode.started_s = now_s
+def _add(run: Run, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
+    if state.task.running is not None and math.isnan(run.started_s):
+        run.started_s = now_s
     for output in outputs:
         message = output.message
-        episode.messages.append(message)
+        run.messages.append(message)
         if isinstance(message, ActionFinished):
-            episode.finished.append(message)
-            episode.ended_s = now_s
+            run.finished.append(message)
+            run.ended_s = now_s
         elif isinstance(message, Subgoals):
-            episode.subgoals.append(message)
+            run.subgoals.append(message)
         elif isinstance(message, ExecStatus):
-            episode.status.append(message)
+            run.status.append(message)

@@ -1,4 +1,4 @@
-"""Wire and witness of a run in lock-step: what it carries to the core, and what the core answers, goes on tape."""
+"""Records a run in lock-step: the readings that the core receives and the outputs of each tick."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from tailor.tools.lockstep.run_writer import RunWriter
 
 
 class LockstepRecording:
-    """Its two methods are handed to episodes.run_episode."""
+    """Provides the arguments `transport` and `on_tick` of `run_lockstep`."""
 
-    def __init__(self, tape: RunWriter) -> None:
-        self._tape = tape
-        self._carried: dict[int, bytes] = {}  # by id of the reading as the core gets it in the coming tick
+    def __init__(self, writer: RunWriter) -> None:
+        self._writer = writer
+        self._encoded: dict[int, bytes] = {}  # by id of the reading that the core receives in the coming tick
 
-    def wire(self, message: Message) -> Message:
-        """The reading as bytes and back, as the bus carries it."""
+    def transport(self, message: Message) -> Message:
+        """Encode and decode the reading, as the bus does."""
         data = encode(message)
-        heard = decode(type(message), data)
-        assert not isinstance(heard, Rejected), heard.reason
-        self._carried[id(heard)] = data
-        return heard
+        received = decode(type(message), data)
+        assert not isinstance(received, Rejected), received.reason
+        self._encoded[id(received)] = data
+        return received
 
-    def witness(self, tick: RecordedTick, outputs: tuple[Output, ...]) -> None:
+    def on_tick(self, tick: RecordedTick, outputs: tuple[Output, ...]) -> None:
         """Write the tick."""
-        self._tape.write(tick, [self._carried[id(sample.message)] for sample in tick.inputs.samples], outputs)
-        self._carried.clear()
+        self._writer.write(tick, [self._encoded[id(sample.message)] for sample in tick.inputs.samples], outputs)
+        self._encoded.clear()

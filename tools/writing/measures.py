@@ -17,7 +17,8 @@ def waypoint_errors_rad(said: WritingTrack) -> Array:
     """How far the arm was from each waypoint when it was to pass it, shape (w,)."""
     count = min(len(said.waypoints), len(said.arrivals_s))
     at = [np.interp(said.arrivals_s[:count], said.times_s, said.angles[:, joint]) for joint in (0, 1)]
-    return np.linalg.norm(np.stack(at, axis=1) - said.waypoints[:count], axis=1)
+    errors: Array = np.linalg.norm(np.stack(at, axis=1) - said.waypoints[:count], axis=1)
+    return errors
 
 
 def rms_jerk(said: WritingTrack) -> float:

@@ -9,7 +9,7 @@ import pytest
 
 from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.live.agreement import agreement, starts_of
-from tailor.tools.evaluations.live.bus_run import episode_of
+from tailor.tools.evaluations.live.bus_run import run_of
 from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Task, Variant, outcome_of
@@ -30,10 +30,11 @@ def drawn(rng, factor, count=20):
     return starts(factor * 10 * np.exp(0.08 * rng.standard_normal(count)), lockstep_s)
 
 
-def test_what_is_heard_of_a_run_measures_as_the_run_itself():
-    episode, context = run_task(Task("soccer", "approach-dribble"), Variant("h2"), 700_000)
-    heard = episode_of(episode.messages, episode.result)
-    own, other = (outcome_of(e, context.domain, "h2", 1) for e in (episode, heard))
+def test_a_run_read_from_its_messages_measures_as_the_run_itself():
+    run, context = run_task(Task("soccer", "approach-dribble"), Variant("h2"), 700_000)
+    truth = {id(message) for message in run.truth}
+    keyed = [("agilo/sim/truth" if id(message) in truth else "exec/any", message) for message in run.messages]
+    own, other = (outcome_of(r, context.domain, "h2", 1) for r in (run, run_of(keyed, run.result)))
     assert other.duration_s == pytest.approx(own.duration_s, abs=1e-6)
     assert (other.actions, other.actual_s, other.free, other.disturbance_m) == (
         own.actions, own.actual_s, own.free, own.disturbance_m,

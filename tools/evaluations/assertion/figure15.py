@@ -113,7 +113,7 @@ def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     tracks = []
     for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
         watched, _ = trace_run(task, variant, seed)
-        said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.ball_moved_m:.2f} m"
+        said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.disturbance_m:.2f} m"
         tracks.append(replace(watched.track, title=f"{title} ({said})"))
     first = tracks[0].points[0]
     draw_subgoal_map(ground, (first.ball_x, first.ball_y), tracks, f"start {seed}", path)

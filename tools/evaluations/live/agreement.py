@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ def starts_of(runs: Mapping[int, Outcome], repeats: Mapping[int, Sequence[Outcom
     return Starts(tuple(seeds), np.array(run_s), tuple(lockstep_s))
 
 
-def agreement(starts: Starts, margin_pct: float) -> dict[str, float | int | bool | tuple[float, float]]:
+def agreement(starts: Starts, margin_pct: float) -> dict[str, Any]:
     """The figures of a row; percentages are of durations, positive is longer than lock-step.
 
     `p_rank` is of the mean rank: were the runs lock-step's, every rank would be as likely, and as many as

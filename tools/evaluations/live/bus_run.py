@@ -1,46 +1,49 @@
-"""An episode out of what was heard of a run on the bus, measured as in lock-step: from first action to last."""
+"""Reads a live run back from its messages, measured as in lock-step: from the first action to the last."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.schemas.topics import TOPICS
 from tailor.tools.lockstep.run import Run
+
+TRUTH_KEYS = tuple(topic.key.partition("/")[2] for topic in TOPICS.values() if topic.source == "simulator")
 
 
 class NullScreen:
-    """A screen that nobody looks at; see tailor.tools.cli.live_status.Screen."""
+    """Discards all output; see tailor.tools.cli.live_status.Screen."""
 
     def tell(self, line: str) -> None:
-        """Drop a line."""
+        """Discard a line."""
 
     def show(self, message: Message) -> None:
-        """Drop a message."""
+        """Discard a message."""
 
 
-def episode_of(messages: Iterable[Message], result: str) -> Run:
-    """Sum a run's messages up, in the order in which they were recorded.
+def run_of(messages: Iterable[tuple[str, Message]], result: str) -> Run:
+    """Summarise a run's messages.
 
     Args:
-      messages: Of one executive and one simulator. Stamps are one clock's.
-      result: "achieved", or why not.
+      messages: Keys and messages of one executive and one simulator in the order of their recording. The stamps are
+        of one clock.
+      result: "achieved", or the reason of the failure.
     """
-    episode = Run(result)
+    run = Run(result)
     started_ns: int | None = None
-    for message in messages:
-        episode.messages.append(message)
+    for key, message in messages:
+        run.messages.append(message)
         if isinstance(message, ExecStatus):
-            episode.status.append(message)
+            run.status.append(message)
             if started_ns is None and message.action:
                 started_ns = message.stamp_ns
-                episode.started_s = 0.0
+                run.started_s = 0.0
         elif isinstance(message, ActionFinished):
-            episode.finished.append(message)
+            run.finished.append(message)
             if started_ns is not None:
-                episode.ended_s = (message.stamp_ns - started_ns) / 1e9
+                run.ended_s = (message.stamp_ns - started_ns) / 1e9
         elif isinstance(message, Subgoals):
-            episode.subgoals.append(message)
-        elif isinstance(message, SoccerGroundTruth):
-            episode.truth.append(message)
-    return episode
+            run.subgoals.append(message)
+        elif key.partition("/")[2] in TRUTH_KEYS:
+            run.truth.append(message)
+    return run

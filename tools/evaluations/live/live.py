@@ -26,7 +26,7 @@ from tailor.schemas.messages import Message
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of
-from tailor.tools.evaluations.live.bus_run import NullScreen, episode_of
+from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
@@ -125,16 +125,16 @@ def run_live(order: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> Ou
         kept.mkdir(parents=True, exist_ok=True)
         recording = kept / f"{order.scenario}-h{order.settings.refinement.horizon}-{seed}.mcap"
         recording.unlink(missing_ok=True)
-        unseen = NullScreen()
-        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), unseen, stop)
-        episode = episode_of(_messages(recording), result or "failed: stopped")
-    return outcome_of(episode, domains.load(order.domain), LIVE, seed)
+        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), NullScreen(), stop)
+        run = run_of(_messages(recording), result or "failed: stopped")
+    return outcome_of(run, domains.load(order.domain), LIVE, seed)
 
 
-def _messages(recording: Path) -> list[Message]:
+def _messages(recording: Path) -> list[tuple[str, Message]]:
     if not recording.exists():
         return []
-    return [message for _, message in open_recording(recording).decoded() if not isinstance(message, Rejected)]
+    decoded = open_recording(recording).decoded()
+    return [(recorded.key, message) for recorded, message in decoded if not isinstance(message, Rejected)]
 
 
 def _row(name: str, horizon: int, runs: Runs, repeats: Repeats) -> dict[str, Any]:

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str, Path]:
     from tailor.tools.figures import learned_reports
 
-    columns = {
+    columns: dict[str, Any] = {
         "direct: x [m]": test.arguments[:, 0],
         "relative: dx [m]": SPACES["relative"](test.arguments)[:, 0],
         "projective: dist [m]": SPACES["projective"](test.arguments)[:, 2],

@@ -64,7 +64,7 @@ def row(model: OnnxDuration, arguments: argparse.Namespace) -> dict[str, Any]:
     }
     count, paper_mean, paper_mae = PAPER.get((robot, action), (None, None, None))
     figures |= {"paper_episodes": count, "paper_mean_duration_s": paper_mean, "paper_mae_s": paper_mae}
-    return {**figures, "paper_relative_pct": paper_mae and 100 * paper_mae / paper_mean}
+    return {**figures, "paper_relative_pct": 100 * paper_mae / paper_mean if paper_mae and paper_mean else None}
 
 
 def _fresh(model: OnnxDuration, arguments: argparse.Namespace) -> DataSet:

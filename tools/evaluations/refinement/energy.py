@@ -64,14 +64,15 @@ def run(arguments: argparse.Namespace) -> int:
 def cost_of(task: Task, weight: float, seed: int) -> Cost:
     """Run one episode with a joule worth so many seconds."""
     variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
-    episode, _ = run_task(task, variant, seed)
-    return Cost(episode.achieved, episode.duration_s, energy_j(episode, task.domain))
+    run, _ = run_task(task, variant, seed)
+    return Cost(run.achieved, run.duration_s, energy_j(run, task.domain))
 
 
-def energy_j(episode: Run, domain: str) -> float:
+def energy_j(run: Run, domain: str) -> float:
     """Work of the drives over an episode's actions."""
     work = sampler_of(domains.load(domain)).work_j
-    during = [t for t in episode.truth if episode.started_s <= t.stamp_ns * 1e-9 <= episode.ended_s]
+    truth: list[Any] = run.truth
+    during = [state for state in truth if run.started_s <= state.stamp_ns * 1e-9 <= run.ended_s]
     return float(sum(work(before, after) for before, after in itertools.pairwise(during)))
 
 

@@ -67,9 +67,9 @@ def sweep_of(
     missing = ~np.isfinite(took).any(axis=2)
     filled = np.where(missing[:, :, None], np.inf, took)  # so that no slice is all NaN
     mean, least, most = (of(filled, axis=2) for of in (np.nanmean, np.nanmin, np.nanmax))
-    tables = [np.where(missing, np.nan, table) for table in (mean, least, most)]
+    mean, least, most = (np.where(missing, np.nan, table) for table in (mean, least, most))
     asserted = np.array([any(predicted_actions[1] for predicted_actions in some[0].predicted_actions) for some in runs])
-    return Sweep(seed, angles, v, predicted, *tables, asserted, greedy_rad, refined_rad)
+    return Sweep(seed, angles, v, predicted, mean, least, most, asserted, greedy_rad, refined_rad)
 
 
 def _foreseen_s(run: Outcome) -> tuple[float, float, float]:

@@ -26,7 +26,8 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
       path: Where to; its folder is made.
     """
     figure = Figure(figsize=(14, 9.6), layout="constrained")
-    top, bottom = figure.subfigures(2, 1, height_ratios=(1.1, 1))
+    parts: Any = figure.subfigures(2, 1, height_ratios=(1.1, 1))
+    top, bottom = parts
     polar = top.subplots(1, 3, subplot_kw={"projection": "polar"})
     for number, axis in enumerate(polar):
         _draw(axis, sweep, number)

@@ -1,1 +1,1 @@
-"""How each robot tries an action out in lock-step: what is drawn, how the world is set, what counts as a failure."""
+"""Task samplers, one for each robot: random tasks, start states, and the failures that the ground truth shows."""

@@ -1,8 +1,8 @@
-"""Trials of the arm's reaches (paper 5.1): random joint states, and a belief that the encoders have just told."""
+"""Task sampler of the arm (paper 5.1): random joint states at start and goal."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,22 +12,22 @@ from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.predicates import named
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
-from tailor.schemas.messages import Message
+from tailor.schemas.messages import ActionFinished, JointState, Message
 from tailor.tools.lockstep.samplers.drive_work import joint_work_j
 
 STATE = ("a", "wa", "b", "wb")
 WA, WB, WAG, WBG = 1, 3, 5, 7
 A, B, AG, BG = 0, 2, 4, 6
-AT_REST = 0.2  # so many reaches start at rest, and so many end at rest: every stroke has one of each
-DISTANCE_RAD = (0.05, 2.2)  # evenly: drawn in a rectangle, short reaches would be few, and words are full of them
+AT_REST = 0.2  # share of reaches that start at rest, and of those that end at rest: every stroke has both
+DISTANCE_RAD = (0.05, 2.2)  # uniform: sampling in a rectangle yields few short reaches, and words need many
 
 
 @dataclass(frozen=True, slots=True)
 class ArmSampler:
-    """See tailor.tools.lockstep.action_run.Trials; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
+    """See action_run.TaskSampler; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments, shape (8,): all uniform, distances too, as fast as they allow; some at rest."""
+        """Controller arguments, shape (8,): uniform, velocities scaled to the distance, some at rest."""
         lower = np.array([p.lower for p in action.parameters])
         upper = np.array([p.upper for p in action.parameters])
         distance = rng.uniform(*DISTANCE_RAD)
@@ -49,17 +49,33 @@ class ArmSampler:
         return dict(zip(STATE, arguments[: len(STATE)].tolist(), strict=True))
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> ArmBelief:
-        """What the encoders say of that state."""
+        """Belief after a noise-free encoder reading of that state."""
         return ArmBelief(0, (start["a"], start["b"]), (start["wa"], start["wb"]), 0)
 
     def arguments_now(self, action: Action, belief: ArmBelief, arguments: Array) -> list[float]:
-        """The controller arguments with the believed state in place of the start: an example to learn from."""
+        """Training example: the arguments with the believed state in place of the start."""
         return [*named(belief.angles, belief.velocities).values(), *arguments[len(STATE) :].tolist()]
 
     def work_j(self, before: Message, after: Message) -> float:
-        """Joules that the joints have taken between two states."""
+        """Work of the joints between two states, joules."""
         return joint_work_j(before, after)
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
-        """Nothing goes wrong in the air."""
+        """No failure: nothing disturbs a reach in the air."""
         return ""
+
+    def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
+        """No other names: parameters are named as the belief is."""
+        return {}
+
+    def motion(self, message: Message, newest: Message | None) -> Message | None:
+        """The newest joint state."""
+        return message if isinstance(message, JointState) else newest
+
+    def observed_start(self, message: Message) -> dict[str, float] | None:
+        """None: no failure depends on the start."""
+        return None
+
+    def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
+        """0: there are no objects."""
+        return 0.0

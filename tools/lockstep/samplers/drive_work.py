@@ -1,6 +1,6 @@
-"""Mechanical work of a robot's drives, from two of its 10 Hz states: what energy models learn (paper 8).
+"""Mechanical work of a robot's drives between two of its 10 Hz states: the target of energy models (paper 8).
 
-Braking gives nothing back, and what motors turn into heat or electronics take is not in it.
+Braking recovers nothing. Heat in the motors and the consumption of electronics are not included.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 AGILO = PhysicalParameters()
 WHEELS = 2
 ARMATURE_KGM2 = 0.002  # of a wheel's motor and gear, as in the scene
-# each wheel weighs again what it takes to spin it up (an ellipsoid's 2/5 m r²), and its motor
+# equivalent mass of the spinning wheels (an ellipsoid's inertia, 2/5 m r²) and their motors
 SPINNING_KG = WHEELS * (0.4 * AGILO.wheel_mass_kg + ARMATURE_KGM2 / AGILO.wheel_radius_m**2)
 MASS_KG = AGILO.chassis_mass_kg + WHEELS * AGILO.wheel_mass_kg + SPINNING_KG
 YAW_KGM2 = (
@@ -24,27 +24,27 @@ YAW_KGM2 = (
 
 
 def wheel_work_j(before: Message, after: Message) -> float:
-    """Work of AGILO's wheels between two states: what they add to its kinetic energy, never negative.
+    """Work of AGILO's wheels between two states: the increase of its kinetic energy, never negative.
 
-    Its simulated wheels roll freely; what a pushed ball takes (0.2 N) is not in it either.
+    Its simulated wheels roll without friction. The force of a pushed ball (0.2 N) is not included.
 
     Args:
-      before, after: `SoccerGroundTruth`, or `Odometry` where nobody knows the truth (its noise adds about 0.5 W).
+      before, after: `SoccerGroundTruth`, or `Odometry` without ground truth (its noise adds about 0.5 W).
 
     Returns:
-      Joules; NaN if these are no such states.
+      Joules; NaN for other messages.
     """
     if not isinstance(before, SoccerGroundTruth | Odometry) or not isinstance(after, SoccerGroundTruth | Odometry):
         return math.nan
-    faster = after.v**2 - before.v**2, after.omega**2 - before.omega**2
-    return max(0.0, 0.5 * MASS_KG * faster[0] + 0.5 * YAW_KGM2 * faster[1])
+    gained = after.v**2 - before.v**2, after.omega**2 - before.omega**2
+    return max(0.0, 0.5 * MASS_KG * gained[0] + 0.5 * YAW_KGM2 * gained[1])
 
 
 def joint_work_j(before: Message, after: Message) -> float:
-    """Work of an arm's motors between two states: torque times speed of each joint where it drives.
+    """Work of an arm's motors between two states: the positive power of each joint, integrated over time.
 
     Returns:
-      Joules; NaN if these are no joint states with efforts.
+      Joules; NaN for messages other than joint states with efforts.
     """
     if not isinstance(before, JointState) or not isinstance(after, JointState):
         return math.nan

@@ -1,9 +1,9 @@
-"""Trials of the soccer robot's actions (paper 5.1, 5.4): starts, beliefs, and the ball that gets in the way."""
+"""Task sampler of the soccer robot (paper 5.1, 5.4): start states, beliefs, and collisions with the ball."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,29 +16,29 @@ from tailor.executive.domains.soccer import robot
 from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
-from tailor.schemas.messages import Message
+from tailor.schemas.messages import ActionFinished, Message, Odometry
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 
-COLLIDED_M = 0.05  # an approach that displaces the ball by more before the goal state has failed
-ROOM_M = 0.50  # from the axle to the ball at the start: nearer the ball would be inside the robot
+COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
+MIN_BALL_DISTANCE_M = 0.50  # from the axle at the start: a nearer ball would be inside the robot
 BELIEF_SIGMA_M = 0.02  # of a pose that has been tracked for a while
 BELIEF_SIGMA_RAD = 0.015
 BALL_SIGMA_M = 0.02
-SHORT_M = (0.05, 0.15)  # how far from the rail the ball is when an approach has ended
+BALL_GAP_M = (0.05, 0.15)  # between rail and ball after an approach
 ASIDE_SIGMA_M = 0.04
-DRIBBLE_X_M = 2.5  # dribbles are sampled where scenarios have them
+DRIBBLE_X_M = 2.5  # dribbles are sampled in the area of the scenarios
 DRIBBLE_Y_M = 1.8
 DRIBBLE_M = (0.9, 2.9)  # from the ball to its target
-DRIBBLE_ASIDE_RAD = 1.5  # the target's heading off the line to it
+DRIBBLE_ASIDE_RAD = 1.5  # between the target's heading and the line to it
 
 
 @dataclass(frozen=True, slots=True)
 class SoccerSampler:
-    """See tailor.tools.lockstep.action_run.Trials; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
+    """See action_run.TaskSampler; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments, shape (8,), uniform over the action's ranges but for what cannot be."""
+        """Controller arguments, shape (8,), uniform over the action's ranges; impossible ones are rejected."""
         lower = np.array([p.lower for p in action.parameters])
         upper = np.array([p.upper for p in action.parameters])
         dribble = action.name == "dribbleBall"
@@ -54,14 +54,14 @@ class SoccerSampler:
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
         """Start state of the body.
 
-        goToPose has no ball. An approach has it where it would be at the goal. A dribble begins as approaches end: the
-        ball rests where the arguments put it, and the robot is still short of it, not quite facing it.
+        goToPose has no ball. The ball of an approach lies at the goal. A dribble starts as approaches end: the ball
+        lies where the arguments put it, and the robot stops short of it with a lateral error.
         """
         x, y, phi, v, xg, yg, phig, _ = arguments.tolist()
         if action.name == "dribbleBall":
             c, s = math.cos(phi), math.sin(phi)
             ball_x, ball_y = x + robot.IN_RAIL_M * c, y + robot.IN_RAIL_M * s
-            behind, aside = robot.IN_RAIL_M + rng.uniform(*SHORT_M), ASIDE_SIGMA_M * rng.standard_normal()
+            behind, aside = robot.IN_RAIL_M + rng.uniform(*BALL_GAP_M), ASIDE_SIGMA_M * rng.standard_normal()
             x, y = ball_x - behind * c + aside * s, ball_y - behind * s - aside * c
         elif action.name == "goToPose":
             return {"x": x, "y": y, "phi": phi, "v": v}
@@ -71,7 +71,7 @@ class SoccerSampler:
         return {"x": x, "y": y, "phi": phi, "v": v, "ball_x": ball_x, "ball_y": ball_y}
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> SoccerBelief:
-        """What the robot would believe had it been on its way for a while."""
+        """Belief after some time of tracking: pose and ball with their usual errors."""
         off = rng.standard_normal(5)
         pose = Pose(
             start["x"] + BELIEF_SIGMA_M * off[0],
@@ -89,9 +89,9 @@ class SoccerSampler:
         return replace(believed, ball=ball)
 
     def arguments_now(self, action: Action, belief: SoccerBelief, arguments: Array) -> list[float]:
-        """The controller arguments with the believed state in place of the start: an example to learn from.
+        """Training example: the arguments with the believed state in place of the start.
 
-        The start of a dribble is told by the ball and the robot's heading, as instantiation tells it.
+        The start of a dribble follows from the ball and the robot's heading, as in instantiation.
         """
         pose = belief.pose
         x, y = pose.x, pose.y
@@ -101,18 +101,43 @@ class SoccerSampler:
         return [x, y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
 
     def work_j(self, before: Message, after: Message) -> float:
-        """Joules that the wheels have taken between two states."""
+        """Work of the wheels between two states, joules."""
         return wheel_work_j(before, after)
 
-    def failure(self, action: Action, start: Mapping[str, float], truth: SoccerGroundTruth) -> str:
-        """What has gone wrong in the world by now, or ""; an approach fails when the ball is knocked away."""
-        if action.name != "approachBall":
+    def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
+        """Return "collision" if an approach displaced the ball, else ""."""
+        if action.name != "approachBall" or not isinstance(truth, SoccerGroundTruth):
             return ""
         moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
         return "collision" if moved > COLLIDED_M else ""
 
+    def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
+        """The ball's position, for actions whose start parameters name the ball instead of the robot."""
+        half = len(parameters) // 2
+        at_robot = np.allclose(action.arguments(parameters[None, :])[0, :half], parameters[:half])
+        return {} if at_robot else {"x": "ball_x", "y": "ball_y"}
+
+    def motion(self, message: Message, newest: Message | None) -> Message | None:
+        """The newest ground truth; odometry until there is any."""
+        if isinstance(message, SoccerGroundTruth) or (isinstance(message, Odometry) and not isinstance(newest, SoccerGroundTruth)):
+            return message
+        return newest
+
+    def observed_start(self, message: Message) -> dict[str, float] | None:
+        """The ball's position in a ground truth, metres."""
+        return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
+
+    def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
+        """Largest displacement of the ball before the end of the first approach, metres; 0 without an approach."""
+        ended_ns = [action.stamp_ns for action in finished if action.action == "approachBall"]
+        balls = [message for message in truth if isinstance(message, SoccerGroundTruth)]
+        if not ended_ns or not balls:
+            return 0.0
+        first, *later = balls
+        return max((_displacement_m(first, ball) for ball in later if ball.stamp_ns <= ended_ns[0]), default=0.0)
+
     def _sensible(self, places: Array) -> bool:
-        """Whether a dribble is of the kind that scenarios ask for."""
+        """Whether a dribble is like those of the scenarios."""
         dx, dy = places[XG] - places[X], places[YG] - places[Y]
         aside = abs(difference(places[PHIG], math.atan2(dy, dx)))
         return bool(DRIBBLE_M[0] <= math.hypot(dx, dy) <= DRIBBLE_M[1] and aside <= DRIBBLE_ASIDE_RAD)
@@ -120,4 +145,8 @@ class SoccerSampler:
     def _has_room(self, arguments: Array) -> bool:
         ball_x = arguments[XG] + robot.BEHIND_BALL_M * math.cos(arguments[PHIG])
         ball_y = arguments[YG] + robot.BEHIND_BALL_M * math.sin(arguments[PHIG])
-        return math.hypot(ball_x - arguments[X], ball_y - arguments[Y]) > ROOM_M
+        return math.hypot(ball_x - arguments[X], ball_y - arguments[Y]) > MIN_BALL_DISTANCE_M
+
+
+def _displacement_m(first: SoccerGroundTruth, second: SoccerGroundTruth) -> float:
+    return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)
