@@ -119,7 +119,9 @@ class SoccerSampler:
 
     def motion(self, message: Message, newest: Message | None) -> Message | None:
         """The newest ground truth; odometry until there is any."""
-        if isinstance(message, SoccerGroundTruth) or (isinstance(message, Odometry) and not isinstance(newest, SoccerGroundTruth)):
+        if isinstance(message, SoccerGroundTruth) or (
+            isinstance(message, Odometry) and not isinstance(newest, SoccerGroundTruth)
+        ):
             return message
         return newest
 
