@@ -1,6 +1,6 @@
 """The paper's Figure 11: predicted durations over the free angle of approach, and what the same sweep takes simulated.
 
-Every angle is forced upon the executive in turn. It predicts both actions, asserted subgoals included, then executes them.
+Every angle is forced in turn. The executive predicts both actions, asserted subgoals included, then executes them.
 """
 
 from __future__ import annotations
