@@ -42,10 +42,10 @@ def build_context(order: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0)
 
 
 def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
-    """A robot's models, with its benefit tree if that is asked for and there is one.
+    """A robot's models, with its refinement gate if `gated` and there is one.
 
     Raises:
-      UsageError: A missing or altered model, one that has not seen what its action asks for, or a benefit tree that
+      UsageError: A missing or altered model, one that has not seen what its action asks for, or a refinement gate that
         was learned with others.
     """
     folder = Path(zoo) if zoo else None
@@ -93,7 +93,7 @@ def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     _check(recorded)
     order = from_table(ExecutiveConfig, recorded["order"], "recording's provenance")
-    if GATE not in recorded["models"]:  # the run had no benefit tree, whatever there is here
+    if GATE not in recorded["models"]:  # the run had no refinement gate, whatever is installed here
         order = without_gate(order)
     context = build_context(order, recorded["sender"], recorded["stamp_offset_ns"])
     here = provenance(order, context)["models"]

@@ -136,7 +136,7 @@ def load_robot(
 
 
 def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxGate | None:
-    """Load a robot's benefit tree; None where none has been trained.
+    """Load a robot's refinement gate; None where none has been trained.
 
     Args:
       robot: Folder in the zoo.

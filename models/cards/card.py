@@ -15,6 +15,7 @@ from tailor.models.cards.card_shape import card_error
 from tailor.schemas.errors import UsageError
 
 FORMAT = 1
+# "benefit" is the refinement gate; the models that ship were published under this kind
 KINDS = ("duration", "success", "energy", "benefit")
 UNITS = {"duration": "s", "energy": "J"}  # of what a model predicts; a probability has none
 MAX_CARD_BYTES = 1 << 20  # ours are some 20 kB

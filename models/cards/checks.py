@@ -56,7 +56,7 @@ def check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: 
 
 
 def check_trained_with(card: Card, installed: Mapping[str, str], path: Path) -> None:
-    """A benefit tree judges the choices of the action models that it was learned with, and of no others.
+    """A refinement gate judges the choices of the action models that it was learned with, and of no others.
 
     Args:
       card: Of the tree.

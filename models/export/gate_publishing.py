@@ -1,4 +1,4 @@
-"""Writes a benefit tree into a zoo: the ONNX file, and the card that says what it was learned from and with."""
+"""Writes a refinement gate into a zoo: the ONNX file, and the card that says what it was learned from and with."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, about: GateProve
 
 
 def remove_gate(zoo: Path, robot: str) -> bool:
-    """Remove a robot's benefit tree, as its action models have changed; whether there was one."""
+    """Remove a robot's refinement gate, as its action models have changed; whether there was one."""
     path = zoo / robot / f"{GATE}.onnx"
     there = path.exists()
     for file in (path, card_path(path)):

@@ -100,7 +100,9 @@ def train_gate(
 def check_learner(learner: str, pairs: int) -> None:
     """Raises UsageError where there is no such learner, or fewer pairs of episodes than any can learn from."""
     if learner not in LEARNERS:
-        raise UsageError(f"learner '{learner}' is unknown for benefit (expected one of: {', '.join(LEARNERS)})")
+        raise UsageError(
+            f"learner '{learner}' is unknown for the refinement gate (expected one of: {', '.join(LEARNERS)})"
+        )
     if pairs < LEAST:
         raise UsageError(f"{pairs} pairs of episodes, expected at least {LEAST}")
 

@@ -61,11 +61,11 @@ def seen(situation: Situation) -> str:
 
 
 def advice(report: RefinementReport) -> str:
-    """What the benefit tree advised (paper 6.3.2); empty where it was not asked."""
+    """Decision of the refinement gate (paper 6.3.2); empty if it made none."""
     if report.p_slowdown < 0:
         return ""
     said = "greedy kept" if report.kept_greedy else "refined"
-    return f"{said}: the benefit tree puts the risk that refining costs time at {100 * report.p_slowdown:.0f} %"
+    return f"{said}: the refinement gate predicts a slowdown with probability {100 * report.p_slowdown:.0f} %"
 
 
 def proven(report: RefinementReport | None) -> str:

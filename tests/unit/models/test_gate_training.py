@@ -1,4 +1,4 @@
-"""Benefit trees are learned reproducibly, checked before use, named in provenance, and can be switched off."""
+"""Refinement gates are learned reproducibly, checked before use, named in provenance, and can be switched off."""
 
 import argparse
 import dataclasses
@@ -98,7 +98,7 @@ def test_training_is_reproducible(tmp_path: Path) -> None:
 def test_too_few_pairs_or_an_unknown_learner_are_refused() -> None:
     with pytest.raises(UsageError, match="50 pairs of episodes, expected at least 100"):
         train_gate(pairs(count=50), SITUATION, "forest", 1)
-    with pytest.raises(UsageError, match="learner 'oracle' is unknown for benefit"):
+    with pytest.raises(UsageError, match="learner 'oracle' is unknown for the refinement gate"):
         train_gate(pairs(), SITUATION, "oracle", 1)
 
 
@@ -177,7 +177,7 @@ def test_a_flipped_bit_of_the_tree_is_refused(zoo: Path) -> None:
 
 def test_a_tree_that_asks_for_something_else_is_refused(zoo: Path, trained: TrainedGate) -> None:
     publish_gate(zoo, pairs(), trained, about(load_models("agilo", str(zoo)), names=("luck", *SITUATION[1:])))
-    with pytest.raises(UsageError, match=r"asks for luck.*expected gain_s"):
+    with pytest.raises(UsageError, match=r"inputs luck.*expected gain_s"):
         load_models("agilo", str(zoo), gated=True)
 
 

@@ -109,7 +109,7 @@ def test_explanation_contains_the_decision_of_the_gate() -> None:
     report = RefinementReport(
         0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, p_slowdown=0.62, kept_greedy=True
     )
-    assert advice(report) == "greedy kept: the benefit tree puts the risk that refining costs time at 62 %"
+    assert advice(report) == "greedy kept: the refinement gate predicts a slowdown with probability 62 %"
     assert advice(dataclasses.replace(report, p_slowdown=0.1, kept_greedy=False)).startswith("refined: ")
     assert advice(dataclasses.replace(report, p_slowdown=-1.0)) == ""
 

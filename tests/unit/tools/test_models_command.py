@@ -108,7 +108,7 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
             ["gather", "agilo", "goToPose", "--episodes", "1", "--out", "/dev/null"],
             "/dev/null/goToPose: Not a directory",
         ),
-        (["train-gate", "agilo", "--learner", "magic"], "learner 'magic' is unknown for benefit"),
+        (["train-gate", "agilo", "--learner", "magic"], "learner 'magic' is unknown for the refinement gate"),
         (["train-gate", "agilo", "--episodes", "3"], "3 pairs of episodes, expected at least 100"),
         (["evaluate", "table1", "--episodes", "0"], "--episodes is 0, expected at least 2"),
         (["evaluate", "table3", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),

@@ -80,7 +80,7 @@ def _check_names(arguments: argparse.Namespace) -> None:
 
 
 def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
-    """A benefit tree judges the choices of the models that it was learned with: these are gone now."""
+    """A refinement gate judges the choices of the models that it was learned with: these are gone now."""
     from tailor.models.export.gate_publishing import remove_gate
 
     if remove_gate(arguments.zoo, arguments.robot):

@@ -30,7 +30,7 @@ examples:
   tailor train-gate agilo --episodes 300 --zoo out/zoo
 
 The tree judges the choices of the action models that are in the zoo now, so train it after them; `tailor train`
-removes one that was learned with other models. Broken off, the same command goes on. `tailor evaluate benefit` says
+removes one that was learned with other models. Broken off, the same command goes on. `tailor evaluate gate` says
 what the tree is worth on fresh episodes; [refinement] gate = false switches it off."""
 
 

@@ -29,7 +29,7 @@ ROBOT, SCENARIO = "agilo", "approach-dribble"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Flags of `tailor evaluate benefit`."""
+    """Flags of `tailor evaluate gate`."""
     parser.add_argument(
         "--episodes", type=at_least(2, "--episodes"), default=300, help="fresh starts, each run three ways"
     )
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
     if arguments.luck:
         remarks.append("foreknown: by one who knows how the same start went four times with other noise")
-    publish_report(Report("benefit", "When not to refine", [row], remarks), arguments.json, arguments.report)
+    publish_report(Report("gate", "When not to refine", [row], remarks), arguments.json, arguments.report)
     better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
     return 0 if better else 1
 
@@ -55,12 +55,12 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
     """The row of figures over fresh seeds.
 
     Raises:
-      UsageError: No benefit tree in the zoo.
+      UsageError: No refinement gate in the zoo.
     """
     base = settings or RefinementSettings()
     tree = load_models(ROBOT, arguments.zoo, gated=True).gate
     if tree is None:
-        raise UsageError(f"no benefit tree for {ROBOT}, expected one: `tailor train-gate {ROBOT}` makes it")
+        raise UsageError(f"no refinement gate for {ROBOT}, expected one: `tailor train-gate {ROBOT}` makes it")
     plain = replace(base, gate=False)
     variants = [
         Variant("h1", replace(plain, horizon=1)),
@@ -69,7 +69,7 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
     ]
     task = Task(gathering.domain_of(ROBOT), SCENARIO, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
-    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "benefit")
+    found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "gate")
     starts = [(found["h1"][seed], found["h2"][seed], found["gated"][seed]) for seed in seeds]
     ceiling = {}
     if arguments.luck:
