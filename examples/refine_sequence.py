@@ -11,7 +11,7 @@ from tailor.executive.refinement.refinement import Refinement
 
 go = domains.load("soccer").actions["goToPose"]
 known = {"start": (-2.0, 0.0, 0.0, 0.0), "waypoint": (0.0, 1.0, None, None), "goal": (2.0, 0.0, 0.0, 0.0)}
-variables = []
+variables: list[Variable] = []
 for place, values in known.items():
     for parameter, value in zip(go.parameters[:4], values, strict=True):  # x, y, phi, v
         lower, upper = (parameter.lower, parameter.upper) if value is None else (value, value)
@@ -22,7 +22,8 @@ sequence = ActionSequence(actions, tuple(variables))
 
 refinement = Refinement(sequence, load_models("agilo"), RefinementSettings(), np.random.default_rng(0))
 refinement.advance(CheckBudget(100))
-report = refinement.report()
+choice, report = refinement.choice, refinement.report()
+assert choice is not None, "the first check yields the greedy choice"
 print(f"greedy {report.greedy_s:.2f} s, refined {report.best_s:.2f} s")
 for variable in sequence.free():
-    print(f"{variable.quantity} at {variable.label}: {refinement.choice.values[variable.id]:.2f} {variable.unit}")
+    print(f"{variable.quantity} at {variable.label}: {choice.values[variable.id]:.2f} {variable.unit}")

@@ -94,6 +94,11 @@ def test_only_main_imports_commands() -> None:
     assert {a for a, b in pairs if str(forbidden(a, b)) not in PENDING["arrows"]} <= {"tools/main.py"}
 
 
+def test_every_folder_of_unit_tests_is_named_after_a_room() -> None:
+    folders = {p.name for p in (ROOT / "tests" / "unit").iterdir() if any(p.glob("test_*.py"))}
+    assert folders - {"house"} <= {room for rows in ROOMS.values() for room in rows}
+
+
 @pytest.mark.parametrize("path", PROJECT_FILES)
 def test_no_import_is_bare(path: str) -> None:
     """`import executive` would load a second copy of the module: the checkout is on the path under pytest."""
