@@ -19,7 +19,8 @@ def bus_system():
     endpoint, children = free_endpoint(), []
 
     def start(module, *arguments):
-        children.append(Child(module, [sys.executable, "-P", "-m", module, *map(str, arguments)]))
+        isolated = ["-P"] if module.startswith("tailor.") else []  # our stand-ins are found from the current folder
+        children.append(Child(module, [sys.executable, *isolated, "-m", module, *map(str, arguments)]))
         return children[-1]
 
     with open_router(endpoint) as session:
