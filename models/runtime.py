@@ -21,7 +21,7 @@ from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
-ZOO = Path(__file__).parent / "zoo"
+ZOO = Path(__file__).resolve().parent / "zoo"
 GATE = "refinement/benefit"  # the one model of a robot that is not of an action but of choosing subgoals
 GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
 

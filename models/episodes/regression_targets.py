@@ -16,7 +16,7 @@ class RegressionTarget:
     kind: str  # of model
     unit: str  # as field names end: "s"
     examples: Callable[[Sequence[Episode], int], Examples]  # what remains at the first n_i ticks
-    told: Callable[[Episode], bool]  # whether a finished episode tells it
+    is_recorded: Callable[[Episode], bool]  # whether a finished episode holds the quantity
     whole: Callable[[Episode], float]
 
 

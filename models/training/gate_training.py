@@ -21,7 +21,7 @@ from tailor.schemas.errors import UsageError
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-LEAST = 100  # pairs: fewer say nothing about a few in a hundred
+MIN_PAIRS = 100  # pairs: fewer say nothing about a few in a hundred
 FOLDS = 8
 THRESHOLDS = tuple(round(0.1 + 0.0125 * k, 4) for k in range(41))  # 0.1 .. 0.6
 CLIP = 0.1  # a pair counts by its gain or loss, as a share of greedy's time, up to this: ball luck is worth no more
@@ -103,8 +103,8 @@ def check_learner(learner: str, pairs: int) -> None:
         raise UsageError(
             f"learner '{learner}' is unknown for the refinement gate (expected one of: {', '.join(LEARNERS)})"
         )
-    if pairs < LEAST:
-        raise UsageError(f"{pairs} pairs of episodes, expected at least {LEAST}")
+    if pairs < MIN_PAIRS:
+        raise UsageError(f"{pairs} pairs of episodes, expected at least {MIN_PAIRS}")
 
 
 def chosen(curve: list[dict[str, Any]], price_pct: float) -> dict[str, Any]:

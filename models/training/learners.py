@@ -41,16 +41,16 @@ def _svm(seed: int) -> Any:
 DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "bag": lambda seed: BaggedModelTrees(random_state=seed),
     "robust": lambda seed: BaggedModelTrees(random_state=seed, **ROBUST),
-    "distilled": lambda seed: DistilledModelTree(random_state=seed),
+    "distilled-tree": lambda seed: DistilledModelTree(random_state=seed),
     "linear": lambda seed: ModelTreeRegressor("linear", random_state=seed),
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
     "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
     "network": lambda seed: SklearnRegressor(_network(MLPRegressor, seed)),
 }
 SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
-    "taught": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
+    "distilled-forest": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
-    "distilled": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
+    "distilled-tree": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
     "boosting": lambda seed: SklearnClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
     "network": lambda seed: SklearnClassifier(_network(MLPClassifier, seed), COST_RATIO),
@@ -58,13 +58,43 @@ SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
 }
 
 
+# Names in the commands of older model cards, which still reproduce their models.
+OLD_NAMES = {"taught": "distilled-forest", "distilled": "distilled-tree"}
+
+
 def make_learner(kind: str, name: str, seed: int) -> Any:
-    """A fresh learner; energy is learned as durations are.
+    """An unfitted learner.
+
+    Args:
+      kind: "duration", "energy" (the same learners) or "success".
+      name: Key of `DURATION_LEARNERS` or `SUCCESS_LEARNERS`, or one of `OLD_NAMES`.
+      seed: Random seed.
+
+    Returns:
+      An estimator with scikit-learn's interface: a `RegressionModel` or a `FailureModel`.
 
     Raises:
-      UsageError: No learner of that name for that kind.
+      UsageError: There is no learner of that name for that kind.
     """
-    table = SUCCESS_LEARNERS if kind == "success" else DURATION_LEARNERS
-    if name not in table:
+    return _table(kind)[learner_name(kind, name)](seed)
+
+
+def learner_name(kind: str, name: str) -> str:
+    """The current name of a learner.
+
+    Args:
+      kind: Kind of model.
+      name: A current or an old name.
+
+    Raises:
+      UsageError: There is no learner of that name for that kind.
+    """
+    table = _table(kind)
+    current = OLD_NAMES.get(name, name)
+    if current not in table:
         raise UsageError(f"learner '{name}' is unknown for {kind} (expected one of: {', '.join(table)})")
-    return table[name](seed)
+    return current
+
+
+def _table(kind: str) -> Mapping[str, Callable[[int], Any]]:
+    return SUCCESS_LEARNERS if kind == "success" else DURATION_LEARNERS

@@ -23,7 +23,7 @@ TEST_SHARE = 0.25  # paper 5.1: three quarters for training
 FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
 FOLDS = 4
 CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes
-LEAST = 40  # episodes: fewer cannot be split four ways
+MIN_EPISODES = 40  # episodes: fewer cannot be split four ways
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def train_regression(
     Raises:
       UsageError: Too few finished episodes that tell it, or an unknown learner.
     """
-    finished = [episode for episode in episodes if episode.finished and amount.told(episode)]
+    finished = [episode for episode in episodes if episode.finished and amount.is_recorded(episode)]
     _check_count(finished, "finished")
     rng = np.random.default_rng(seed)
     numbers = np.array([episode.number for episode in finished])
@@ -115,8 +115,8 @@ def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) ->
 
 
 def _check_count(episodes: Sequence[Episode], what: str) -> None:
-    if len(episodes) < LEAST:
-        raise UsageError(f"{len(episodes)} {what} episodes, expected at least {LEAST}".replace("  ", " "))
+    if len(episodes) < MIN_EPISODES:
+        raise UsageError(f"{len(episodes)} {what} episodes, expected at least {MIN_EPISODES}".replace("  ", " "))
 
 
 def _best_n_i(

@@ -1,9 +1,9 @@
-"""What `tailor train` is to learn from: data sets, feature spaces, and the command that makes the models again."""
+"""Inputs of a training run: data sets, feature spaces, and the command that reproduces the models."""
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +12,76 @@ from tailor.schemas.errors import UsageError
 if TYPE_CHECKING:
     from tailor.models.features.features import FeatureSpace
 
+DEFAULT_LEARNER = "bag"
+DEFAULT_FAILURE_LEARNER = "distilled-forest"
 DEFAULT_FEATURES = "projective"
 ENERGY_FEATURES = {"joints": "joints-relative"}  # gravity's work depends on where the joints are, durations do not
 
 
-def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> FeatureSpace:
-    """The feature space of that name, or the one that is meant for an action's arguments.
+@dataclass(frozen=True, slots=True)
+class TrainingRequest:
+    """One call of `tailor train`.
+
+    Attributes:
+      robot: Name of the robot, as in the data sets' manifests.
+      zoo: Folder to write models to.
+      actions: Actions to train; empty for all that have a data set.
+      data: Folders with a data set per action; empty for data/ROBOT.
+      features: Feature space of durations and failures; None for the default of the data's arguments.
+      energy_features: Feature space of energies; None for the default of `features`.
+      learner: Learner of durations and energies, see `learners.DURATION_LEARNERS`.
+      failure_learner: Learner of successes, see `learners.SUCCESS_LEARNERS`.
+      seed: Random seed of folds and resampled episodes.
+    """
+
+    robot: str
+    zoo: Path
+    actions: tuple[str, ...] = ()
+    data: tuple[Path, ...] = ()
+    features: str | None = None
+    energy_features: str | None = None
+    learner: str = DEFAULT_LEARNER
+    failure_learner: str = DEFAULT_FAILURE_LEARNER
+    seed: int = 1
+
+
+def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
+    """Folders of each action's episodes, by action.
 
     Raises:
-      UsageError: It is of other arguments.
+      UsageError: There is no data set, or none of a requested action.
     """
+    roots = request.data or (Path("data") / request.robot,)
+    folders: dict[str, list[Path]] = {}
+    for path in (path for root in roots for path in sorted(root.glob("*/manifest.json"))):
+        folders.setdefault(path.parent.name, []).append(path.parent)
+    searched = ", ".join(map(str, roots))
+    for action in request.actions:
+        if action not in folders:
+            raise UsageError(f"{searched}: no episodes of '{action}' (data sets there: {', '.join(folders) or 'none'})")
+    if not folders:
+        raise UsageError(f"{searched}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
+    return {action: folders[action] for action in request.actions or folders}
+
+
+def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
+    """Feature space of each kind of model: "duration", "energy", "success".
+
+    Args:
+      request: Names the spaces, or leaves them to the defaults.
+      arguments: Names of the arguments in the data.
+      folder: The data set, for errors.
+
+    Raises:
+      UsageError: A space takes other arguments than the data has.
+    """
+    plain = _space(request.features, arguments, folder)
+    energy = request.energy_features or ENERGY_FEATURES.get(plain.name, plain.name)
+    return {"duration": plain, "energy": _space(energy, arguments, folder), "success": plain}
+
+
+def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> FeatureSpace:
+    """The feature space of that name, or the default for an action's arguments."""
     from tailor.models.features.features import SPACES
 
     fitting = [each for each, space in SPACES.items() if tuple(q.name for q in space.arguments) == arguments]
@@ -32,48 +92,30 @@ def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> Featur
     return SPACES[wanted]
 
 
-def spaces_of(arguments: argparse.Namespace, names: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
-    """The feature space of each kind of model, by kind.
-
-    Raises:
-      UsageError: One is of other arguments than the data.
-    """
-    plain = _space(arguments.features, names, folder)
-    energy = arguments.energy_features or ENERGY_FEATURES.get(plain.name, plain.name)
-    return {"duration": plain, "energy": _space(energy, names, folder), "success": plain}
-
-
-def data_sets(arguments: argparse.Namespace) -> dict[str, list[Path]]:
-    """Folders of each action's episodes, by action."""
-    roots = arguments.data or [Path("data") / arguments.robot]
-    found: dict[str, list[Path]] = {}
-    for path in (path for root in roots for path in sorted(root.glob("*/manifest.json"))):
-        found.setdefault(path.parent.name, []).append(path.parent)
-    said = ", ".join(map(str, roots))
-    for action in arguments.actions:
-        if action not in found:
-            raise UsageError(f"{said}: no episodes of '{action}' (data sets there: {', '.join(found) or 'none'})")
-    if not found:
-        raise UsageError(f"{said}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
-    return {action: found[action] for action in arguments.actions or found}
-
-
-def command_of(
-    arguments: argparse.Namespace, spaces: Mapping[str, FeatureSpace], manifests: Mapping[Path, Mapping[str, Any]]
+def reproduction_command(
+    request: TrainingRequest, spaces: Mapping[str, FeatureSpace], manifests: Mapping[Path, Mapping[str, Any]]
 ) -> str:
-    """The commands that make the models again, in their order; on-policy runs took the models of those before."""
-    robot, action = arguments.robot, next(iter(manifests.values()))["action"]
-    data = "" if not arguments.data else " --data " + " ".join(map(str, arguments.data))
+    """The commands that reproduce the models of one action, in order.
+
+    On-policy runs use the models of the commands before them.
+
+    Args:
+      request: The training run.
+      spaces: See `feature_spaces`.
+      manifests: Manifest of each data set, by folder.
+    """
+    robot, action = request.robot, next(iter(manifests.values()))["action"]
+    data = "" if not request.data else " --data " + " ".join(map(str, request.data))
     train = f"tailor train {robot} {action}{data} --features {spaces['duration'].name}"
     if spaces["energy"] is not spaces["duration"]:
         train += f" --energy-features {spaces['energy'].name}"
-    train += f" --learner {arguments.learner} --failure-learner {arguments.failure_learner} --seed {arguments.seed}"
-    gathering = [f"{_gathering(robot, manifest)} --out {path.parent}" for path, manifest in manifests.items()]
+    train += f" --learner {request.learner} --failure-learner {request.failure_learner} --seed {request.seed}"
+    gathering = [f"{_gather_command(robot, manifest)} --out {path.parent}" for path, manifest in manifests.items()]
     return " && ".join([*gathering, train])
 
 
-def _gathering(robot: str, manifest: Mapping[str, Any]) -> str:
-    """The command that made a data set."""
+def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
+    """The command that gathered a data set."""
     if "recordings" in manifest:
         return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
     scenarios = manifest.get("scenarios")

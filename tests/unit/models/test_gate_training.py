@@ -1,6 +1,5 @@
 """Refinement gates are learned reproducibly, checked before use, named in provenance, and can be switched off."""
 
-import argparse
 import dataclasses
 import json
 import shutil
@@ -8,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from tailor.executive.composition import ExecutiveConfig, build_context, load_models, provenance, rebuild_context
 from tailor.executive.core.context import Settings
@@ -104,7 +102,7 @@ def test_too_few_pairs_or_an_unknown_learner_are_refused() -> None:
 
 def test_seeds_of_evaluations_are_never_trained_on(capsys) -> None:
     assert main(["train-gate", "agilo", "--seed", "999900", "--episodes", "101"]) == 2
-    assert "fresh ones judge" in capsys.readouterr().err
+    assert "reserved for evaluation; expected 0..999999" in capsys.readouterr().err
 
 
 def made_up(seed: int, variant: str, greedy_s: float, refined_s: float, situation: np.ndarray) -> Outcome:
@@ -198,11 +196,11 @@ def test_a_tree_is_withdrawn_with_its_card(zoo: Path) -> None:
     assert not remove_gate(zoo, "agilo")
 
 
-def test_training_action_models_anew_removes_the_tree_that_judged_the_old_ones(zoo: Path) -> None:
-    console = Console(record=True, width=200)
-    train._withdraw(argparse.Namespace(zoo=zoo, robot="agilo"), console)
+def test_training_action_models_removes_the_gate_of_the_previous_ones(zoo: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setattr(train, "train_models", lambda *_: [])
+    assert main(["train", "agilo", "--zoo", str(zoo), "--json"]) == 0
     assert not tree_of(zoo).exists()
-    assert "`tailor train-gate agilo` makes it" in console.export_text()
+    assert "`tailor train-gate agilo` trains a new one" in " ".join(capsys.readouterr().err.split())
 
 
 def gated_order(zoo: Path, gate: bool = True) -> ExecutiveConfig:

@@ -1,6 +1,9 @@
 """tailor models, train and evaluate: what they say, and that they refuse in one line."""
 
+import importlib
+import itertools
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +12,9 @@ import pytest
 from tailor.models import runtime
 from tailor.models.features.features import projective
 from tailor.models.rules.rule_text import duration_rules
+from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.models.trees.linear_tree import LinearTree
+from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.main import main
 
 
@@ -131,6 +136,39 @@ def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, caps
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["train", "train-gate"])
+def test_training_never_writes_into_an_installation(command: str, monkeypatch, tmp_path: Path, capsys) -> None:
+    installed = tmp_path / "site-packages" / "tailor" / "models" / "zoo"
+    installed.mkdir(parents=True)
+    module = importlib.import_module(f"tailor.tools.commands.learn.{command.replace('-', '_')}")
+    monkeypatch.setattr(module, "target_zoo", partial(target_zoo, own=installed))
+    assert main([command, "agilo"]) == 2
+    error = capsys.readouterr().err
+    assert "expected --zoo DIR" in error
+    assert error.count("\n") == 1
+    assert list(installed.iterdir()) == []
+
+
+def test_training_writes_to_the_zoo_of_a_checkout_or_to_the_one_named(tmp_path: Path) -> None:
+    own = tmp_path / "models" / "zoo"
+    own.mkdir(parents=True)
+    (tmp_path / "pyproject.toml").touch()
+    assert target_zoo(None, own) == own
+    assert target_zoo(None) == runtime.ZOO
+    assert target_zoo(Path("other"), own) == Path("other")
+
+
+CARDS = sorted(path for path in runtime.ZOO.glob("*/*/*.card.json") if path.parent.name != "refinement")
+
+
+@pytest.mark.parametrize("card", CARDS, ids=lambda card: "/".join(card.parts[-3:]))
+def test_the_command_in_a_card_names_learners_that_exist(card: Path) -> None:
+    words = json.loads(card.read_text())["command"].split(" && ")[-1].split()
+    flags = dict(itertools.pairwise(words))
+    assert learner_name("duration", flags["--learner"]) in DURATION_LEARNERS
+    assert learner_name("success", flags["--failure-learner"]) in SUCCESS_LEARNERS
 
 
 def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) -> None:

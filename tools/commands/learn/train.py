@@ -1,25 +1,24 @@
-"""Make action models from episodes: ONNX files with cards, tested on episodes of their own, then fitted to all."""
+"""Train action models from episodes: ONNX files with cards."""
 
 from __future__ import annotations
 
 import argparse
 import json
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 from rich.table import Column, Table
 
-from tailor.models.runtime import ZOO
-from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
-from tailor.tools.learning.training_request import command_of, data_sets, spaces_of
+from tailor.tools.learning.target_zoo import target_zoo
+from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
+from tailor.tools.learning.training_run import remove_outdated_gate, train_models
 
-DURATIONS = "bag, robust, distilled, linear, m5, boosting, network"  # named here to spare --help the libraries
-SUCCESSES = "taught, forest, distilled, tree, boosting, network, svm"
-RARE = 0.02  # a smaller share of failures is too few to learn from
+# named here so that --help loads no learning library
+DURATION_LEARNERS = "bag, robust, distilled-tree, linear, m5, boosting, network"
+SUCCESS_LEARNERS = "distilled-forest, forest, distilled-tree, tree, boosting, network, svm"
 
 EPILOG = """\
 examples:
@@ -27,101 +26,56 @@ examples:
   tailor train agilo --data data/agilo --learner m5 --features relative --zoo out/zoo
   tailor train powercube
 
-A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, an energy model when its
-episodes tell what the drives worked, and a success model when some of them failed. Three quarters train, one quarter
-tests; the model that is kept is fitted to all."""
+A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, an energy model if its
+episodes record the work of the drives, and a success model if some of them failed. The test trains on three quarters
+of the episodes and reports errors on the last quarter. The published model is fitted to all episodes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    parser.add_argument("robot", help="whose actions, as in the data sets' manifests")
-    parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all data sets)")
-    parser.add_argument("--data", type=Path, nargs="+", help="folders with a data set per action (default: data/ROBOT)")
-    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder to write models to (default: the one that ships)")
-    parser.add_argument("--features", help="feature space (default: projective, or the one of the data's arguments)")
-    parser.add_argument("--energy-features", help="the same for energy (default: joints-relative instead of joints)")
-    parser.add_argument("--learner", default="bag", help=f"of durations: {DURATIONS} (default: %(default)s)")
-    parser.add_argument("--failure-learner", default="taught", help=f"of successes: {SUCCESSES} (default: %(default)s)")
-    seed = at_least(0, "--seed")
-    parser.add_argument(
-        "--seed", type=seed, default=1, help="draws folds and resampled episodes (default: %(default)s)"
-    )
-    parser.add_argument("--json", action="store_true", help="print the tests as JSON")
+    add = parser.add_argument
+    add("robot", help="name of the robot, as in the manifests of the data sets")
+    add("actions", nargs="*", metavar="ACTION", help="actions to train (default: all data sets)")
+    add("--data", type=Path, nargs="+", default=[], help="folders with a data set per action (default: data/ROBOT)")
+    add("--zoo", type=Path, metavar="DIR", help="folder to write models to (default: models/zoo of this checkout)")
+    add("--features", help="feature space (default: projective, or the one that fits the data's arguments)")
+    add("--energy-features", help="feature space of energies (default: as --features; joints-relative for joints)")
+    add("--learner", default=DEFAULT_LEARNER,
+        help=f"learner of durations and energies: {DURATION_LEARNERS} (default: %(default)s)")  # fmt: skip
+    add("--failure-learner", default=DEFAULT_FAILURE_LEARNER,
+        help=f"learner of successes: {SUCCESS_LEARNERS} (default: %(default)s)")  # fmt: skip
+    add("--seed", type=at_least(0, "--seed"), default=1, help="random seed (default: %(default)s)")
+    add("--json", action="store_true", help="print the test results as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Train; exit code 0."""
-    _check_names(arguments)
-    console, rows, sets = Console(stderr=True), [], data_sets(arguments)
-    (arguments.zoo / arguments.robot).mkdir(parents=True, exist_ok=True)  # whether it can be, before hours of learning
-    for action, folders in sets.items():
-        with console.status(f"learning {action}"):
-            rows.extend(train_one(folders, arguments))
-    _withdraw(arguments, console)
+    request = TrainingRequest(
+        arguments.robot,
+        target_zoo(arguments.zoo),
+        tuple(arguments.actions),
+        tuple(arguments.data),
+        arguments.features,
+        arguments.energy_features,
+        arguments.learner,
+        arguments.failure_learner,
+        arguments.seed,
+    )
+    console = Console(stderr=True)
+    with console.status("reading data sets") as status:
+        rows = train_models(request, lambda action: status.update(f"training {action}"))
+    if remove_outdated_gate(request):
+        console.print(
+            f"removed {request.robot}/refinement/benefit, which was trained with the previous action models; "
+            f"`tailor train-gate {request.robot}` trains a new one"
+        )
     if arguments.json:
         print(json.dumps(rows))
     else:
         table_console().print(_table(rows))
     return 0
-
-
-def _check_names(arguments: argparse.Namespace) -> None:
-    """Whether there are such learners and features; told before hours of learning, not after them."""
-    from tailor.models.features.features import SPACES
-    from tailor.models.training import learners
-
-    learners.make_learner("duration", arguments.learner, arguments.seed)
-    learners.make_learner("success", arguments.failure_learner, arguments.seed)
-    for name in (arguments.features, arguments.energy_features):
-        if name is not None and name not in SPACES:
-            raise UsageError(f"no feature space '{name}' (expected one of: {', '.join(SPACES)})")
-
-
-def _withdraw(arguments: argparse.Namespace, console: Console) -> None:
-    """A refinement gate judges the choices of the models that it was learned with: these are gone now."""
-    from tailor.models.export.gate_publishing import remove_gate
-
-    if remove_gate(arguments.zoo, arguments.robot):
-        again = f"tailor train-gate {arguments.robot}"
-        console.print(
-            f"removed {arguments.robot}/refinement/benefit, learned with the models before; `{again}` makes it"
-        )
-
-
-def train_one(folders: list[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
-    """Train the models of one action and write them to the zoo; returns what they reached in the test."""
-    from tailor.models import runtime
-    from tailor.models.episodes.episodes import UNOBSERVED, merge, read_data_set
-    from tailor.models.episodes.regression_targets import ENERGY
-    from tailor.models.export import publishing
-    from tailor.models.training import training
-
-    sets = [read_data_set(folder) for folder in folders]
-    data = merge(sets)
-    if data.manifest["robot"] != arguments.robot:
-        raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{arguments.robot}'")
-    spaces = spaces_of(arguments, data.names, folders[0])
-    manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
-    command = command_of(arguments, spaces, manifests)
-    jobs = [("duration", arguments.learner, training.train_duration)]
-    if sum(ENERGY.told(episode) and episode.finished for episode in data.episodes) >= training.LEAST:
-        jobs.append(("energy", arguments.learner, partial(training.train_regression, ENERGY)))
-    failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
-    if failures >= RARE * len(data.episodes):
-        jobs.append(("success", arguments.failure_learner, training.train_success))
-    rows = []
-    for kind, learner, train in jobs:
-        try:
-            trained = train(data.episodes, spaces[kind], learner, arguments.seed)
-        except UsageError as error:
-            raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
-        about = publishing.Publication(kind, learner, spaces[kind], arguments.seed, command)
-        path = publishing.publish(arguments.zoo, data, trained, about)
-        runtime.load_model(path)  # a model that does not pass its own check must not ship
-        rows.append({"robot": arguments.robot, "action": data.manifest["action"], "kind": kind, **trained.test})
-    return rows
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:
@@ -134,13 +88,15 @@ def _table(rows: list[dict[str, Any]]) -> Table:
         "missed failures",
     )
     for row in rows:
-        name = f"{row['robot']}/{row['action']}/{row['kind']}"
-        if row["kind"] == "success":
-            shares = f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
-            table.add_row(name, str(row["n"]), "", "", *shares)
-            continue
-        unit, mean = ("s", "mean_duration_s") if row["kind"] == "duration" else ("J", "mean_energy_j")
-        low, high = row["mae_ci95"]
-        error = f"{row[f'mae_{unit.lower()}']:.3f} {unit} ({low:.3f} .. {high:.3f})"
-        table.add_row(name, str(row["n"]), f"{row[mean]:.2f} {unit}", error, "", "")
+        table.add_row(f"{row['robot']}/{row['action']}/{row['kind']}", str(row["n"]), *_results(row))
     return table
+
+
+def _results(row: dict[str, Any]) -> tuple[str, str, str, str]:
+    """Mean, error, accuracy and missed failures; empty where the kind of model has none."""
+    if row["kind"] == "success":
+        return "", "", f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
+    unit, mean = ("s", "mean_duration_s") if row["kind"] == "duration" else ("J", "mean_energy_j")
+    low, high = row["mae_ci95"]
+    error = f"{row[f'mae_{unit.lower()}']:.3f} {unit} ({low:.3f} .. {high:.3f})"
+    return f"{row[mean]:.2f} {unit}", error, "", ""

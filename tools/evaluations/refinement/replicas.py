@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,8 +13,9 @@ from rich.progress import Progress
 from scipy import stats
 
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.commands.learn import train
 from tailor.tools.learning import gathering, run_gathering
+from tailor.tools.learning.training_request import TrainingRequest
+from tailor.tools.learning.training_run import train_models
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 SCENARIOS = {"soccer": ("approach-dribble", "waypoints")}  # of the on-policy round, where it helps
@@ -83,11 +82,8 @@ def _trained(recipe: Recipe, seed: int, zoo: Path, data: list[Path]) -> Path:
     """Train as `tailor train` does, unless that has been done."""
     whole = zoo / "whole"  # written last
     if not whole.exists():
-        parser = argparse.ArgumentParser()
-        train.configure(parser)
-        flags = [recipe.robot, "--data", *map(str, data), "--zoo", str(zoo), "--seed", str(seed)]
-        with contextlib.redirect_stdout(sys.stderr):  # stdout is the evaluation's
-            train.run(parser.parse_args(flags))
+        with Console(stderr=True).status(f"training in {zoo}"):
+            train_models(TrainingRequest(recipe.robot, zoo, data=tuple(data), seed=seed))
         whole.touch()
     return zoo
 

@@ -1,0 +1,131 @@
+"""Trains the action models of a robot, tests them on held-out episodes, and publishes them in a zoo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning.training_request import TrainingRequest, data_sets, feature_spaces, reproduction_command
+
+if TYPE_CHECKING:
+    from tailor.models.episodes.episodes import DataSet, Episode
+    from tailor.models.features.features import FeatureSpace
+    from tailor.models.training.training import Trained
+
+    Train = Callable[[Sequence[Episode], FeatureSpace, str, int], Trained]
+
+MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
+
+
+def train_models(request: TrainingRequest, on_action: Callable[[str], None] = lambda _: None) -> list[dict[str, Any]]:
+    """Train the models of every requested action and write them to the zoo.
+
+    Errors in the request are raised before the first model is trained.
+
+    Args:
+      request: What to train.
+      on_action: Called with the name of each action before its models are trained.
+
+    Returns:
+      One row per model: robot, action, kind and test results.
+
+    Raises:
+      UsageError: An unknown learner or feature space, missing or unsuitable data, or a zoo that cannot be written.
+    """
+    request, sets = checked(request), data_sets(request)
+    (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
+    rows: list[dict[str, Any]] = []
+    for action, folders in sets.items():
+        on_action(action)
+        rows.extend(train_action(folders, request))
+    return rows
+
+
+def checked(request: TrainingRequest) -> TrainingRequest:
+    """The request with the current names of its learners.
+
+    Raises:
+      UsageError: There is no such learner or feature space.
+    """
+    from tailor.models.features.features import SPACES
+    from tailor.models.training.learners import learner_name
+
+    for name in (request.features, request.energy_features):
+        if name is not None and name not in SPACES:
+            raise UsageError(f"no feature space '{name}' (expected one of: {', '.join(SPACES)})")
+    learner, failure_learner = request.learner, request.failure_learner
+    return replace(
+        request,
+        learner=learner_name("duration", learner),
+        failure_learner=learner_name("success", failure_learner),
+    )
+
+
+def remove_outdated_gate(request: TrainingRequest) -> bool:
+    """Remove the robot's refinement gate, which is valid only for the action models it was trained with.
+
+    Returns:
+      Whether there was one.
+    """
+    from tailor.models.export.gate_publishing import remove_gate
+
+    return remove_gate(request.zoo, request.robot)
+
+
+def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[dict[str, Any]]:
+    """Train the models of one action; yields a row of test results per published model.
+
+    Raises:
+      UsageError: The episodes cannot be read, are of another robot, or are too few.
+    """
+    from tailor.models.episodes.episodes import merge, read_data_set
+
+    sets = [read_data_set(folder) for folder in folders]
+    data = merge(sets)
+    if data.manifest["robot"] != request.robot:
+        raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
+    spaces = feature_spaces(request, data.names, folders[0])
+    manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
+    command = reproduction_command(request, spaces, manifests)
+    for kind, learner, train in _jobs(data, request):
+        try:
+            trained = train(data.episodes, spaces[kind], learner, request.seed)
+        except UsageError as error:
+            raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
+        _publish(request, data, trained, kind, learner, spaces[kind], command)
+        yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
+
+
+def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:
+    """Kind, learner and training function of each model that the episodes suffice for."""
+    from tailor.models.episodes.episodes import UNOBSERVED
+    from tailor.models.episodes.regression_targets import ENERGY
+    from tailor.models.training import training
+
+    yield "duration", request.learner, training.train_duration
+    with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
+    if with_energy >= training.MIN_EPISODES:
+        yield "energy", request.learner, partial(training.train_regression, ENERGY)
+    failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
+    if failures >= MIN_FAILURE_SHARE * len(data.episodes):
+        yield "success", request.failure_learner, training.train_success
+
+
+def _publish(
+    request: TrainingRequest,
+    data: DataSet,
+    trained: Trained,
+    kind: str,
+    learner: str,
+    space: FeatureSpace,
+    command: str,
+) -> None:
+    from tailor.models.export.publishing import Publication, publish
+    from tailor.models.runtime import load_model
+
+    path = publish(request.zoo, data, trained, Publication(kind, learner, space, request.seed, command))
+    load_model(path)  # a model that fails its own checks must not ship
