@@ -1,1 +1,1 @@
-"""WORDS: what may be said on the bus. Imports nothing of ours."""
+"""Messages, topics and their bytes on the bus. Imports no other package of tailor."""

@@ -1,12 +1,13 @@
-"""What goes wrong outside: a user's mistake to be told in one line, and a message to be refused."""
+"""Errors from outside: unusable input of a user, and refused messages."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 
 class UsageError(Exception):
-    """A user's input cannot be used. The message says in one line what, where and what was expected.
+    """Unusable input of a user; the message states in one line what, where and what was expected.
 
     `tailor` prints it without a traceback and exits with code 2; nothing has been started by then.
     """
@@ -14,6 +15,32 @@ class UsageError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """A message from the bus that was refused; a value, never an exception."""
+    """A refused input; a value, never an exception. Decoding refuses with the reasons of `DecodeRefusal`."""
 
     reason: str
+
+
+class DecodeRefusal(StrEnum):
+    """Reason for refusing the bytes of a message; few, so that they can be counted."""
+
+    TOO_LONG = "too long"
+    MALFORMED = "malformed"
+    TRAILING_BYTES = "trailing bytes"
+    NOT_FINITE = "not finite"
+    TOO_LARGE = "number too large"
+    NEGATIVE_VARIANCE = "negative variance"
+    STAMP_OUT_OF_RANGE = "stamp out of range"
+    NO_UNIT_QUATERNION = "orientation is not a unit quaternion"
+    JOINT_LACKS_VALUE = "a joint lacks a value"
+
+
+class RefusedValueError(ValueError):
+    """A value inside a message is refused; raised and caught inside the codec.
+
+    Attributes:
+      reason: The reason that gets counted.
+    """
+
+    def __init__(self, reason: DecodeRefusal) -> None:
+        super().__init__(reason.value)
+        self.reason = reason

@@ -1,4 +1,4 @@
-"""Reads JSON objects that come from outside, such as a recording's provenance."""
+"""Reads JSON objects from outside, such as a recording's provenance."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from tailor.schemas.errors import Rejected
 
 
 def table_of(text: str) -> dict[str, Any] | Rejected:
-    """The object that a text holds, whatever it holds: nesting without end is refused like any other text."""
+    """The JSON object in a text; a Rejected for any other text, including endless nesting."""
     try:
-        found = json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError) as error:
         return Rejected(f"no JSON: {str(error)[:80]}")
-    return found if isinstance(found, dict) else Rejected("no JSON object")
+    return value if isinstance(value, dict) else Rejected("no JSON object")

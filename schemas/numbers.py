@@ -1,4 +1,4 @@
-"""Which numbers of a message may come in: finite ones, and none so large that a square of it might overflow."""
+"""Checks of received numbers: finite, and small enough that a square cannot overflow."""
 
 from __future__ import annotations
 
@@ -7,29 +7,33 @@ from typing import Any
 
 import numpy as np
 
-from tailor.schemas.ros_time import Refusal
+from tailor.schemas.errors import DecodeRefusal, RefusedValueError
 
-MOST = 1e15  # of anything: ROS drivers say 1e12 for a variance that they do not know, and no unit needs more
+MAX_NUMBER = 1e15  # in any unit: ROS drivers send 1e12 for an unknown variance, and nothing needs more
 
 
 def check_numbers(*values: float) -> None:
-    """Raise Refusal for a value that is not finite, or larger than MOST."""
+    """Check single numbers.
+
+    Raises:
+      RefusedValueError: A value is not finite, or its magnitude exceeds MAX_NUMBER.
+    """
     for value in values:
         if not math.isfinite(value):
-            raise Refusal("not finite")
-        if abs(value) > MOST:
-            raise Refusal("number too large")
+            raise RefusedValueError(DecodeRefusal.NOT_FINITE)
+        if abs(value) > MAX_NUMBER:
+            raise RefusedValueError(DecodeRefusal.TOO_LARGE)
 
 
 def check_array(values: Any) -> None:
-    """The same for an array of any shape."""
+    """The same for a numpy array of any shape."""
     if not np.isfinite(values).all():
-        raise Refusal("not finite")
-    if (np.abs(values) > MOST).any():
-        raise Refusal("number too large")
+        raise RefusedValueError(DecodeRefusal.NOT_FINITE)
+    if (np.abs(values) > MAX_NUMBER).any():
+        raise RefusedValueError(DecodeRefusal.TOO_LARGE)
 
 
 def check_variances(*values: float) -> None:
-    """Raise Refusal for a variance below 0."""
+    """Raise RefusedValueError for a variance below 0."""
     if min(values) < 0.0:
-        raise Refusal("negative variance")
+        raise RefusedValueError(DecodeRefusal.NEGATIVE_VARIANCE)

@@ -60,7 +60,7 @@ def _field(name: str, hint: Any) -> tuple[Convert, Convert]:
 
 @cache
 def converters(kind: Any) -> tuple[Convert, Convert]:
-    """Functions that convert a message of this own type to a ROS value and back; reading raises Refusal."""
+    """Functions that convert a message of this own type to a ROS value and back; reading raises RefusedValueError."""
     hints = field_types(kind)
     stamped = next(iter(hints)) == "stamp_ns"
     frame = getattr(kind, "FRAME_ID", "")

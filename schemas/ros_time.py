@@ -1,6 +1,6 @@
-"""Stamps: nanoseconds of one integer on our side, `std_msgs/Header` on ROS's.
+"""Converts stamps: integer nanoseconds in our messages, `std_msgs/Header` in ROS.
 
-Every stamped message carries a whole header, because viewers plot over `header.stamp` and know frames by it.
+Every stamped message carries a whole header, because viewers plot over `header.stamp` and read the frame from it.
 """
 
 from __future__ import annotations
@@ -8,14 +8,11 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from tailor.schemas.errors import DecodeRefusal, RefusedValueError
 from tailor.schemas.typesystem import ros_class
 
 NS_PER_S = 1_000_000_000
 MAX_STAMP_NS = 2**31 * NS_PER_S - 1  # builtin_interfaces/Time holds int32 seconds
-
-
-class Refusal(ValueError):
-    """A value inside a message that must not come in; its text is the reason that gets counted."""
 
 
 @cache
@@ -24,13 +21,13 @@ def _classes() -> tuple[Any, Any]:
 
 
 def time(stamp_ns: int) -> Any:
-    """A builtin_interfaces/Time, 0 <= stamp_ns <= MAX_STAMP_NS."""
+    """A builtin_interfaces/Time; 0 <= stamp_ns <= MAX_STAMP_NS."""
     seconds, rest = divmod(stamp_ns, NS_PER_S)
     return _classes()[1](sec=seconds, nanosec=rest)
 
 
 def header(stamp_ns: int, frame: str = "") -> Any:
-    """A ROS header with this stamp, 0 <= stamp_ns <= MAX_STAMP_NS."""
+    """A ROS header with this stamp; 0 <= stamp_ns <= MAX_STAMP_NS."""
     return _classes()[0](stamp=time(stamp_ns), frame_id=frame)
 
 
@@ -40,7 +37,11 @@ def stamp_ns(ros_header: Any) -> int:
 
 
 def time_ns(stamp: Any) -> int:
-    """Nanoseconds of a builtin_interfaces/Time; negative or more than a second of nanoseconds is refused."""
+    """Nanoseconds of a builtin_interfaces/Time.
+
+    Raises:
+      RefusedValueError: The seconds are negative, or the nanoseconds reach a whole second.
+    """
     if stamp.sec < 0 or stamp.nanosec >= NS_PER_S:
-        raise Refusal("stamp out of range")
+        raise RefusedValueError(DecodeRefusal.STAMP_OUT_OF_RANGE)
     return int(stamp.sec * NS_PER_S + stamp.nanosec)

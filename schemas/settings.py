@@ -1,4 +1,4 @@
-"""Tables of settings (TOML, JSON) into frozen dataclasses; unknown keys and wrong types are told all at once."""
+"""Builds frozen dataclasses of settings from tables (TOML, JSON); reports all unknown keys and wrong types at once."""
 
 from __future__ import annotations
 
@@ -19,10 +19,13 @@ def from_table(cls: type[T], table: Mapping[str, Any], where: str) -> T:
     Args:
       cls: A dataclass whose fields are numbers, strings, booleans, literals, tuples or further dataclasses.
       table: Keys and values as `tomllib` or `json` read them; missing keys keep their defaults.
-      where: Named in errors, e.g. the file.
+      where: Source of the table for errors, e.g. a file name.
+
+    Returns:
+      An instance of `cls`.
 
     Raises:
-      UsageError: Every unknown key and every value of a wrong type, in one line.
+      UsageError: Lists every unknown key and every value of a wrong type, in one line.
     """
     problems: list[str] = []
     made = _build(cls, table, "", problems)
@@ -33,11 +36,11 @@ def from_table(cls: type[T], table: Mapping[str, Any], where: str) -> T:
 
 def _build(cls: type, table: Mapping[str, Any], prefix: str, problems: list[str]) -> Any:
     hints = typing.get_type_hints(cls)
-    known = [f.name for f in dataclasses.fields(cls)]
+    names = [f.name for f in dataclasses.fields(cls)]
     values: dict[str, Any] = {}
     for key, value in table.items():
-        if key not in known:
-            problems.append(f"unknown key '{prefix}{key}' (expected one of: {', '.join(known)})")
+        if key not in names:
+            problems.append(f"unknown key '{prefix}{key}' (expected one of: {', '.join(names)})")
         else:
             values[key] = _convert(hints[key], value, f"{prefix}{key}", problems)
     if problems:

@@ -1,7 +1,7 @@
-"""Our planar messages as standard ROS 2 messages and back (REP-103 axes, REP-105 frames).
+"""Converts our planar messages to standard ROS 2 messages and back (REP-103 axes, REP-105 frames).
 
-A robot that moves in a plane says x, y and yaw; what a standard message holds beyond that is written as zero, and
-on the way in it must be finite but is otherwise not looked at.
+A planar robot has x, y and yaw. All other fields of a standard message are written as zero; when read, they must be
+finite and are otherwise ignored.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from tailor.schemas import messages as m
+from tailor.schemas.errors import DecodeRefusal, RefusedValueError
 from tailor.schemas.numbers import check_array, check_numbers, check_variances
-from tailor.schemas.ros_time import Refusal, header, stamp_ns, time, time_ns
+from tailor.schemas.ros_time import header, stamp_ns, time, time_ns
 from tailor.schemas.typesystem import ros_class
 
 UNIT_TOLERANCE = 1e-3  # of a quaternion's squared norm; drivers that send float32 stay far below
@@ -36,7 +37,7 @@ def _planar(pose: Any) -> tuple[float, float, float]:
     check_numbers(point.x, point.y, point.z, turn.x, turn.y, turn.z, turn.w)
     norm = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w
     if abs(norm - 1) > UNIT_TOLERANCE:
-        raise Refusal("orientation is not a unit quaternion")
+        raise RefusedValueError(DecodeRefusal.NO_UNIT_QUATERNION)
     yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y * turn.y + turn.z * turn.z))
     return point.x, point.y, yaw
 
@@ -101,7 +102,7 @@ def estop_to_ros(message: m.EStop) -> Any:
 
 
 def estop_from_ros(ros: Any) -> m.EStop:
-    """True stops."""
+    """The e-stop of a Bool; true stops."""
     return m.EStop(ros.data)
 
 
@@ -111,7 +112,7 @@ def clock_to_ros(message: m.Clock) -> Any:
 
 
 def clock_from_ros(ros: Any) -> m.Clock:
-    """The time that a clock says."""
+    """The time of a Clock."""
     return m.Clock(time_ns(ros.clock))
 
 
@@ -129,13 +130,13 @@ def joints_to_ros(message: m.JointState) -> Any:
 
 
 def joints_from_ros(ros: Any) -> m.JointState:
-    """All four of a joint's values; a sender that leaves out velocities or efforts is refused."""
-    rows = (ros.position, ros.velocity, ros.effort)
-    for row in rows:
-        check_array(row)
-    if any(len(row) != len(ros.name) for row in rows):
-        raise Refusal("a joint lacks a value")
-    return m.JointState(stamp_ns(ros.header), tuple(ros.name), *(tuple(row.tolist()) for row in rows))
+    """Joint state with all values; a message that leaves out velocities or efforts is refused."""
+    columns = (ros.position, ros.velocity, ros.effort)
+    for column in columns:
+        check_array(column)
+    if any(len(column) != len(ros.name) for column in columns):
+        raise RefusedValueError(DecodeRefusal.JOINT_LACKS_VALUE)
+    return m.JointState(stamp_ns(ros.header), tuple(ros.name), *(tuple(column.tolist()) for column in columns))
 
 
 CONVERTERS: dict[type, tuple[Any, Any]] = {

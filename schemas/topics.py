@@ -1,6 +1,6 @@
-"""The one table of topics: key, type, rate, freshness, priority, direction, and whether it is recorded.
+"""Table of topics: key, type, rate, freshness, priority, source, and whether it is recorded.
 
-Everything else about topics derives from here: codecs, freshness limits, recording policy, documentation.
+Message types, codecs, freshness limits, recording policy and documentation derive from it.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ Priority = Literal["real_time", "interactive_high", "data"]
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """One row of the table; `{robot}` in a key stands for the robot's name."""
+    """One row of the table; `{robot}` in a key is a placeholder for the robot's name."""
 
     key: str
     type: type[m.Message]
     rate_hz: float  # 0: on demand or on change
     source: Literal["driver", "executive", "people", "simulator"]
-    fresh_s: float | None = None  # older than this is stale; None: never
+    fresh_s: float | None = None  # a message older than this is stale; None: never
     priority: Priority = "data"
     recorded: bool = True
     max_bytes: int = 4096
@@ -42,14 +42,16 @@ TOPICS: dict[str, Topic] = {
     "driver": Topic("{robot}/driver", m.DriverState, 10, "driver", STALE_S, "interactive_high"),
     "arm_request": Topic("{robot}/arm_request", m.ArmRequest, 0, "people", priority="interactive_high"),
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
-    "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # a replay's
+    "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # of a replay
     "truth": Topic("{robot}/sim/truth", soccer.SoccerGroundTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
     "plan": Topic("exec/plan", m.PlanReport, 0, "executive", max_bytes=65536),
     "plan_request": Topic("exec/plan_request", m.PlanRequest, 0, "executive", max_bytes=1 << 20),
-    "plan_answer": Topic("exec/plan_answer", m.PlanAnswer, 0, "executive", max_bytes=1 << 20),  # its shell's
+    "plan_answer": Topic(
+        "exec/plan_answer", m.PlanAnswer, 0, "executive", max_bytes=1 << 20
+    ),  # of the shell
     "subgoals": Topic("exec/subgoals", m.Subgoals, 0, "executive", max_bytes=65536),
     "refinement": Topic("exec/refinement", m.RefinementReport, 0, "executive", max_bytes=65536),
     "tick": Topic("exec/tick", m.TickReport, 10, "executive", max_bytes=65536),
@@ -57,7 +59,7 @@ TOPICS: dict[str, Topic] = {
 }
 
 
-@lru_cache(maxsize=1024)  # a tick asks for a dozen, always the same
+@lru_cache(maxsize=1024)  # a tick looks up a dozen, always the same
 def key_of(name: str, robot: str) -> str:
     """The zenoh key of a topic, e.g. `key_of("odom", "agilo") == "agilo/odom"`."""
     return TOPICS[name].key.format(robot=robot)

@@ -1,6 +1,6 @@
-"""What every simulated body offers its driver: the physics and sensors behind the driver contract.
+"""The body contract: physics and sensors of a simulated robot, behind its driver.
 
-The sim node steps a body in real time and puts its readings on the bus; lock-step runs step it as fast as they can.
+The sim node steps a body in real time and publishes its readings; lock-step runs step it as fast as possible.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ STEP_NS = 10_000_000  # every duration handed to a body is a multiple of this
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a sensor says, and when it comes out of the driver."""
+    """A measurement, and the time at which the driver publishes it."""
 
     topic: str  # name in tailor.schemas.topics
     message: Message
@@ -26,27 +26,44 @@ class Reading:
 
 
 class Body(Protocol):
-    """A robot in its world. The same seed, start and commands give the same states, bit for bit, in every process."""
+    """A robot in its world. Seed, start and commands determine all states, bit for bit, in every process.
+
+    Attributes:
+      robot: Name of the robot, as in topic keys.
+      names: Names of the start values, which `place` takes too.
+    """
 
     robot: str
-    names: tuple[str, ...]  # of the values of a start state, which `place` takes, too
+    names: tuple[str, ...]
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
-        """Put the world into a start state and its clock to 0; all noise until the next reset is drawn from `rng`."""
+        """Set the start state and body time 0.
+
+        Args:
+          rng: Source of all noise until the next reset.
+          start: Start values by name (SI units); every body has defaults for names left out.
+        """
         ...
 
     def command(self, values: tuple[float, ...]) -> None:
-        """Take a set-point that the guard has accepted, in the order of the driver's axes."""
+        """Take a set-point that the guard has passed, in the order and units of the driver's axes."""
         ...
 
     def advance(self, duration_ns: int) -> list[Reading]:
-        """Step the physics, `duration_ns` a multiple of STEP_NS; the readings that fall due, in order."""
+        """Step the physics.
+
+        Args:
+          duration_ns: A multiple of STEP_NS.
+
+        Returns:
+          The readings that fall due, in order of time.
+        """
         ...
 
     def place(self, values: Mapping[str, float]) -> None:
-        """Simulator service: move or push a thing while the clock runs; names as in `reset`."""
+        """Simulator service: move or push something while the clock runs; names as in `reset`, others stay."""
         ...
 
     def ground_truth(self) -> Message:
-        """The state of the world now, as the simulator tells it."""
+        """The true state of the world now."""
         ...

@@ -1,4 +1,4 @@
-"""What a driver declares of itself in `driver.toml`: which command it takes, and the limits that its guard enforces."""
+"""Declaration of a driver in `driver.toml`: its command, and the limits that its guard enforces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 from tailor.simnodes.guard import Limit
 
-MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command is none
+MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command protects nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +24,20 @@ class DriverSpec:
     timeout_ns: int = 300_000_000
 
 
-def declaration(robot: str) -> DriverSpec:
-    """The declaration of a robot that ships with us."""
+def shipped_driver_spec(robot: str) -> DriverSpec:
+    """The declaration of a robot in this package, e.g. `shipped_driver_spec("agilo")`."""
     return read_driver_spec(
         resources.files("tailor.simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
     )
 
 
 def read_driver_spec(text: str) -> DriverSpec:
-    """A declaration from its TOML text; raises KeyError, TypeError or ValueError where it is none, or no safe one."""
+    """The declaration in a TOML text.
+
+    Raises:
+      KeyError, TypeError: A key is missing or has a value of another type.
+      ValueError: The text is no TOML, a limit is not finite, or the timeout exceeds MAX_TIMEOUT_S.
+    """
     command = tomllib.loads(text)["command"]
     timeout_s = _number(command, "timeout_s")
     if not 0.0 < timeout_s <= MAX_TIMEOUT_S:

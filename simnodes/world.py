@@ -1,6 +1,6 @@
-"""A simulated world on its way through an episode: a body, its seeds, and the events that befall it.
+"""A simulated world during a run: a body, its seeds, and scheduled events.
 
-Knows no bus and no wall clock: the node hands it time in steps.
+It uses no bus and no wall clock: the node advances it in steps.
 """
 
 from __future__ import annotations
@@ -17,14 +17,20 @@ NOISE_STREAM = 1  # of the seed; the scenario is drawn from stream 0
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happens to the world by itself, e.g. the ball is kicked."""
+    """A scheduled change of the world, e.g. the ball is kicked."""
 
-    at_s: float  # since the first command that was obeyed after a reset
+    at_s: float  # since the first accepted command after a reset
     place: Mapping[str, float]
 
 
 class World:
-    """One body, reset and stepped; `time_ns` is its time since the last reset."""
+    """One body, reset and stepped.
+
+    Attributes:
+      body: The simulated robot and its surroundings.
+      events: Scheduled events in order of time.
+      time_ns: World time since the last reset.
+    """
 
     def __init__(self, body: Body, start: Mapping[str, float], seed: int, events: Sequence[Event] = ()) -> None:
         self.body = body
@@ -36,7 +42,12 @@ class World:
         self.reset()
 
     def reset(self, seed: int | None = None, start: Mapping[str, float] | None = None) -> None:
-        """Back to the start, with the same noise again unless another seed is given."""
+        """Return to the start.
+
+        Args:
+          seed: Seed of the noise; None: the world's own, which repeats the noise.
+          start: Start values by name, see `Body.names`; None: the world's own.
+        """
         noise = np.random.default_rng([self._seed if seed is None else seed, NOISE_STREAM])
         self.body.reset(noise, self._start if start is None else start)
         self.time_ns = 0
@@ -44,12 +55,22 @@ class World:
         self._begun_ns = None
 
     def begin(self) -> None:
-        """A command is being obeyed: the events' clock starts, if it has not."""
+        """Start the events' clock, if it is not running: a command was accepted."""
         if self._begun_ns is None:
             self._begun_ns = self.time_ns
 
     def advance(self, duration_ns: int) -> list[Reading]:
-        """Step the body by a multiple of STEP_NS; events that are due come first. Readings in order."""
+        """Apply the events that are due, then step the body.
+
+        Args:
+          duration_ns: A multiple of STEP_NS.
+
+        Returns:
+          Sensor readings in order of time.
+
+        Raises:
+          ValueError: `duration_ns` is no multiple of STEP_NS.
+        """
         if duration_ns % STEP_NS:
             raise ValueError(f"duration_ns is {duration_ns}, expected a multiple of {STEP_NS}")
         while self._begun_ns is not None and self._pending and self._due_ns(self._begun_ns) <= self.time_ns:

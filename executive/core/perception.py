@@ -9,6 +9,7 @@ from tailor.executive.core.freshness import newest_arrivals, stale_topics
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Arming, Inputs, State, Task
 from tailor.schemas.messages import DriverState
+from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import key_of
 
 
@@ -43,7 +44,7 @@ def disarmed(context: Context, state: State) -> str:
     if driver is None or stale_topics(("driver",), context.domain.robot, state.arrivals, state.now_ns):
         return f"no word from the driver of {context.domain.robot}"
     if driver.mode != "armed":
-        return f"driver is {driver.mode}" + (f": {driver.reason}" if driver.reason else "")
+        return f"driver is {driver.mode}" + (f": {reason_text(driver.reason, driver.detail)}" if driver.reason else "")
     if driver.armed_sender != context.sender:
         return f"driver obeys another executive ({driver.armed_sender[:8]})"
     return ""

@@ -10,6 +10,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import DriverState, ExecStatus
+from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import TOPICS
 
 MAX_BYTES = 256_000_000  # of memory, whatever the time span
@@ -72,4 +73,5 @@ class FailureDetector:
         before, self._modes[raw.key] = self._modes.get(raw.key), state.mode
         if before is None or state.mode == before or state.mode not in bad:
             return ""
-        return f"{raw.key}: {state.mode}: {state.reason}"
+        cause = reason_text(state.reason, state.detail) if isinstance(state, DriverState) else state.reason
+        return f"{raw.key}: {state.mode}: {cause}"

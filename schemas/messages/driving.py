@@ -53,7 +53,8 @@ class DriverState(Message):
 
     stamp_ns: int
     mode: str  # disarmed, armed, stopped, estopped
-    reason: str  # why it is in that mode
+    reason: str  # for the mode; values: simnodes/guard.py
+    detail: str  # free text about the reason
     epoch: int  # changes with every start of the driver
     armed_sender: str  # 32 hex digits, empty unless armed
     accepted: int  # commands since start

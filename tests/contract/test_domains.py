@@ -14,7 +14,7 @@ from tailor.executive.refinement.instantiation import instantiate
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import TOPICS
-from tailor.simnodes.driver_spec import declaration
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.lockstep.action_run import new_body, newest, run_action, sample_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,7 +77,7 @@ def test_symbolic_actions_have_executable_ones_with_arguments_that_exist(name):
 @pytest.mark.parametrize("name", EVERY)
 def test_driver_takes_what_the_domain_commands(name):
     domain = domains.load(name)
-    declared = declaration(domain.robot)
+    declared = shipped_driver_spec(domain.robot)
     assert declared.command_topic == domain.command_topic
     assert declared.axes == tuple(axis.name for axis in domain.axes)
     for limit, axis in zip(declared.limits, domain.axes, strict=True):

@@ -95,6 +95,6 @@ def test_things_can_be_placed_while_the_world_runs(system):
         assert "expected an object of numbers up to 1000" in call(session, "place", {"x": huge})[1]
     assert call(session, "place", {"ball": 1.0}) == (
         False,
-        "place: there is no ball, expected some of: x, y, phi, ball_x, ball_y",
+        "place: unknown name ball, expected some of: x, y, phi, ball_x, ball_y",
     )
-    assert "there is no z" in call(session, "reset", {"start": {"z": 1.0}})[1]
+    assert "unknown name z" in call(session, "reset", {"start": {"z": 1.0}})[1]

@@ -14,14 +14,14 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.msg_definitions import field_types
-from tailor.schemas.numbers import MOST
+from tailor.schemas.numbers import MAX_NUMBER
 from tailor.schemas.own import example
 from tailor.schemas.ros_time import MAX_STAMP_NS
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import MESSAGES, STANDARD
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
-FLOATS = st.floats(-MOST, MOST)
+FLOATS = st.floats(-MAX_NUMBER, MAX_NUMBER)
 PLAIN = {
     float: FLOATS,
     int: st.integers(-(2**63), 2**63 - 1),
@@ -34,7 +34,7 @@ def values(name, hint):
     if name == "stamp_ns":
         return st.integers(0, MAX_STAMP_NS)
     if name.startswith("var_"):
-        return st.floats(0.0, MOST)
+        return st.floats(0.0, MAX_NUMBER)
     if hint in PLAIN:
         return PLAIN[hint]
     item = get_args(hint)[0]

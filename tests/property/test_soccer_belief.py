@@ -10,12 +10,12 @@ from tailor.executive.domains.soccer import belief as soccer
 from tailor.schemas import messages as m
 from tailor.schemas.messages import Sample
 from tailor.schemas.messages.soccer import BallPercept
-from tailor.schemas.numbers import MOST
+from tailor.schemas.numbers import MAX_NUMBER
 
 SOCCER = domains.load("soccer")
-ANY = st.floats(-MOST, MOST) | st.sampled_from([0.0, MOST, -MOST, 5e-324])
+ANY = st.floats(-MAX_NUMBER, MAX_NUMBER) | st.sampled_from([0.0, MAX_NUMBER, -MAX_NUMBER, 5e-324])
 ANGLE = st.floats(-math.pi, math.pi)
-VARIANCE = st.floats(0.0, MOST) | st.sampled_from([0.0, 5e-324, MOST])
+VARIANCE = st.floats(0.0, MAX_NUMBER) | st.sampled_from([0.0, 5e-324, MAX_NUMBER])
 STAMP = st.integers(0, 2**62)
 READINGS = st.one_of(
     st.builds(m.Odometry, STAMP, ANY, ANY, ANGLE, ANY, ANY),

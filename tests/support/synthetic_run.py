@@ -66,8 +66,8 @@ def soccer_run(seed: int = 3) -> Iterator[Published]:
     bound = sequence.bind(choice.values).variables
     poses = [tuple(bound[4 * place + i].value for i in range(4)) for place in range(3)]
     yield Published(0, "exec/provenance", m.Provenance(0, json.dumps(order("soccer", seed))))
-    yield Published(0, "agilo/driver", m.DriverState(0, "disarmed", "started", 7, "", 0))
-    yield Published(PERIOD_NS, "agilo/driver", m.DriverState(0, "armed", "", 7, SENDER, 1))
+    yield Published(0, "agilo/driver", m.DriverState(0, "disarmed", "just started", "", 7, "", 0))
+    yield Published(PERIOD_NS, "agilo/driver", m.DriverState(0, "armed", "", "", 7, SENDER, 1))
     yield Published(2 * PERIOD_NS, "exec/plan", m.PlanReport(0, "solved", "searched", PLAN, 14, 9, ""))
     yield Published(2 * PERIOD_NS, "exec/refinement", _report(2, refinement))
     yield Published(2 * PERIOD_NS, "exec/subgoals", subgoals(2, sequence, choice, 0))

@@ -126,7 +126,7 @@ def odometry(now_ns: int, x: float, number: int, shift: float = 0.0) -> Sample:
 
 
 def driver(now_ns: int, mode: str = "armed", epoch: int = 7, sender: str = SENDER, accepted: int = 1) -> Sample:
-    state = DriverState(now_ns, mode, "", epoch, sender if mode == "armed" else "", accepted)
+    state = DriverState(now_ns, mode, "", "", epoch, sender if mode == "armed" else "", accepted)
     return Sample("agilo/driver", state, now_ns, now_ns // 1000 + 1, "cd" * 16)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.driver_spec import DriverSpec, declaration, read_driver_spec
+from tailor.simnodes.driver_spec import DriverSpec, read_driver_spec, shipped_driver_spec
 
 
 def driver_of(robot: str, file: str | None) -> DriverSpec:
@@ -16,7 +16,7 @@ def driver_of(robot: str, file: str | None) -> DriverSpec:
       UsageError: The file is missing or is no declaration.
     """
     if file is None:
-        return declaration(robot)
+        return shipped_driver_spec(robot)
     try:
         return read_driver_spec(Path(file).read_text(encoding="utf-8"))
     except OSError as error:

@@ -19,6 +19,7 @@ from tailor.runtime.processes.supervisor import ProcessSpec, Supervisor
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, ExecStatus
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.launch.own_executive import OwnExecutive
 
@@ -110,7 +111,9 @@ def _ended(supervisor: Supervisor) -> str:
 
 def _stopped(driver: DriverState) -> str:
     """Why the robot stands until people arm it again, or ""; nobody is there to do so in a run that is to end."""
-    return f"failed: the driver is {driver.mode}: {driver.reason}" if driver.mode in ("stopped", "estopped") else ""
+    if driver.mode not in ("stopped", "estopped"):
+        return ""
+    return f"failed: the driver is {driver.mode}: {reason_text(driver.reason, driver.detail)}"
 
 
 def _appeared(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop: Stop) -> bool:

@@ -20,7 +20,7 @@ from tailor.schemas.messages import ActionFinished, ArmRequest, ExecStatus, Mess
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.simnodes.body import Body, Reading
 from tailor.simnodes.driver import Driver
-from tailor.simnodes.driver_spec import declaration
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.world import Event, World
 
 CHECKS_PER_TICK = 300  # about what an idle machine grants in 60 ms
@@ -107,7 +107,7 @@ class _Link:
 
     def __init__(self, domain: Domain, world: World, transport: Transport | None) -> None:
         self._robot, self._sensors, self._world, self._transport = domain.robot, domain.sensors, world, transport
-        self._spec = declaration(domain.robot)
+        self._spec = shipped_driver_spec(domain.robot)
         self._driver = Driver(self._spec, EPOCH)
         self._sequences: Counter[str] = Counter()  # by topic, as publishers count
 

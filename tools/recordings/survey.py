@@ -11,6 +11,7 @@ from tailor.runtime.recordings.recording import Recorded, Recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, TickReport
+from tailor.schemas.reason_text import reason_text
 from tailor.schemas.typesystem import type_of
 
 
@@ -114,7 +115,7 @@ def _status(found: Survey, key: str, message: ExecStatus) -> None:
 
 def _driver(found: Survey, key: str, message: DriverState) -> None:
     if message.mode in ("stopped", "estopped") and found._mode.get(key) != message.mode:
-        found.stops.append(f"{key.partition('/')[0]}: {message.reason}")
+        found.stops.append(f"{key.partition('/')[0]}: {reason_text(message.reason, message.detail)}")
     found._mode[key] = message.mode
 
 

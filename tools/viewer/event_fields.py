@@ -11,6 +11,7 @@ from typing import Any
 
 from tailor.schemas import messages as m
 from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.schemas.reason_text import reason_text
 
 Fields = dict[str, Any]  # JSON values only
 
@@ -118,7 +119,8 @@ def tick(message: m.TickReport) -> Fields:
 def driver(message: m.DriverState) -> Fields:
     """What the driver says of itself."""
     refused = dict(zip(message.refused_reasons, message.refused_counts, strict=False))
-    return {"mode": message.mode, "reason": message.reason, "refused": refused}
+    reason = reason_text(message.reason, message.detail)
+    return {"mode": message.mode, "reason": reason, "refused": refused}
 
 
 def numbers(message: m.Message) -> dict[str, float | None]:

@@ -14,7 +14,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.instantiation import instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import JointState, Sample
-from tailor.simnodes.driver_spec import declaration
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.powercube.physical_parameters import PhysicalParameters
 
 ARM = domains.load("arm")
@@ -133,7 +133,7 @@ def test_the_next_action_begins_where_the_last_command_leads():
 
 
 def test_the_executives_limits_are_the_drivers():
-    declared = declaration("powercube")
+    declared = shipped_driver_spec("powercube")
     assert declared.command_topic == ARM.command_topic
     assert declared.axes == tuple(axis.name for axis in ARM.axes)
     assert [(limit.lower, limit.upper) for limit in declared.limits] == [(axis.lower, axis.upper) for axis in ARM.axes]

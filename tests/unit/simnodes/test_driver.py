@@ -7,8 +7,8 @@ import pytest
 
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
 from tailor.simnodes.driver import Driver, command_values
-from tailor.simnodes.driver_spec import DriverSpec, declaration
-from tailor.simnodes.guard import Limit, Mode
+from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
+from tailor.simnodes.guard import Limit, Mode, Reason
 from tailor.simnodes.services import Services
 from tailor.simnodes.world import Event, World
 from tests.support.stand_ins.body import FakeBody
@@ -55,7 +55,8 @@ def test_disarming_names_who_did_it_and_heeds_the_epoch():
     driver.take([arm(B, arm=False, epoch=6)], {}, 0)
     assert driver.guard.mode is Mode.ARMED
     driver.take([arm(B, arm=False, epoch=7)], {}, 0)
-    assert (driver.guard.mode, driver.guard.reason) == (Mode.DISARMED, "disarmed by bbbbbbbb")
+    assert (driver.guard.mode, driver.guard.reason) == (Mode.DISARMED, Reason.DISARM_REQUEST)
+    assert driver.guard.detail == "by bbbbbbbb"
 
 
 def test_the_state_is_told_at_10_hz_and_on_change():
@@ -91,7 +92,7 @@ def test_joint_commands_go_by_name():
 
 
 def test_agilo_declares_its_limits_and_the_time_out():
-    assert declaration("agilo") == DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
+    assert shipped_driver_spec("agilo") == DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
 
 
 def make_world(*events):

@@ -1,10 +1,10 @@
-"""The guard, with exact values: each test fails when the protection that it names is taken out."""
+"""The guard, with exact values: each test fails when the protection in its name is removed."""
 
 import math
 
 import pytest
 
-from tailor.simnodes.guard import TIMEOUT_NS, Guard, Limit, Mode, Refusal
+from tailor.simnodes.guard import TIMEOUT_NS, ArmRefusal, CommandRefusal, Guard, Limit, Mode, Reason
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000
@@ -18,7 +18,7 @@ def fresh():
 
 def armed(at_ns=0):
     guard = fresh()
-    assert guard.arm(at_ns, A) == ""
+    assert guard.arm(at_ns, A) is None
     return guard
 
 
@@ -33,28 +33,28 @@ def test_the_timeout_is_300_ms():
     assert TIMEOUT_NS == 300 * MS
 
 
-def test_it_comes_up_disarmed_and_refuses_commands():
+def test_the_guard_starts_disarmed_and_refuses_commands():
     guard = fresh()
     assert (guard.mode, guard.sender, guard.accepted) == (Mode.DISARMED, "", 0)
-    assert guard.command(0, A, 1, (0.4, 0.0)) is Refusal.NOT_ARMED
+    assert guard.command(0, A, 1, (0.4, 0.0)) is CommandRefusal.NOT_ARMED
     assert guard.output(0) == ZERO
-    assert guard.refused == {Refusal.NOT_ARMED: 1}
+    assert guard.refused == {CommandRefusal.NOT_ARMED: 1}
 
 
-def test_armed_it_obeys_and_counts():
+def test_an_armed_guard_passes_commands_and_counts_them():
     guard = moving()
     assert guard.command(100 * MS, A, 2, (0.2, 0.5)) is None
     assert guard.output(100 * MS) == (0.2, 0.5)
-    assert (guard.accepted, guard.mode, guard.reason, guard.sender) == (2, Mode.ARMED, "", A)
+    assert (guard.accepted, guard.mode, guard.reason, guard.sender) == (2, Mode.ARMED, Reason.NONE, A)
     assert not guard.refused
 
 
-def test_the_last_command_holds_to_the_very_end_of_the_timeout_and_no_longer():
+def test_the_last_command_holds_until_the_end_of_the_timeout_and_no_longer():
     guard = moving()
     assert guard.output(TIMEOUT_NS) == (0.4, -1.0)
     assert guard.mode is Mode.ARMED
     assert guard.output(TIMEOUT_NS + 1) == ZERO
-    assert (guard.mode, guard.reason, guard.sender) == (Mode.STOPPED, "no valid command in time", "")
+    assert (guard.mode, guard.reason, guard.sender) == (Mode.STOPPED, Reason.COMMAND_TIMEOUT, "")
 
 
 def test_the_timeout_counts_from_the_latest_valid_command():
@@ -64,7 +64,7 @@ def test_the_timeout_counts_from_the_latest_valid_command():
     assert guard.output(500 * MS + 1) == ZERO
 
 
-def test_arming_without_a_command_runs_out_too():
+def test_arming_without_a_command_times_out_too():
     guard = armed(50 * MS)
     guard.output(350 * MS)
     assert guard.mode is Mode.ARMED
@@ -72,23 +72,23 @@ def test_arming_without_a_command_runs_out_too():
     assert guard.mode is Mode.STOPPED
 
 
-def test_arming_again_does_not_prolong_a_silence():
+def test_arming_again_does_not_extend_the_timeout():
     guard = moving()
-    assert guard.arm(250 * MS, A) == ""
+    assert guard.arm(250 * MS, A) is None
     assert guard.output(300 * MS + 1) == ZERO
 
 
-def test_a_refused_command_does_not_prolong_a_silence():
+def test_a_refused_command_does_not_extend_the_timeout():
     guard = moving()
-    assert guard.command(250 * MS, A, 1, (0.1, 0.0)) is Refusal.OLD_SEQUENCE
-    assert guard.command(250 * MS, A, 2, (math.nan, 0.0)) is Refusal.NOT_FINITE
+    assert guard.command(250 * MS, A, 1, (0.1, 0.0)) is CommandRefusal.OLD_SEQUENCE
+    assert guard.command(250 * MS, A, 2, (math.nan, 0.0)) is CommandRefusal.NOT_FINITE
     assert guard.output(300 * MS + 1) == ZERO
 
 
 def test_a_command_after_the_timeout_is_refused_until_armed_again():
     guard = moving()
-    assert guard.command(300 * MS + 1, A, 2, (0.1, 0.0)) is Refusal.NOT_ARMED
-    assert guard.arm(400 * MS, A) == ""
+    assert guard.command(300 * MS + 1, A, 2, (0.1, 0.0)) is CommandRefusal.NOT_ARMED
+    assert guard.arm(400 * MS, A) is None
     assert guard.output(400 * MS) == ZERO, "arming alone does not move"
     assert guard.command(400 * MS, A, 2, (0.1, 0.0)) is None
     assert guard.output(400 * MS) == (0.1, 0.0)
@@ -104,58 +104,58 @@ def test_a_command_stamped_before_the_last_one_does_not_shorten_its_time():
 @pytest.mark.parametrize("sequence", [1, 0, -5])
 def test_a_sequence_that_does_not_rise_is_refused_and_the_old_command_stays(sequence):
     guard = moving()
-    assert guard.command(10 * MS, A, sequence, (0.1, 0.0)) is Refusal.OLD_SEQUENCE
+    assert guard.command(10 * MS, A, sequence, (0.1, 0.0)) is CommandRefusal.OLD_SEQUENCE
     assert guard.output(10 * MS) == (0.4, -1.0)
-    assert guard.refused == {Refusal.OLD_SEQUENCE: 1}
+    assert guard.refused == {CommandRefusal.OLD_SEQUENCE: 1}
     assert guard.accepted == 1
 
 
 def test_sequence_numbers_may_skip():
     guard = moving()
     assert guard.command(10 * MS, A, 90, (0.1, 0.0)) is None
-    assert guard.command(20 * MS, A, 89, (0.2, 0.0)) is Refusal.OLD_SEQUENCE
+    assert guard.command(20 * MS, A, 89, (0.2, 0.0)) is CommandRefusal.OLD_SEQUENCE
 
 
 def test_recorded_commands_are_refused_even_after_arming_again():
     guard = moving()
-    guard.disarm()
-    assert guard.arm(50 * MS, A) == ""
-    assert guard.command(50 * MS, A, 1, (0.4, -1.0)) is Refusal.OLD_SEQUENCE
+    guard.disarm(Reason.DISARM_REQUEST)
+    assert guard.arm(50 * MS, A) is None
+    assert guard.command(50 * MS, A, 1, (0.4, -1.0)) is CommandRefusal.OLD_SEQUENCE
     assert guard.output(50 * MS) == ZERO
 
 
 def test_a_refused_command_does_not_use_up_its_sequence_number():
     guard = moving()
-    assert guard.command(10 * MS, A, 9, (5.0, 0.0)) is Refusal.BEYOND_LIMIT
+    assert guard.command(10 * MS, A, 9, (5.0, 0.0)) is CommandRefusal.BEYOND_LIMIT
     assert guard.command(20 * MS, A, 2, (0.1, 0.0)) is None
 
 
 def test_another_sender_is_refused_and_has_a_sequence_of_its_own():
     guard = moving()
-    assert guard.command(10 * MS, B, 99, (0.9, 0.0)) is Refusal.OTHER_SENDER
+    assert guard.command(10 * MS, B, 99, (0.9, 0.0)) is CommandRefusal.OTHER_SENDER
     assert guard.output(10 * MS) == (0.4, -1.0)
     assert guard.command(20 * MS, A, 2, (0.3, 0.0)) is None
-    guard.disarm()
-    assert guard.arm(30 * MS, B) == ""
+    guard.disarm(Reason.DISARM_REQUEST)
+    assert guard.arm(30 * MS, B) is None
     assert guard.command(30 * MS, B, 0, (0.9, 0.0)) is None
 
 
 def test_another_sender_cannot_arm_over_the_first():
     guard = moving()
-    assert guard.arm(10 * MS, B) == "another sender is armed"
+    assert guard.arm(10 * MS, B) is ArmRefusal.OTHER_SENDER_ARMED
     assert guard.sender == A
-    assert guard.arm(300 * MS + 1, B) == "", "after the stop the robot is anyone's"
+    assert guard.arm(300 * MS + 1, B) is None, "after the stop any sender may arm"
     assert guard.sender == B
     assert guard.output(300 * MS + 1) == ZERO
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("axis", [0, 1])
-def test_what_is_not_finite_is_refused_on_every_axis(bad, axis):
+def test_a_number_that_is_not_finite_is_refused_on_every_axis(bad, axis):
     guard = moving()
     values = [0.1, 0.1]
     values[axis] = bad
-    assert guard.command(10 * MS, A, 2, values) is Refusal.NOT_FINITE
+    assert guard.command(10 * MS, A, 2, values) is CommandRefusal.NOT_FINITE
     assert guard.output(10 * MS) == (0.4, -1.0)
 
 
@@ -169,26 +169,26 @@ def test_the_limit_itself_is_legal_and_the_next_float_is_refused_not_clamped(axi
     assert guard.command(10 * MS, A, 2, values) is None
     assert guard.output(10 * MS) == tuple(values)
     values[axis] = math.nextafter(bound, math.inf if side == "upper" else -math.inf)
-    assert guard.command(20 * MS, A, 3, values) is Refusal.BEYOND_LIMIT
+    assert guard.command(20 * MS, A, 3, values) is CommandRefusal.BEYOND_LIMIT
     assert guard.output(20 * MS)[axis] == bound
 
 
 @pytest.mark.parametrize("values", [(), (0.1,), (0.1, 0.1, 0.1)])
 def test_a_command_with_another_number_of_axes_is_refused(values):
-    assert moving().command(10 * MS, A, 2, values) is Refusal.WRONG_COUNT
+    assert moving().command(10 * MS, A, 2, values) is CommandRefusal.WRONG_COUNT
 
 
-def test_estop_is_zero_at_once_and_latched():
+def test_an_estop_sets_zero_at_once_and_latches():
     guard = moving()
     guard.estop()
     assert guard.output(10 * MS) == ZERO
-    assert (guard.mode, guard.reason, guard.sender) == (Mode.ESTOPPED, "e-stop", "")
-    assert guard.command(20 * MS, A, 2, (0.1, 0.0)) is Refusal.NOT_ARMED
-    assert guard.arm(30 * MS, A) == "e-stop is latched"
-    guard.disarm()
+    assert (guard.mode, guard.reason, guard.sender) == (Mode.ESTOPPED, Reason.ESTOP, "")
+    assert guard.command(20 * MS, A, 2, (0.1, 0.0)) is CommandRefusal.NOT_ARMED
+    assert guard.arm(30 * MS, A) is ArmRefusal.ESTOP_LATCHED
+    guard.disarm(Reason.DISARM_REQUEST)
     guard.stop("motor fault")
     assert guard.mode is Mode.ESTOPPED
-    assert guard.arm(40 * MS, A, reset=True) == ""
+    assert guard.arm(40 * MS, A, reset=True) is None
     assert guard.mode is Mode.ARMED
     assert guard.output(40 * MS) == ZERO
 
@@ -196,39 +196,47 @@ def test_estop_is_zero_at_once_and_latched():
 def test_estop_works_while_disarmed():
     guard = fresh()
     guard.estop()
-    assert guard.arm(0, A) == "e-stop is latched"
+    assert guard.arm(0, A) is ArmRefusal.ESTOP_LATCHED
 
 
 def test_reset_for_another_epoch_does_not_unlatch():
     guard = moving()
     guard.estop()
-    assert guard.arm(0, A, epoch=8, reset=True) == "other epoch"
+    assert guard.arm(0, A, epoch=8, reset=True) is ArmRefusal.OTHER_EPOCH
     assert guard.mode is Mode.ESTOPPED
 
 
-def test_disarming_is_zero_at_once():
+def test_disarming_sets_zero_at_once():
     guard = moving()
-    guard.disarm("told so")
+    guard.disarm(Reason.DISARM_REQUEST, "by a person")
     assert guard.output(10 * MS) == ZERO
-    assert (guard.mode, guard.reason, guard.sender) == (Mode.DISARMED, "told so", "")
+    assert (guard.mode, guard.sender) == (Mode.DISARMED, "")
+    assert (guard.reason, guard.detail) == (Reason.DISARM_REQUEST, "by a person")
 
 
-def test_a_driver_may_stop_for_its_own_reasons():
+def test_a_driver_may_stop_for_a_fault_of_its_own():
     guard = moving()
     guard.stop("motor fault")
     assert guard.output(10 * MS) == ZERO
-    assert (guard.mode, guard.reason) == (Mode.STOPPED, "motor fault")
+    assert (guard.mode, guard.reason, guard.detail) == (Mode.STOPPED, Reason.DRIVER_FAULT, "motor fault")
 
 
-def test_arming_for_another_epoch_or_for_nobody_is_refused():
+def test_arming_clears_the_reason_of_the_last_stop():
     guard = fresh()
-    assert guard.arm(0, A, epoch=8) == "other epoch"
-    assert guard.arm(0, "") == "no sender"
+    guard.stop("motor fault")
+    assert guard.arm(0, A) is None
+    assert (guard.reason, guard.detail) == (Reason.NONE, "")
+
+
+def test_arming_for_another_epoch_or_without_a_sender_is_refused():
+    guard = fresh()
+    assert guard.arm(0, A, epoch=8) is ArmRefusal.OTHER_EPOCH
+    assert guard.arm(0, "") is ArmRefusal.NO_SENDER
     assert guard.mode is Mode.DISARMED
-    assert guard.arm(0, A, epoch=7) == ""
+    assert guard.arm(0, A, epoch=7) is None
 
 
-def test_time_that_goes_back_does_not_stop_or_prolong():
+def test_time_that_goes_back_neither_stops_nor_extends():
     guard = moving(1000 * MS)
     assert guard.output(500 * MS) == (0.4, -1.0)
     assert guard.output(1300 * MS + 1) == ZERO

@@ -9,7 +9,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.driver_spec import declaration
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.driver_check import check_driver, driver_of
 
@@ -17,11 +17,11 @@ from tailor.tools.launch.driver_check import check_driver, driver_of
 @pytest.mark.parametrize("name", domains.DOMAINS)
 def test_every_domain_fits_the_driver_of_its_robot(name):
     domain = domains.load(name)
-    check_driver(domain, declaration(domain.robot))
+    check_driver(domain, shipped_driver_spec(domain.robot))
 
 
 def test_all_mismatches_are_told_at_once():
-    driver = declaration("agilo")
+    driver = shipped_driver_spec("agilo")
     slow = dataclasses.replace(driver, command_topic="joint_cmd", limits=(Limit(-0.5, 0.5), driver.limits[1]))
     with pytest.raises(UsageError) as caught:
         check_driver(domains.load("soccer"), slow)

@@ -45,10 +45,11 @@ def test_an_arm_is_told_as_belief_values_and_never_as_a_point_on_the_plane() -> 
 
 def test_what_does_not_change_is_told_once() -> None:
     story = RunTimeline()
-    state = m.DriverState(0, "armed", "", 7, "", 0)
+    state = m.DriverState(0, "armed", "", "", 7, "", 0)
     assert len(story.tell(0.0, "agilo/driver", state)) == 1
     assert story.tell(1.0, "agilo/driver", state) == []
-    assert len(story.tell(2.0, "agilo/driver", m.DriverState(0, "stopped", "timeout", 7, "", 0))) == 1
+    stopped = m.DriverState(0, "stopped", "no valid command in time", "", 7, "", 0)
+    assert len(story.tell(2.0, "agilo/driver", stopped)) == 1
 
 
 def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -> None:

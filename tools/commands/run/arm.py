@@ -9,6 +9,7 @@ import time
 from tailor.runtime.bus.session import Session, open_client
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 
 WAIT_S = 2.0  # for the executive's status, and for the driver's state
@@ -41,7 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     if state is None:
         print(f"the driver of {arguments.robot} does not respond")
         return 1
-    print(f"{arguments.robot} is {state.mode}" + (f": {state.reason}" if state.reason else ""))
+    cause = reason_text(state.reason, state.detail)
+    print(f"{arguments.robot} is {state.mode}" + (f": {cause}" if cause else ""))
     return 0 if _done(state, request) else 1
 
 

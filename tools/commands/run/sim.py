@@ -13,7 +13,7 @@ from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.driver_spec import DriverSpec, declaration
+from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tailor.tools.cli.endpoint import configure_bus
@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
-        run_node(world, declaration(arguments.robot), session, lambda: stop.requested, arguments.speed)
+        run_node(world, shipped_driver_spec(arguments.robot), session, lambda: stop.requested, arguments.speed)
     return 0
 
 
