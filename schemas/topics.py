@@ -49,9 +49,7 @@ TOPICS: dict[str, Topic] = {
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
     "plan": Topic("exec/plan", m.PlanReport, 0, "executive", max_bytes=65536),
     "plan_request": Topic("exec/plan_request", m.PlanRequest, 0, "executive", max_bytes=1 << 20),
-    "plan_answer": Topic(
-        "exec/plan_answer", m.PlanAnswer, 0, "executive", max_bytes=1 << 20
-    ),  # of the shell
+    "plan_answer": Topic("exec/plan_answer", m.PlanAnswer, 0, "executive", max_bytes=1 << 20),  # of the shell
     "subgoals": Topic("exec/subgoals", m.Subgoals, 0, "executive", max_bytes=65536),
     "refinement": Topic("exec/refinement", m.RefinementReport, 0, "executive", max_bytes=65536),
     "tick": Topic("exec/tick", m.TickReport, 10, "executive", max_bytes=65536),
