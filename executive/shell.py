@@ -6,8 +6,8 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tailor.executive.core.asking import awaited
 from tailor.executive.core.context import PERIOD_NS, Context, check_goal
+from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import control, deliberate
 from tailor.runtime import realtime
@@ -91,7 +91,7 @@ class Shell:
 
     def _planner_answer(self, turn: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""
-        request, stamp_ns = awaited(self._state), self._context.stamp(turn.now_ns)
+        request, stamp_ns = pending_request(self._state), self._context.stamp(turn.now_ns)
         answer = self._planner.poll(request.id if request is not None else 0, stamp_ns)
         if answer is None:
             return ()

@@ -24,9 +24,9 @@ class ApproachBall:
     behind_m: float  # from the axle to the ball where an approach ends
     follow_m: float  # a ball farther off has been moved: another task, for which the executive thinks again
 
-    def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
+    def __call__(self, state: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
-        return self.go(memory, now_ns, belief, self._followed(arguments, belief.ball_xy))
+        return self.go(state, now_ns, belief, self._followed(arguments, belief.ball_xy))
 
     def _followed(self, arguments: Array, ball_xy: tuple[float, float] | None) -> Array:
         if ball_xy is None:

@@ -23,7 +23,7 @@ SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
 
 @dataclass(frozen=True, slots=True)
 class Pushing:
-    """Memory while the ball is in the rail: where on the path, the last command (m/s, rad/s), a slip to mend."""
+    """Controller state while the ball is in the rail: progress, last command (m/s, rad/s), whether the ball slips."""
 
     progress: Progress
     v: float
@@ -33,7 +33,7 @@ class Pushing:
 
 @dataclass(frozen=True, slots=True)
 class Fetching:
-    """Memory while the ball is lost."""
+    """Controller state while the ball is lost."""
 
     stage: Stage
     since_ns: int = 0  # begin of a search
@@ -71,37 +71,37 @@ class DribbleBall:
     reached_m: float = 0.05
     speed_mps: float = 0.10
 
-    def __call__(self, memory: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
+    def __call__(self, state: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; arguments are poses of the axle, not of the ball."""
         goal = tuple(arguments[XG : VG + 1].tolist())
         ball = belief.ball
         if ball is None:
-            return Control(memory, (0.0, 0.0), "failed", "the ball was never seen")
-        stage: Stage = memory.stage if isinstance(memory, Fetching) else "chase"
+            return Control(state, (0.0, 0.0), "failed", "the ball was never seen")
+        stage: Stage = state.stage if isinstance(state, Fetching) else "chase"
         if self.fetch.misses(stage, ball, now_ns):
-            return self._seek(memory, now_ns, belief, ball)
+            return self._seek(state, now_ns, belief, ball)
         ahead, left = ball.ahead - self.grip.in_rail_m, abs(ball.left)
         if math.hypot(ahead, left) > self.gone_m:
-            return Control(memory, (0.0, 0.0), "failed", "the ball got away")
-        lost = isinstance(memory, Fetching) or math.hypot(ahead, left) > self.lost_m
-        if (lost or memory is None) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
+            return Control(state, (0.0, 0.0), "failed", "the ball got away")
+        lost = isinstance(state, Fetching) or math.hypot(ahead, left) > self.lost_m
+        if (lost or state is None) and (ahead > self.seated_ahead_m or left > self.seated_aside_m):
             return self._retrieve("chase" if stage in SEEKING else stage, belief, ball)
-        if not isinstance(memory, Pushing):
-            memory = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v), belief.omega)
-        return self._push(memory, belief, ball, goal)
+        if not isinstance(state, Pushing):
+            state = Pushing(self._plan(belief.pose, belief.v, goal), max(0.0, belief.v), belief.omega)
+        return self._push(state, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
         paths = DribblePath(self.v_max_mps, self.bend_radps, self.grip.in_rail_m, self.braking_mps2)
         return Progress(paths.quickest(pose, v, goal), 0.0)
 
-    def _push(self, memory: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
+    def _push(self, state: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
         pose = belief.pose
-        progress, off = project(memory.progress, pose, 0.3)
+        progress, off = project(state.progress, pose, 0.3)
         if self._arrived(progress, belief, goal):
-            return Control(memory, (goal[3], 0.0), "done")
-        slipping = self._slips(ball, memory.slipping)
+            return Control(state, (goal[3], 0.0), "done")
+        slipping = self._slips(ball, state.slipping)
         if abs(off.aside_m) > self.off_path_m or self._missed(progress, pose, goal):
-            progress = self._plan(pose, memory.v, goal)
+            progress = self._plan(pose, state.v, goal)
         pace = self._pace(progress.path.radius)
         limit = speed_limit(progress, goal[3], pace)
         speed = max(belief.v, 0.1)
@@ -109,11 +109,11 @@ class DribbleBall:
         if slipping:
             limit = min(self.v_max_mps, limit + self.catch_up_mps)
             omega = self.chase_radps * math.atan2(ball.left, ball.ahead)
-        v = self._ramp(memory, limit)
+        v = self._ramp(state, limit)
         bound = min(self.omega_max_radps, max(0.2, self.tightest_per_m * belief.v))
         omega = max(-bound, min(bound, omega))
         if not slipping:
-            omega = self._turn(memory, (memory.v - v) / TICK_S, omega)
+            omega = self._turn(state, (state.v - v) / TICK_S, omega)
         return Control(Pushing(progress, v, omega, slipping), (v, omega))
 
     def _slips(self, ball: BallTrack, before: bool) -> bool:
@@ -126,17 +126,17 @@ class DribbleBall:
     def _pace(self, radius: float) -> Pace:
         return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking_mps2)
 
-    def _ramp(self, memory: Pushing, limit: float) -> float:
+    def _ramp(self, state: Pushing, limit: float) -> float:
         """The next commanded speed: towards the limit as fast as the ball allows."""
-        braking = min(self.braking_mps2, max(self.least_braking_mps2, self.grip.braking_mps2(memory.v, memory.omega)))
-        return max(memory.v - braking * TICK_S, min(limit, memory.v + self.speeding_up_mps2 * TICK_S))
+        braking = min(self.braking_mps2, max(self.least_braking_mps2, self.grip.braking_mps2(state.v, state.omega)))
+        return max(state.v - braking * TICK_S, min(limit, state.v + self.speeding_up_mps2 * TICK_S))
 
-    def _turn(self, memory: Pushing, braking_mps2: float, wanted: float) -> float:
+    def _turn(self, state: Pushing, braking_mps2: float, wanted: float) -> float:
         """The next commanded turning: more of it only as quickly as the ball follows."""
-        growth = min(self.yaw_radps2, self.grip.yaw_radps2(memory.v, memory.omega, braking_mps2))
+        growth = min(self.yaw_radps2, self.grip.yaw_radps2(state.v, state.omega, braking_mps2))
         up, down = growth * TICK_S, self.yaw_radps2 * TICK_S
-        left, right = (up, down) if memory.omega >= 0.0 else (down, up)
-        return max(memory.omega - right, min(memory.omega + left, wanted))
+        left, right = (up, down) if state.omega >= 0.0 else (down, up)
+        return max(state.omega - right, min(state.omega + left, wanted))
 
     def _missed(self, progress: Progress, pose: Pose, goal: tuple[float, ...]) -> bool:
         """Past the end without having arrived."""
@@ -159,14 +159,14 @@ class DribbleBall:
         dy = goal[1] - pose.y + self.grip.in_rail_m * (math.sin(goal[2]) - math.sin(pose.phi))
         return math.hypot(dx, dy)
 
-    def _seek(self, memory: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
+    def _seek(self, state: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
         """Turn, always the same way, until the ball is seen."""
-        if not (isinstance(memory, Fetching) and memory.stage in SEEKING):
-            memory = Fetching("seek left" if ball.left > 0.0 else "seek right", now_ns)
-        if now_ns - memory.since_ns > SEEKING_NS:
-            return Control(memory, (0.0, 0.0), "failed", "the ball is not to be found")
-        _, command = self.fetch(memory.stage, ball, 0.0)
-        return Control(memory, command)
+        if not (isinstance(state, Fetching) and state.stage in SEEKING):
+            state = Fetching("seek left" if ball.left > 0.0 else "seek right", now_ns)
+        if now_ns - state.since_ns > SEEKING_NS:
+            return Control(state, (0.0, 0.0), "failed", "the ball is not to be found")
+        _, command = self.fetch(state.stage, ball, 0.0)
+        return Control(state, command)
 
     def _retrieve(self, stage: Stage, belief: BallBelief, ball: BallTrack) -> Control:
         c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)

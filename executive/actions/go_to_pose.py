@@ -14,7 +14,7 @@ from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
 
-ALIGN = "align"  # the memory while it turns on the spot at its goal
+ALIGN = "align"  # controller state while the robot turns on the spot at its goal
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class GoToPose:
     deviations are taken back over `settle_m`: steered anew at the goal, a few centimetres of noise beside it would
     swing the robot round right where it is to face ahead.
 
-    Memory: None, then a `Progress` on the way that is kept, then perhaps ALIGN.
+    Controller state: None, then a `Progress` on the way that is kept, then perhaps ALIGN.
     """
 
     v_max_mps: float
@@ -53,15 +53,15 @@ class GoToPose:
     speed_mps: float = 0.10  # by which the arrival may be too fast
     crawl_mps: float = 0.10  # never slower, or it would not arrive
 
-    def __call__(self, memory: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
+    def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
         xg, yg, phig, vg = arguments[XG : VG + 1].tolist()
         pose = _seen_from(belief.pose, xg, yg, phig)
-        if self._arrived(belief, pose, vg, memory):
-            return Control(memory, (vg, 0.0), "done")
-        if self._aligns(memory, pose):
+        if self._arrived(belief, pose, vg, state):
+            return Control(state, (vg, 0.0), "done")
+        if self._aligns(state, pose):
             return Control(ALIGN, (0.0, self._turn(-pose.phi)))
-        followed = self._follow(memory, belief, pose, vg) if isinstance(memory, Progress) else None
+        followed = self._follow(state, belief, pose, vg) if isinstance(state, Progress) else None
         return followed or self._face(belief, pose, vg)
 
     def _face(self, belief: PlanarBelief, pose: Pose, vg: float) -> Control:
@@ -92,19 +92,19 @@ class GoToPose:
         pace = Pace(self.v_max_mps, bend_mps, self.braking_mps2, self.braking_mps2)
         return max(self.crawl_mps, speed_limit(way, 0.0 if stops(way.path) else vg, pace))
 
-    def _aligns(self, memory: Any, pose: Pose) -> bool:
+    def _aligns(self, state: Any, pose: Pose) -> bool:
         """Whether it has come to its goal, or past it, headed wrongly; with hysteresis against noise."""
         distance = math.hypot(pose.x, pose.y)
-        if memory == ALIGN:
+        if state == ALIGN:
             return distance < self.stay_m
         return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) > self.heading_rad
 
-    def _arrived(self, belief: PlanarBelief, pose: Pose, vg: float, memory: Any) -> bool:
+    def _arrived(self, belief: PlanarBelief, pose: Pose, vg: float, state: Any) -> bool:
         """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
         if belief.v > vg + self.speed_mps:
             return False
         distance = math.hypot(pose.x, pose.y)
-        if memory == ALIGN:
+        if state == ALIGN:
             return abs(pose.phi) < self.aligned_rad and abs(belief.omega) < self.still_radps and distance < self.stay_m
         return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) < self.heading_rad
 

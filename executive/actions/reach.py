@@ -28,7 +28,7 @@ class JointBelief(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Memory: the motion that is being followed, and what it was made for."""
+    """Controller state: the motion that is followed, and the goal for which it was planned."""
 
     goal: Joints  # angle and velocity of each joint in turn
     cubic: Cubic
@@ -46,14 +46,14 @@ class Reach:
     reached_rad: float = 0.05
     reached_radps: float = 0.25
 
-    def __call__(self, memory: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
+    def __call__(self, state: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is a velocity (rad/s) for each joint.
 
         It is done one period before the waypoint, with the command that leads there: when the next action takes over,
         the arm is where it was to be, as fast as it was to be.
         """
         goal = tuple(arguments[len(arguments) // 2 :].tolist())
-        motion = memory if isinstance(memory, Motion) and memory.goal == goal else self._begin(goal, now_ns, belief)
+        motion = state if isinstance(state, Motion) and state.goal == goal else self._begin(goal, now_ns, belief)
         if self._off_rad(motion, now_ns, belief) > self.strayed_rad:
             motion = self._begin(goal, now_ns, belief)
         if not self._arrives(motion, now_ns):

@@ -1,1 +1,1 @@
-"""step(): the executive's pure core. No clock, no bus, no random source; all three come in as arguments."""
+"""step(): the deterministic core of the executive. Clock, bus and random source stay outside."""

@@ -1,4 +1,7 @@
-"""The executive's own check of what it sends; the driver's guard checks again and shares no code with this one."""
+"""Clamps commands to the axis limits and rejects non-finite values.
+
+The driver's guard checks again; for independence the two share no code.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +16,10 @@ def at_rest(axes: tuple[Axis, ...]) -> tuple[float, ...]:
 
 
 def checked(command: tuple[float, ...], axes: tuple[Axis, ...]) -> tuple[tuple[float, ...], str]:
-    """A command that is finite and within limits, and what was wrong with it ("" if nothing but a clamp).
+    """The command clamped to the axis limits, and the cause of a rejection ("" if there is none).
 
-    Finiteness is tested first: in Python `max(-.5, min(.5, nan))` is .5, full speed ahead.
+    A rejected command is replaced by zero. Finiteness is tested first: in Python `max(-.5, min(.5, nan))` is .5, full
+    speed ahead.
     """
     zero = at_rest(axes)
     if len(command) != len(axes):

@@ -9,7 +9,7 @@ import numpy as np
 
 from tailor.executive import planning
 from tailor.executive.core.context import Context
-from tailor.executive.core.plan_finding import PlanFinding, PlanFound
+from tailor.executive.core.plan_source import PlanFound, PlanSource
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
@@ -18,38 +18,38 @@ from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.refinement import Refinement
-from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What to do: a plan, its executable actions, and values for their free parameters."""
+    """Result of a deliberation: a plan, its executable actions, and values for their free parameters."""
 
     plan: planning.Plan
     sequence: ActionSequence
     choice: Choice
-    number: int  # which deliberation it came from
-    watch: BeliefMonitor = field(compare=False, repr=False)  # tells when the sequence no longer fits the belief
+    number: int  # of its deliberation
+    watch: BeliefMonitor = field(compare=False, repr=False)  # detects that the belief left the sequence's bindings
 
 
 class Deliberation:
-    """Decides what to do from one snapshot of the belief; owned by one state, changed in place."""
+    """Decision making from one snapshot of the belief; owned by one state, changed in place."""
 
-    def __init__(self, context: Context, belief: Belief, number: int, source: PlanFound | PlanFinding) -> None:
-        """Start deciding what to do from `belief`.
+    def __init__(self, context: Context, belief: Belief, number: int, source: PlanSource) -> None:
+        """Prepare a deliberation; all work is done in `advance`.
 
         Args:
           context: Domain, models and settings.
-          belief: What parameters are instantiated from.
+          belief: The belief from which parameters are instantiated.
           number: Serial number of this deliberation; with the seed it fixes every random draw.
-          source: A plan that is known to be sound, or the way to one.
+          source: Source of its plan.
         """
         self.number = number
         self.stage: Stage = "planning"
         self.reason = ""
-        self.told: tuple[PlanFound, ...] = ()  # all that came of planning; the last one counts
+        self.source = source
+        self.plan_results: tuple[PlanFound, ...] = ()  # of the source; the last one counts
         self.sequence: ActionSequence | None = None
         self.refinement: Refinement | None = None
         self._context = context
@@ -58,29 +58,14 @@ class Deliberation:
         self._pattern: Pattern | None = None
         self._watch: BeliefMonitor | None = None
         self._assertion: Assertion | None = None
-        self._finding: PlanFinding | None = None
-        if isinstance(source, PlanFinding):
-            self._finding = source
-        else:
-            self._planned(source)
 
     @property
-    def found(self) -> PlanFound | None:
-        """The plan, or how planning has stood so far."""
-        return self.told[-1] if self.told else None
-
-    @property
-    def request(self) -> PlanRequest | None:
-        """What an external planner has been asked and has not answered yet."""
-        return self._finding.request if self._finding is not None else None
-
-    def take(self, answer: PlanAnswer) -> None:
-        """The external planner's answer."""
-        if self._finding is not None:
-            self._finding.take(answer)
+    def plan(self) -> planning.Plan | None:
+        """The plan, None if there is none yet."""
+        return self.plan_results[-1].plan if self.plan_results else None
 
     def advance(self, budget: Budget) -> None:
-        """Go on until decided, failed, or out of budget."""
+        """Continue until decided, failed, or out of budget."""
         stages = {"planning": self._plan, "asserting": self._assert, "refining": self._refine}
         while self.stage in stages:
             stage = self.stage
@@ -89,43 +74,41 @@ class Deliberation:
                 return
 
     def certify(self, budget: Budget) -> None:
-        """Once decided, prove how near the choice is to the optimum of the models."""
+        """Once decided, tighten the bound of the optimality gap: the choice against the optimum of the models."""
         if self.stage == "decided" and self.refinement is not None:
             self.refinement.certify(budget)
 
     def decision(self) -> Decision | None:
         """The best decision so far; None while there is no plan that can be executed."""
-        if self.refinement is None or self.sequence is None or self.found is None or self.found.plan is None:
+        if self.refinement is None or self.sequence is None or self.plan is None:
             return None
         choice = self.refinement.choice
         if choice is None or not choice.valid:
             return None
         assert self._watch is not None
-        return Decision(self.found.plan, self.sequence, choice, self.number, self._watch)
+        return Decision(self.plan, self.sequence, choice, self.number, self._watch)
 
     def nothing_to_do(self) -> bool:
-        """Whether the goal already holds: a plan was found and has no steps."""
-        return self.found is not None and self.found.plan is not None and not self.found.plan.steps
+        """Whether the goal already holds: the plan has no steps."""
+        return self.plan is not None and not self.plan.steps
 
     def _plan(self, budget: Budget) -> None:
-        assert self._finding is not None
-        found = self._finding.advance(budget)
-        if found is None:
+        result = self.source.advance(budget)
+        if result is None:
             return
-        if found.status == "failed":
-            self.told += (found,)
-        else:
-            self._planned(found)
-
-    def _planned(self, found: PlanFound) -> None:
-        self.told += (found,)
-        if found.plan is None:
-            self._fail(f"no plan: {found.reason or found.status}")
+        self.plan_results += (result,)
+        if result.status == "failed":  # the external planner; the built-in search follows
             return
-        if not found.plan.steps:
+        if result.plan is None:
+            self._fail(f"no plan: {result.reason or result.status}")
+            return
+        if not result.plan.steps:
             self.stage = "decided"
             return
-        self._pattern = Pattern(found.plan, self._context.domain, self._context.scenario)
+        self._instantiate(result.plan)
+
+    def _instantiate(self, plan: planning.Plan) -> None:
+        self._pattern = Pattern(plan, self._context.domain, self._context.scenario)
         sequence = self._pattern.sequence(self._belief)
         if isinstance(sequence, Failure):
             self._fail(f"cannot instantiate: {sequence.reason}")

@@ -1,4 +1,4 @@
-"""The running action: its controller's memory, its clock, and how it ends."""
+"""The running action: parameters, controller state, time limit, outcome."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tailor.executive.core.deliberation import Decision
 from tailor.executive.interfaces.action import Action, Control
 from tailor.executive.interfaces.values import Array, Belief
 
@@ -17,33 +18,50 @@ class Running:
 
     action: Action
     step: int  # id of the plan step that it serves
-    asserted: bool  # leads to an asserted subgoal: its end does not complete the plan step
+    asserted: bool  # an asserted subgoal: its end does not complete the plan step
     parameters: tuple[float, ...]
     predicted_s: float
     started_ns: int
-    memory: Any = None
+    controller_state: Any = None
 
     def elapsed_s(self, now_ns: int) -> float:
         """Seconds since the action started."""
         return (now_ns - self.started_ns) / 1e9
 
     def time_limit_s(self) -> float:
-        """When to give up: predicted duration times the action's factor, but at least its floor."""
+        """Seconds until the action fails: predicted duration times the action's factor, but at least its floor."""
         predicted = self.predicted_s if np.isfinite(self.predicted_s) else 0.0
         return max(self.action.time_limit_floor_s, self.action.time_limit_factor * predicted)
 
 
 def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running, Control]:
-    """One step of the action's controller; running out of time is a failure."""
-    control = running.action.controller(running.memory, now_ns, belief, controller_arguments(running))
+    """One step of the action's controller; an action beyond its time limit has failed."""
+    control = running.action.controller(running.controller_state, now_ns, belief, controller_arguments(running))
     if control.outcome == "running" and running.elapsed_s(now_ns) > running.time_limit_s():
         reason = f"{running.action.name} took longer than {running.time_limit_s():.1f} s"
-        control = replace(control, outcome="failed", reason=reason)
-    return replace(running, memory=control.memory), control
+        control = replace(control, outcome="failed", detail=reason)
+    return replace(running, controller_state=control.state), control
 
 
 def controller_arguments(running: Running) -> Array:
-    """What the controller takes, shape (k,), from the action's parameters."""
+    """The controller's arguments, shape (k,), from the action's parameters."""
     row = np.asarray([running.parameters], dtype=np.float64)
     arguments: Array = running.action.arguments(row)[0]
     return arguments
+
+
+def first_action(decision: Decision, now_ns: int) -> Running:
+    """The first action of a decision, started at `now_ns` with the chosen values."""
+    first = decision.sequence.actions[0]
+    values = decision.choice.values
+    variables = decision.sequence.variables
+    parameters = tuple(_value(variables[i].value, values.get(i)) for i in first.variables)
+    predicted_s = decision.choice.predicted_s[0]
+    return Running(first.action, first.step, first.asserted, parameters, predicted_s, now_ns)
+
+
+def _value(bound: float | None, chosen: float | None) -> float:
+    if bound is not None:
+        return bound
+    assert chosen is not None, "a free parameter of the next action was not chosen"
+    return chosen

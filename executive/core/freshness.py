@@ -1,4 +1,4 @@
-"""How old every input is, by the receiver's own clock; a sender's stamp never makes data fresher."""
+"""Age of every input by the receiver's clock; a sender's stamp never makes data fresher."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tailor.schemas.topics import TOPICS, key_of
 
 
 def newest_arrivals(arrivals: Mapping[str, int], samples: tuple[Sample, ...]) -> dict[str, int]:
-    """Newest arrival in ns by key, after `samples`."""
+    """Newest arrival in ns by key, `samples` included."""
     newest = dict(arrivals)
     for sample in samples:
         newest[sample.key] = max(newest.get(sample.key, sample.arrival_ns), sample.arrival_ns)

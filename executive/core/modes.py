@@ -1,4 +1,4 @@
-"""The executive's modes and the one table by which they change."""
+"""Modes of the executive and the table of their transitions."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from enum import StrEnum
 
 
 class Mode(StrEnum):
-    """What the executive is up to; only EXECUTING moves the robot."""
+    """Mode of the executive; only EXECUTING moves the robot."""
 
     DISARMED = "DISARMED"  # the driver does not obey us
-    READY = "READY"  # armed, nothing to do
+    READY = "READY"  # armed, no active goal
     EXECUTING = "EXECUTING"
-    HOLDING = "HOLDING"  # zero command, plan kept, until the reason goes away
+    HOLDING = "HOLDING"  # zero command until the cause ends; the plan is kept
     FAULT = "FAULT"  # latched: only a new goal leaves it
 
 

@@ -1,4 +1,4 @@
-"""The first part of a tick: what came in changes belief, driver, goal and mode; decided on one snapshot."""
+"""First part of a tick: inputs update belief, driver, goal and mode; the mode is decided on one snapshot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tailor.schemas.topics import key_of
 
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
-    """The state after this tick's inputs and the mode that follows from it."""
+    """The state with this tick's inputs and the mode that follows from them."""
     domain = context.domain
     backward = now_ns < state.now_ns
     now_ns = max(now_ns, state.now_ns)

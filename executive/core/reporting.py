@@ -1,4 +1,4 @@
-"""What the executive tells of itself: status each tick; plan, subgoals and the search behind them on change."""
+"""Messages about a tick's deliberation: status always; plan, subgoals and their search on change."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 
 from tailor.executive import planning
-from tailor.executive.core.action_cycle import ending
+from tailor.executive.core.action_cycle import finished_message
 from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
-from tailor.executive.core.plan_finding import PlanFound
+from tailor.executive.core.plan_source import PlanFound
 from tailor.executive.core.state import Output, State
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m
@@ -18,10 +18,10 @@ from tailor.schemas import messages as m
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What had been told before this tick's deliberation."""
+    """State of publication before this tick's deliberation."""
 
     deliberation: Deliberation | None
-    plans: int  # of that deliberation
+    plan_results: int  # of that deliberation
     plan: planning.Plan | None
     running: Running | None
     finished: int
@@ -30,11 +30,11 @@ class Published:
 
 
 def snapshot(state: State) -> Published:
-    """What the state before deliberation has told already."""
+    """State of publication of a state; taken before its deliberation is advanced."""
     deliberation = state.deliberation
     return Published(
         deliberation,
-        len(deliberation.told) if deliberation is not None else 0,
+        len(deliberation.plan_results) if deliberation is not None else 0,
         state.task.plan,
         state.task.running,
         state.task.finished,
@@ -43,29 +43,28 @@ def snapshot(state: State) -> Published:
     )
 
 
-def reports(context: Context, state: State, told: Published) -> tuple[Output, ...]:
+def reports(context: Context, state: State, published: Published) -> tuple[Output, ...]:
     """The messages about this tick, the status last."""
     outputs: list[Output] = []
-    if told.running is not None and state.task.finished > told.finished:
-        how = _overtaken(context, state, told.plan, told.running)
-        outputs.append(Output("finished", ending(context, state, told.finished, told.running, how)))
+    if published.running is not None and state.task.finished > published.finished:
+        how = _overtaken(context, state, published.plan, published.running)
+        outputs.append(Output("finished", finished_message(context, state, published.finished, published.running, how)))
     deliberation = state.deliberation
     if deliberation is not None:
-        fresh = deliberation is not told.deliberation
-        outputs.extend(
-            Output("plan", _plan(context, state, found)) for found in deliberation.told[0 if fresh else told.plans :]
-        )
-        if fresh and deliberation.request is not None:
-            outputs.append(Output("plan_request", deliberation.request))
-        if _searched(deliberation) != told.searched or fresh:
+        fresh = deliberation is not published.deliberation
+        results = deliberation.plan_results[0 if fresh else published.plan_results :]
+        outputs.extend(Output("plan", _plan(context, state, result)) for result in results)
+        if fresh and deliberation.source.request is not None:
+            outputs.append(Output("plan_request", deliberation.source.request))
+        if _searched(deliberation) != published.searched or fresh:
             outputs.extend(_refinement(context, state, deliberation))
-    if state.task.decision is not None and state.task.decision is not told.decision:
+    if state.task.decision is not None and state.task.decision is not published.decision:
         outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))
     return (*outputs, Output("status", _status(context, state)))
 
 
 def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, str]:
-    """How an action ended that a new decision has no place for: its effects hold already, or others come first."""
+    """Outcome of an action that the new decision does not begin with: its effects hold, or others come first."""
     steps = plan.steps if plan is not None and not running.asserted else ()
     action = next((step.action for step in steps if step.id == running.step), None)
     facts = state.task.facts
@@ -75,21 +74,21 @@ def _overtaken(context: Context, state: State, plan: planning.Plan | None, runni
 
 
 def _searched(deliberation: Deliberation | None) -> tuple[int, float]:
-    """How far the search for subgoals has come: evaluations, and the gap to the optimum, -1 where it is not known."""
+    """Progress of the search for subgoals: evaluations, and the optimality gap in percent, -1 if it is unknown."""
     if deliberation is None or deliberation.refinement is None:
         return 0, -1.0
     gap_pct = deliberation.refinement.gap_pct
     return deliberation.refinement.evaluations, -1.0 if gap_pct is None else gap_pct
 
 
-def _plan(context: Context, state: State, found: PlanFound) -> m.PlanReport:
-    text = planning.format_links(found.plan) if found.plan is not None else ""
+def _plan(context: Context, state: State, result: PlanFound) -> m.PlanReport:
+    text = planning.format_links(result.plan) if result.plan is not None else ""
     stamp_ns = context.stamp(state.now_ns)
-    return m.PlanReport(stamp_ns, found.status, found.way, text, found.generated, found.visited, found.reason)
+    return m.PlanReport(stamp_ns, result.status, result.way, text, result.generated, result.visited, result.reason)
 
 
 def _finite(value_s: float) -> float:
-    """A predicted cost as it is told: the bus takes no infinities, so INVALID (Algorithm 4) is told as -1."""
+    """A predicted cost for a message, which takes no infinities: INVALID (Algorithm 4) becomes -1."""
     return value_s if math.isfinite(value_s) else -1.0
 
 

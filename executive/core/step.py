@@ -1,6 +1,8 @@
-"""The executive as a pure function: `step(context, state, now_ns, inputs, budget) -> (state, outputs)`.
+"""The executive as a deterministic function: `step(context, state, now_ns, inputs, budget) -> (state, outputs)`.
 
-A shell may call its two halves itself, to send the command before it deliberates; the result is the same.
+It has no other inputs: no clock, no bus, no random source. It consumes its state: the ongoing deliberation is resumed
+in place, so that each state is used for one step only. A shell may call the two halves itself, to publish the command
+before it deliberates; the result is the same.
 """
 
 from __future__ import annotations
@@ -9,23 +11,21 @@ from dataclasses import replace
 
 from tailor.executive.core import reporting
 from tailor.executive.core.action_cycle import act
-from tailor.executive.core.asking import hear_planner
 from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation_cycle import advance_deliberation, receive_answers
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
-from tailor.executive.core.thinking import think
 from tailor.executive.interfaces.budget import Budget
 from tailor.schemas.messages import ArmRequest
 
-ARM_AGAIN_NS = 500_000_000  # a request that got no answer is repeated
+REARM_NS = 500_000_000  # a request without an effect is repeated
 
 
 def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tuple[State, tuple[Output, ...]]:
-    """Belief, mode and command: the part of a tick that always runs, and first."""
+    """First half of a tick: belief, mode, running action, command. Always runs; consumes `state`."""
     state = perceive(context, state, now_ns, inputs)
-    hear_planner(context, state, inputs)
-    acted = act(context, state)
-    state = acted.state
+    receive_answers(context, state, inputs)
+    state, finished = act(context, state)
     outputs: list[Output] = []
     if not disarmed(context, state):
         command = context.domain.message(state.command, context.stamp(state.now_ns))
@@ -33,29 +33,29 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
         outputs.append(Output("arm_request", request))
-    if acted.finished is not None:
-        outputs.append(Output("finished", acted.finished))
+    if finished is not None:
+        outputs.append(Output("finished", finished))
     return state, tuple(outputs)
 
 
 def deliberate(context: Context, state: State, budget: Budget) -> tuple[State, tuple[Output, ...]]:
-    """Planning, instantiation, assertion and refinement, as far as the budget goes; then what to tell of it."""
+    """Second half of a tick: planning to refinement within the budget, then reports. Consumes `state`."""
     before = reporting.snapshot(state)
-    state = think(context, state, budget)
+    state = advance_deliberation(context, state, budget)
     return state, reporting.reports(context, state, before)
 
 
 def step(
     context: Context, state: State, now_ns: int, inputs: Inputs, budget: Budget
 ) -> tuple[State, tuple[Output, ...]]:
-    """One tick.
+    """One tick. Deterministic; consumes its state.
 
     Args:
       context: Domain, scenario, models and settings.
-      state: The state that the last step returned; not to be used again.
+      state: The state that the last step returned, or `initial_state`; consumed, not to be used again.
       now_ns: Monotonic time of this tick.
       inputs: What arrived since the last tick.
-      budget: How long deliberation may take.
+      budget: Limit of the deliberation; equal numbers of granted checks give equal outputs.
 
     Returns:
       The next state, and the messages to publish in order: the command first.
@@ -66,22 +66,22 @@ def step(
 
 
 def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:
-    """Ask a driver that has never moved for us to arm; one that stopped or restarted waits for people."""
+    """Request to arm, for a driver that has not yet moved; a driver that stopped or restarted is armed by people."""
     arming = state.arming
     driver = arming.driver
     if driver is None or driver.mode != "disarmed" or not state.task.active:
         return state, None
-    first_time = arming.asked_epoch == 0
-    again = arming.asked_epoch == driver.epoch and state.now_ns - arming.asked_ns > ARM_AGAIN_NS
+    first_time = arming.requested_epoch == 0
+    again = arming.requested_epoch == driver.epoch and state.now_ns - arming.requested_ns > REARM_NS
     if not (first_time or (again and driver.accepted == 0)):
         return state, None
-    arming = replace(arming, asked_epoch=driver.epoch, asked_ns=state.now_ns)
+    arming = replace(arming, requested_epoch=driver.epoch, requested_ns=state.now_ns)
     request = ArmRequest(arm=True, reset=False, sender=context.sender, epoch=driver.epoch)
     return replace(state, arming=arming), request
 
 
 def _disarm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:
-    """Let the driver go, if it is ours to let go."""
+    """Request to disarm, if the driver obeys this executive."""
     driver = state.arming.driver
     if driver is None or disarmed(context, state):
         return state, None

@@ -13,32 +13,57 @@ Outcome = Literal["running", "done", "failed"]
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """What a controller answers: its new memory, the command (one float an axis), and how it stands."""
+    """Result of one controller step.
 
-    memory: Any
+    Attributes:
+      state: Controller state, passed to the next step.
+      command: One value per axis of the domain, in its order and units. The executive clamps it to the axis limits.
+      outcome: "done" and "failed" end the action in this tick.
+      detail: Cause of a failure, for people; it becomes the detail of Reason.CONTROLLER_FAILED.
+    """
+
+    state: Any
     command: tuple[float, ...]
     outcome: Outcome = "running"
-    reason: str = ""
+    detail: str = ""
 
 
 class Controller(Protocol):
-    """A pure, deterministic control program; `memory` is None at the first call."""
+    """A pure, deterministic control program, called at 10 Hz."""
 
-    def __call__(self, memory: Any, now_ns: int, belief: Belief, arguments: Array) -> Control:
-        """One 10 Hz step towards `arguments`, shape (k,): the controller's arguments, see Action.arguments."""
+    def __call__(self, state: Any, now_ns: int, belief: Belief, arguments: Array) -> Control:
+        """One control step.
+
+        Args:
+          state: Controller state of the step before; None in the first step of an action. An immutable value.
+          now_ns: Monotonic time of this tick.
+          belief: The domain's belief state, predicted to `now_ns`.
+          arguments: Values of Action.arguments, shape (k,), in the units of the domain's parameters.
+
+        Returns:
+          The next controller state, the command and the outcome. A command that is not finite fails the action.
+        """
         ...
 
 
 class SubgoalRisk(Protocol):
-    """Risk that the way to an asserted subgoal spoils the action after it: the robot hits the ball, say."""
+    """Risk that an asserted subgoal spoils the action for which it is asserted, e.g. by touching that action's ball."""
 
     def __call__(self, subgoals: Array, action: Array) -> Array:
-        """Risks, shape (n,), 0 to 1, of a subgoal action's parameters, shape (n, p), before an action's, shape (q,)."""
+        """Risk of each candidate.
+
+        Args:
+          subgoals: Parameters of the action that reaches the subgoal, shape (n, p), one row per candidate.
+          action: Parameters of the action that follows, shape (q,).
+
+        Returns:
+          Risks from 0 to 1, shape (n,).
+        """
         ...
 
 
 def unchanged(values: Array) -> Array:
-    """The values themselves: what an action asks of its models is its parameters."""
+    """Identity, for actions whose parameters are the arguments of controller and models."""
     return values
 
 
@@ -46,9 +71,18 @@ def unchanged(values: Array) -> Array:
 class Parameter:
     """A parameter of an executable action.
 
-    `argument` is the index of the PDDL argument that it belongs to (Algorithm 2, line 8), `quantity` what is asked
-    of that label ("x", "phi", ...): parameters with one label and one quantity are one variable.
-    `tolerance` is how far the believed value may move while the action runs before the executive thinks again.
+    Parameters of a plan with one label and one quantity are one variable.
+
+    Attributes:
+      name: Unique within the action.
+      argument: Index of the PDDL argument whose label the parameter refines (Algorithm 2, line 8).
+      quantity: Quantity of that label, e.g. "x" or "phi"; Domain.value is queried for it.
+      unit: "m", "rad", "m/s", "rad/s"; "m" marks a place.
+      lower: Lower end of the default range.
+      upper: Upper end of the default range.
+      periodic: Whether the ends of the default range are the same value.
+      tolerance: Change of the believed value, in `unit`, beyond which a running action is deliberated anew; None: any
+        change is accepted.
     """
 
     name: str
@@ -57,26 +91,37 @@ class Parameter:
     unit: str
     lower: float
     upper: float
-    periodic: bool = False  # wraps around at the ends of its range
-    tolerance: float | None = None  # None: it may move as it likes
+    periodic: bool = False
+    tolerance: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """An executable action: what a symbolic action turns into.
+    """An executable action, to which a symbolic action is mapped.
 
-    `arguments` maps action parameters, shape (n, p), to what controller and models take, shape (n, k): an approach
-    whose parameters name the ball becomes a pose of the robot behind it.
+    Attributes:
+      name: Executable name, e.g. "goToPose".
+      parameters: In the order in which `arguments`, `subgoal_risk` and the models expect them.
+      controller: Control program.
+      duration_model: Path in the robot's model zoo, e.g. "goToPose/duration".
+      success_model: The same for success; empty: never predicted to fail.
+      subgoal_action: Name of the action that is put before this one when it is predicted to fail (Algorithm 3).
+      subgoal_risk: Risk that the subgoal spoils this action; None: there is no such risk.
+      arguments: Maps parameters, shape (n, p), to the arguments of controller and models, shape (n, k). An example: a
+        parameter names the ball's place, the argument is the robot's pose behind it.
+      spans: `arguments` on intervals, for certificates. None: unknown, unless `arguments` is `unchanged`.
+      time_limit_factor: Times the predicted duration; a longer action fails.
+      time_limit_floor_s: Minimum of that limit, seconds.
     """
 
     name: str
     parameters: tuple[Parameter, ...]
     controller: Controller
-    duration_model: str  # "goToPose/duration": path in the robot's model zoo
-    success_model: str = ""  # empty: never predicted to fail
-    subgoal_action: str = ""  # the action put before this one when it is predicted to fail (Algorithm 3)
-    subgoal_risk: SubgoalRisk | None = None  # that the way to the subgoal spoils this action; None: it cannot
+    duration_model: str
+    success_model: str = ""
+    subgoal_action: str = ""
+    subgoal_risk: SubgoalRisk | None = None
     arguments: Callable[[Array], Array] = unchanged
-    spans: Spans | None = None  # `arguments` on intervals, for certificates; None: unknown, unless nothing is changed
-    time_limit_factor: float = 3.0  # times the predicted duration
+    spans: Spans | None = None
+    time_limit_factor: float = 3.0
     time_limit_floor_s: float = 10.0

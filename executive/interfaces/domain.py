@@ -1,4 +1,4 @@
-"""Interface that every domain implements: PDDL, executable actions, belief, meaning of the predicates."""
+"""Interface that every domain implements: PDDL, executable actions, belief, values of the predicates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,14 @@ from tailor.schemas.messages import Message, Sample
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One axis of a robot's command with its limits."""
+    """One axis of a robot's command.
+
+    Attributes:
+      name: E.g. "omega".
+      unit: E.g. "rad/s".
+      lower: Minimum of the command; lower < 0 < upper, since zero brings the robot to rest.
+      upper: Maximum of the command.
+    """
 
     name: str
     unit: str
@@ -23,13 +30,18 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A task: initial abstract state and goal in PDDL, and what its labels mean.
+    """A task: initial abstract state and goal in PDDL, and the values of its labels.
 
-    `places` gives known values by label, e.g. {"pos3": {"x": 0.0, "y": -1.0, "phi": 2.6}}.
+    Attributes:
+      name: E.g. "approach-dribble".
+      problem: PDDL text of the problem.
+      places: Known values by label and quantity, in the units of the domain's parameters (m and rad in the map frame),
+        e.g. {"pos3": {"x": 0.0, "y": -1.0, "phi": 2.6}}.
+      settings: Settings that the domain reads, by name.
     """
 
     name: str
-    problem: str  # PDDL text
+    problem: str
     places: Mapping[str, Mapping[str, float]]
     settings: Mapping[str, Any] = field(default_factory=dict)
 
@@ -56,37 +68,69 @@ class LabelQuery:
 
 
 class Domain(Protocol):
-    """All that the executive is told about a robot and its tasks. Every function is pure."""
+    """Interface that every domain implements. Every method is pure and deterministic.
 
-    name: str  # "soccer"
-    robot: str  # "agilo"
-    pddl: str  # domain text
-    actions: Mapping[str, Action]  # by executable name
-    executables: Mapping[str, str]  # PDDL action name (lower case) -> executable name
+    Attributes:
+      name: Name of the domain's folder, e.g. "soccer".
+      robot: Name of the robot; prefix of its topics' keys, e.g. "agilo".
+      pddl: PDDL text of the domain.
+      actions: Executable actions by name.
+      executables: Executable name by PDDL action name (lower case).
+      axes: Axes of the command.
+      command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
+      sensors: Topics from which the belief is estimated.
+      required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.
+      belief_names: Names of `belief_values`, with the unit in parentheses, e.g. "x (m)".
+    """
+
+    name: str
+    robot: str
+    pddl: str
+    actions: Mapping[str, Action]
+    executables: Mapping[str, str]
     axes: tuple[Axis, ...]
-    command_topic: str  # name in tailor.schemas.topics
-    sensors: tuple[str, ...]  # topic names that the belief is made from
-    required: tuple[str, ...]  # those of them that must be fresh while moving
-    belief_names: tuple[str, ...]  # names of belief_values, with units in parentheses
+    command_topic: str
+    sensors: tuple[str, ...]
+    required: tuple[str, ...]
+    belief_names: tuple[str, ...]
 
     def initial_belief(self) -> Belief:
         """The belief before the first percept."""
         ...
 
     def update(self, belief: Belief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]) -> Belief:
-        """Filter new samples (oldest first) and predict to now; `command` is the one sent last."""
+        """Estimate the belief at `now_ns`.
+
+        Args:
+          belief: Belief of the tick before.
+          now_ns: Monotonic time of this tick; never less than in the tick before.
+          samples: New samples of the `sensors`, oldest arrival first; perhaps none.
+          command: The last published command, one value per axis.
+
+        Returns:
+          The belief, predicted to `now_ns`.
+        """
         ...
 
     def ready(self, belief: Belief) -> bool:
-        """Whether the belief is good enough to plan and act on."""
+        """Whether the belief suffices to plan and act; the executive holds until it does."""
         ...
 
     def belief_values(self, belief: Belief) -> tuple[float, ...]:
-        """The belief's state variables for telemetry (Table 5)."""
+        """State variables of the belief for telemetry (Table 5): finite, in the order of `belief_names`."""
         ...
 
     def anchor(self, belief: Belief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-        """The abstract state of now: what can be observed is read off the belief, the rest remembered."""
+        """The abstract state of now.
+
+        Args:
+          belief: The belief of now.
+          scenario: Labels and settings of the task.
+          remembered: The abstract state that follows from the executed actions.
+
+        Returns:
+          `remembered`, with every observable fact replaced by its value in the belief.
+        """
         ...
 
     def value(self, query: LabelQuery) -> Interval | None:
@@ -106,9 +150,14 @@ class Domain(Protocol):
         ...
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:
-        """The command as a message."""
+        """The command as a message of the type of `command_topic`.
+
+        Args:
+          command: One finite value per axis, within its limits.
+          stamp_ns: Stamp of the message.
+        """
         ...
 
 
 class Conflict(Exception):
-    """The predicates over a label exclude each other; the instantiation has failed with this reason."""
+    """The predicates over a label exclude each other, or a value is unknown; the instantiation fails with this text."""

@@ -1,4 +1,4 @@
-"""Interfaces of action models: what the executive calls, whoever learned them."""
+"""Interfaces of action models, independent of how a model was learned. All methods are pure."""
 
 from __future__ import annotations
 
@@ -10,10 +10,17 @@ from tailor.executive.interfaces.values import Array, Columns
 
 
 class DurationModel(Protocol):
-    """Predicts how long an action takes."""
+    """Predicts the duration of an action."""
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Mean and standard deviation in seconds, shape (n,), for arguments of shape (n, k); NaN is invalid."""
+        """Predict durations.
+
+        Args:
+          arguments: Values of Action.arguments, shape (n, k).
+
+        Returns:
+          Mean and standard deviation in seconds, shape (n,) each; NaN for arguments outside the model's domain.
+        """
         ...
 
 
@@ -21,7 +28,14 @@ class SuccessModel(Protocol):
     """Predicts whether an action succeeds."""
 
     def probability(self, arguments: Array) -> Array:
-        """Probability of success, shape (n,), for arguments of shape (n, k); NaN is invalid."""
+        """Predict probabilities of success.
+
+        Args:
+          arguments: Values of Action.arguments, shape (n, k).
+
+        Returns:
+          Probabilities from 0 to 1, shape (n,); NaN for arguments outside the model's domain.
+        """
         ...
 
 
@@ -30,53 +44,72 @@ class RefinementGate(Protocol):
 
     @property
     def input_names(self) -> tuple[str, ...]:
-        """Names of the values that it is told, in order."""
+        """Names of the model's inputs, in order."""
         ...
 
     @property
     def sequences(self) -> frozenset[tuple[str, ...]]:
-        """Kinds of sequences that it was learned for: names of actions, asserted subgoals left out."""
+        """Kinds of sequences for which it was learned: names of actions without asserted subgoals."""
         ...
 
     @property
     def threshold(self) -> float:
-        """Above this risk the greedy choice is kept."""
+        """Probability from 0 to 1 above which the greedy choice is kept."""
         ...
 
     def p_slowdown(self, situations: Array) -> Array:
-        """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN is invalid."""
+        """Predict the probability that refinement costs time.
+
+        Args:
+          situations: Values of the inputs, shape (n, k).
+
+        Returns:
+          Probabilities from 0 to 1, shape (n,); NaN for situations outside the model's domain.
+        """
         ...
 
 
 class ModelBounds(Protocol):
-    """What a model says at least or at most while each of its arguments lies between two values.
+    """Bounds of a model's prediction on boxes of arguments.
 
-    Models that know theirs have them as `bounds`; without, nothing can be proven about a choice.
+    A model that has bounds offers them as attribute `bounds`. Without them no certificate is possible.
     """
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
-        """The least mean plus `k_std` standard deviations."""
+        """Lower bound of the mean plus `k_std` standard deviations.
+
+        Args:
+          lower: Lower ends of the boxes, one array per argument; they broadcast to one shape.
+          upper: Upper ends, in the same form.
+          k_std: Weight of the standard deviation, >= 0.
+
+        Returns:
+          One bound per box, in seconds for durations.
+        """
         ...
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
-        """The largest mean."""
+        """Upper bound of the mean; arguments as in `lower_bound`."""
         ...
 
     def within(self, lower: Columns, upper: Columns) -> ModelBounds:
-        """The same for arguments that lie between these: quicker to compute."""
+        """Bounds that are valid only for arguments in this box, and faster to compute."""
         ...
 
     @property
     def effort(self) -> int:
-        """Elementary comparisons that one bound takes, roughly."""
+        """Approximate number of elementary comparisons for one bound."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Models:
-    """The loaded action models of one robot, by zoo path ("goToPose/duration").
+    """The loaded action models of one robot.
 
-    `gate` advises against refinement where it would cost time; None: always refine.
+    Attributes:
+      durations: Duration models by zoo path, e.g. "goToPose/duration".
+      successes: Success models by zoo path.
+      gate: Refinement gate; None: always refine.
     """
 
     durations: Mapping[str, DurationModel]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Columns = tuple[Array, ...]  # one array a parameter or argument; they broadcast to one shape
+Columns = tuple[Array, ...]  # one array per parameter or argument; they broadcast to one shape
 Spans = Callable[[Columns, Columns], tuple[Columns, Columns]]  # lower and upper ends to lower and upper ends
 Fact = tuple[str, ...]  # a ground atom: ("robot", "pos1")
 Belief = Any  # a domain's own frozen value
@@ -18,7 +18,7 @@ Belief = Any  # a domain's own frozen value
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A closed range of values, lower <= upper; a bound value is a range of one point."""
+    """A closed range of values, lower <= upper; a range of one point binds a variable."""
 
     lower: float
     upper: float

@@ -72,8 +72,8 @@ class NotANumber:
         return np.where(arguments[:, 6] > 0, np.nan, mean), std
 
 
-def idle(memory: object, now_ns: int, belief: object, arguments: Array) -> Control:
-    return Control(memory, (0.0, 0.0), "done")
+def idle(state: object, now_ns: int, belief: object, arguments: Array) -> Control:
+    return Control(state, (0.0, 0.0), "done")
 
 
 def pose_parameters() -> tuple[Parameter, ...]:

@@ -38,17 +38,17 @@ class LineBelief:
     shift: float = 0.0  # how far the places have moved, for tests
 
 
-def slide(memory, now_ns, belief, arguments):
+def slide(state, now_ns, belief, arguments):
     """Go to arguments[1] at up to arguments[2] m/s, creeping on arrival; goals beyond 90 fail, below -5 are nan."""
     goal, speed = arguments[1], arguments[2]
     error = goal - belief.x
     if goal > 90:
-        return Control(memory, (0.0,), "failed", "too far")
+        return Control(state, (0.0,), "failed", "too far")
     if goal < -5:
-        return Control(memory, (float("nan"),))
+        return Control(state, (float("nan"),))
     if abs(error) < TOLERANCE_M:
-        return Control(memory, (CREEP_MPS,), "done")
-    return Control(memory, (float(np.sign(error) * min(speed, abs(error) * 5)),))
+        return Control(state, (CREEP_MPS,), "done")
+    return Control(state, (float(np.sign(error) * min(speed, abs(error) * 5)),))
 
 
 class LineModel:

@@ -166,26 +166,26 @@ def run_action(
     start = sampler.start(action, arguments, rng)
     belief = sampler.belief(start, rng)
     body.reset(rng, start)
-    memory: Any = None
+    state: Any = None
     failure, examples, work, trace = "", [], [], []
     truth = body.ground_truth()
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         failure = failure or sampler.failure(action, start, truth)
         examples.append(sampler.arguments_now(action, belief, arguments))
-        control = action.controller(memory, now_ns, belief, arguments)
+        control = action.controller(state, now_ns, belief, arguments)
         if traced:
             trace.append(Tick(now_ns * 1e-9, belief, truth, control.command))
         if control.outcome != "running":
             break
-        memory = control.memory
+        state = control.state
         body.command(control.command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
         before, truth = truth, body.ground_truth()
         work.append(sampler.work_j(before, truth))
     done = control.outcome == "done"
-    failure = failure or ("" if done else control.reason or "time limit")
+    failure = failure or ("" if done else control.detail or "time limit")
     ticks, work_j = np.array(examples), np.array([*work, 0.0])[: len(examples)]
     return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, work_j, tuple(trace))
 

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tailor.executive.core.asking import GRACE_S, awaited
 from tailor.executive.core.context import PlannerCommand, Settings
+from tailor.executive.core.deliberation_cycle import pending_request
+from tailor.executive.core.plan_source import GRACE_S
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
@@ -96,7 +97,7 @@ def test_the_request_is_pddl_of_the_facts_of_now_and_is_made_once():
     problem = parse_problem(request.problem, domain)
     assert set(problem.initial) == {("at", "home"), ("place", "a"), ("place", "b")}
     assert validate(parse_plan(well(request)), domain, problem) == ""
-    assert awaited(run.state) is request
+    assert pending_request(run.state) is request
 
 
 def test_nothing_moves_while_the_planner_is_asked_and_no_tick_works_for_it():
@@ -149,7 +150,7 @@ def test_an_answer_that_never_comes_does_not_hold_the_robot_for_ever():
 def test_an_answer_to_another_request_is_ignored():
     run = Run(lambda r: replace(answer_of(r, well), id=r.id + 1)).go(ticks=10)
     assert run.messages(PlanReport) == []
-    assert awaited(run.state) is not None
+    assert pending_request(run.state) is not None
 
 
 def test_a_new_goal_drops_the_request_and_makes_another():

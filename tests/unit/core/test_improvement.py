@@ -9,7 +9,7 @@ import pytest
 
 from tailor.executive import planning
 from tailor.executive.core.context import Settings
-from tailor.executive.core.improvement import better
+from tailor.executive.core.plan_reuse import better
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget

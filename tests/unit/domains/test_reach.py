@@ -83,11 +83,11 @@ def drive(start, goal):
     """Run the controller against joints that do as they are told; arguments as Table 6 has them."""
     (q0, v0), (q1, v1) = start, goal
     arguments = np.array([*np.stack((q0, v0), 1).ravel(), *np.stack((q1, v1), 1).ravel()])
-    q, v, memory, commands = np.array(q0), np.array(v0), None, []
+    q, v, state, commands = np.array(q0), np.array(v0), None, []
     for tick in range(200):
         belief = ArmBelief(tick * PERIOD_NS, tuple(q.tolist()), tuple(v.tolist()), tick * PERIOD_NS)
-        control = REACH.controller(memory, tick * PERIOD_NS, belief, arguments)
-        command, memory = np.array(control.command), control.memory
+        control = REACH.controller(state, tick * PERIOD_NS, belief, arguments)
+        command, state = np.array(control.command), control.state
         commands.append(command)
         q, v = q + 0.05 * (v + command), command
         if control.outcome != "running":
@@ -115,13 +115,13 @@ def test_commands_stay_within_the_drivers_limits(q0, v0, q1, v1):
 
 def test_an_arm_that_was_pushed_away_still_arrives():
     arguments = np.array([0.0, 0.0, 0.0, 0.0, 0.8, 0.0, 0.4, 0.0])
-    q, v, memory = np.zeros(2), np.zeros(2), None
+    q, v, state = np.zeros(2), np.zeros(2), None
     for tick in range(200):
         if tick == 10:
             q = q - 0.4
         belief = ArmBelief(tick * PERIOD_NS, tuple(q.tolist()), tuple(v.tolist()), tick * PERIOD_NS)
-        control = REACH.controller(memory, tick * PERIOD_NS, belief, arguments)
-        memory, command = control.memory, np.array(control.command)
+        control = REACH.controller(state, tick * PERIOD_NS, belief, arguments)
+        state, command = control.state, np.array(control.command)
         q, v = q + 0.05 * (v + command), command
         if control.outcome == "done":
             break
@@ -132,7 +132,7 @@ def test_an_arm_that_was_pushed_away_still_arrives():
 def test_a_new_goal_makes_a_new_motion_from_where_the_arm_is():
     belief = ArmBelief(0, (0.1, 0.2), (0.3, 0.0), 0)
     first = REACH.controller(None, 0, belief, np.array([0, 0, 0, 0, 1.0, 0, 0.5, 0]))
-    second = REACH.controller(first.memory, PERIOD_NS, belief, np.array([0, 0, 0, 0, -1.0, 0, 0.5, 0]))
-    assert second.memory.started_ns == PERIOD_NS
-    assert second.memory.cubic.angles(0.0) == (0.1, 0.2)
-    assert second.memory.goal[0] == -1.0
+    second = REACH.controller(first.state, PERIOD_NS, belief, np.array([0, 0, 0, 0, -1.0, 0, 0.5, 0]))
+    assert second.state.started_ns == PERIOD_NS
+    assert second.state.cubic.angles(0.0) == (0.1, 0.2)
+    assert second.state.goal[0] == -1.0

@@ -98,19 +98,19 @@ def test_robot_stops_turning_before_it_says_that_it_has_arrived():
 
 def test_turning_on_the_spot_and_driving_do_not_alternate():
     near = believing(x=0.2, phi=0.15)
-    assert GO(ALIGN, 0, near, goal(0.0, 0.0, 0.0)).memory == ALIGN
-    assert GO(None, 0, near, goal(0.0, 0.0, 0.0)).memory != ALIGN
+    assert GO(ALIGN, 0, near, goal(0.0, 0.0, 0.0)).state == ALIGN
+    assert GO(None, 0, near, goal(0.0, 0.0, 0.0)).state != ALIGN
 
 
 def test_way_is_kept_from_before_its_bend_to_the_goal():
     far = GO(None, 0, believing(x=-3.0, y=1.0, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
     near = GO(None, 0, believing(x=-0.6, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
-    assert far.memory is None
-    assert isinstance(near.memory, Progress)
-    kept = GO(near.memory, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
-    assert kept.memory.path == near.memory.path
-    moved = GO(near.memory, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.8, 0.0, 0.5))
-    assert moved.memory is None or moved.memory.path != near.memory.path, "the goal is elsewhere now"
+    assert far.state is None
+    assert isinstance(near.state, Progress)
+    kept = GO(near.state, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.0, 0.0, 0.5))
+    assert kept.state.path == near.state.path
+    moved = GO(near.state, 0, believing(x=-0.55, y=0.2, phi=-0.4, v=0.5), goal(0.0, 0.8, 0.0, 0.5))
+    assert moved.state is None or moved.state.path != near.state.path, "the goal is elsewhere now"
 
 
 def test_robot_passes_its_goal_at_the_speed_that_is_asked():
@@ -129,10 +129,10 @@ def test_robot_passes_its_goal_at_the_speed_that_is_asked():
 def test_commands_are_within_the_robots_limits(x, y, phi, v, omega, vg):
     for controller in (GO, SOCCER.actions["approachBall"].controller):
         control = controller(None, 0, believing(x, y, phi, v, omega), goal(0.0, 0.0, 0.0, vg))
-        for _ in range(2):  # with the memory of the first
+        for _ in range(2):  # with the state of the first
             assert 0.0 <= control.command[0] <= V_MAX_MPS
             assert abs(control.command[1]) <= OMEGA_MAX_RADPS
-            control = controller(control.memory, 0, believing(x, y, phi, v, omega), goal(0.0, 0.0, 0.0, vg))
+            control = controller(control.state, 0, believing(x, y, phi, v, omega), goal(0.0, 0.0, 0.0, vg))
 
 
 def seen(ahead, left, seen_ns=0):
@@ -141,21 +141,21 @@ def seen(ahead, left, seen_ns=0):
 
 def test_ball_is_seated_before_it_is_pushed():
     ahead = DRIBBLE(None, 0, believing(ball=seen(0.45, 0.0)), goal(2.0, 0.0, 0.0))
-    assert isinstance(ahead.memory, Fetching)
+    assert isinstance(ahead.state, Fetching)
     assert 0.0 < ahead.command[0] < 0.4
-    assert isinstance(DRIBBLE(ahead.memory, 0, believing(ball=seen(0.31, 0.0)), goal(2.0, 0.0, 0.0)).memory, Pushing)
+    assert isinstance(DRIBBLE(ahead.state, 0, believing(ball=seen(0.31, 0.0)), goal(2.0, 0.0, 0.0)).state, Pushing)
 
 
 def test_robot_backs_off_from_a_ball_beside_it():
     control = DRIBBLE(None, 0, believing(ball=seen(0.2, 0.25)), goal(2.0, 0.0, 0.0))
-    assert control.memory == Fetching("clear")
+    assert control.state == Fetching("clear")
     assert control.command == (-0.25, 0.0)
 
 
 def test_slipping_ball_is_steered_after():
-    pushing = DRIBBLE(None, 0, believing(v=0.4, ball=seen(0.31, 0.0)), goal(0.5, -1.5, -2.0)).memory
+    pushing = DRIBBLE(None, 0, believing(v=0.4, ball=seen(0.31, 0.0)), goal(0.5, -1.5, -2.0)).state
     slipping = DRIBBLE(pushing, 0, believing(v=0.4, omega=-0.6, ball=seen(0.36, 0.08)), goal(0.5, -1.5, -2.0))
-    assert slipping.memory.slipping
+    assert slipping.state.slipping
     assert slipping.command[1] > 0.0, "the path turns right, the ball left"
 
 
@@ -165,18 +165,18 @@ def test_slipping_ball_is_steered_after():
 )
 def test_dribble_fails_with_a_reason(ball, now_ns, reason):
     control = DRIBBLE(None, now_ns, believing(ball=ball), goal(2.0, 0.0, 0.0))
-    assert (control.outcome, control.reason) == ("failed", reason)
+    assert (control.outcome, control.detail) == ("failed", reason)
 
 
 def test_ball_that_should_be_in_view_and_is_not_is_looked_for_once_round():
-    hidden, memory = believing(ball=seen(0.31, 0.05)), None
+    hidden, state = believing(ball=seen(0.31, 0.05)), None
     for tick in range(100):
-        control = DRIBBLE(memory, 2 * SECOND_NS + tick * SECOND_NS // 10, hidden, goal(2.0, 0.0, 0.0))
+        control = DRIBBLE(state, 2 * SECOND_NS + tick * SECOND_NS // 10, hidden, goal(2.0, 0.0, 0.0))
         if control.outcome == "failed":
             break
-        memory = control.memory
+        state = control.state
         assert control.command == (0.0, 1.0)
-    assert control.reason == "the ball is not to be found"
+    assert control.detail == "the ball is not to be found"
     assert tick > 63, "a full turn at 1 rad/s"
 
 

@@ -1,0 +1,160 @@
+"""The life of a deliberation: start, resume, adoption of its decision. Uses what the tick's budget leaves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tailor.executive import planning
+from tailor.executive.core.context import Context
+from tailor.executive.core.deliberation import Decision, Deliberation
+from tailor.executive.core.execution import Running, first_action
+from tailor.executive.core.modes import Mode
+from tailor.executive.core.plan_reuse import Improvement, reusable
+from tailor.executive.core.plan_source import PlanSource, current_problem, request_for
+from tailor.executive.core.state import Inputs, State, Task
+from tailor.executive.interfaces.budget import Budget
+from tailor.schemas.messages import PlanAnswer, PlanRequest
+
+
+def pending_request(state: State) -> PlanRequest | None:
+    """The request without an answer; a child process that works on any other request may be killed."""
+    return state.deliberation.source.request if state.deliberation is not None else None
+
+
+def receive_answers(context: Context, state: State, inputs: Inputs) -> None:
+    """Pass this tick's answers, or a timeout, to the source of the ongoing deliberation; changes it in place."""
+    if state.deliberation is None:
+        return
+    source = state.deliberation.source
+    for sample in inputs.samples:
+        if isinstance(sample.message, PlanAnswer):
+            source.receive(sample.message)
+    source.check_timeout(context.stamp(state.now_ns))
+
+
+def advance_deliberation(context: Context, state: State, budget: Budget) -> State:
+    """Start, resume or adopt the result of the deliberation; changes `state.deliberation` in place."""
+    if state.mode is not Mode.EXECUTING:
+        return state
+    state = _with_deliberation(context, state)
+    deliberation = state.deliberation
+    if deliberation is None:
+        return state
+    deliberation.advance(budget)
+    state = _with_planner_failure(state, deliberation)
+    if deliberation.stage == "failed":
+        return _with_failure(state, deliberation.reason)
+    if deliberation.nothing_to_do():
+        finished = state.task.finished + (state.task.running is not None)
+        task = replace(state.task, active=False, result="achieved", running=None, decision=None, finished=finished)
+        return replace(state, task=task)
+    decision = deliberation.decision()
+    if decision is not None:
+        state = _adopted(context, state, decision, deliberation.stage == "decided")
+    if deliberation.stage == "decided":
+        state = _improved_plan(context, state, budget)
+        deliberation.certify(budget)  # what is left of the budget
+    return state
+
+
+def _with_deliberation(context: Context, state: State) -> State:
+    """A new deliberation if none is ongoing and there is no valid decision."""
+    task = state.task
+    ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
+    idle = task.running is None and task.decision is None
+    if ongoing or not (idle or _bindings_violated(state)):
+        return state
+    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    number = state.deliberations + 1
+    source = _source(context, state, current_problem(context, facts, task.goal), number)
+    deliberation = Deliberation(context, state.belief, number, source)
+    return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
+
+
+def _source(context: Context, state: State, problem: planning.Problem, number: int) -> PlanSource:
+    """The last plan if it can be reused, else the external planner unless it failed, else the built-in search."""
+    task = state.task
+    improvement = state.improvement if task.running is None else None
+    reused = reusable(context, problem, task.plan, task.done, improvement)
+    external = bool(context.settings.external.command) and not task.external_failed
+    request = request_for(context, problem, number, state.now_ns) if external and reused is None else None
+    return PlanSource(context, problem, state.ground, reused, request)
+
+
+def _with_planner_failure(state: State, deliberation: Deliberation) -> State:
+    """A failed external planner gets no more requests until there is a new goal."""
+    if state.task.external_failed or not any(result.status == "failed" for result in deliberation.plan_results):
+        return state
+    return replace(state, task=replace(state.task, external_failed=True))
+
+
+def _with_failure(state: State, reason: str) -> State:
+    """Without a decision a running action continues; otherwise the task has failed."""
+    if state.task.running is not None:
+        return state
+    return replace(state, task=replace(state.task, active=False, result=f"failed: {reason}", decision=None))
+
+
+def _adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:
+    """The state with a decision: at once between actions, otherwise only if it is worth a change."""
+    task = state.task
+    new_plan = task.plan is not decision.plan
+    if task.running is None:
+        return replace(state, task=_with_decision(task, decision, new_plan))
+    if task.decision is not None and decision.number == task.decision.number:
+        return _redirected_if_better(context, state, task.running, task.decision, decision)
+    if not decided:
+        return state
+    return replace(state, task=_redirected(_with_decision(task, decision, new_plan), task.running, state.now_ns))
+
+
+def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
+    return replace(task, decision=decision, plan=decision.plan, done=frozenset() if new_plan else task.done)
+
+
+def _redirected_if_better(context: Context, state: State, running: Running, old: Decision, new: Decision) -> State:
+    """A better subgoal for the running action, if it comes early and its predicted gain exceeds the threshold."""
+    settings = context.settings
+    early = running.elapsed_s(state.now_ns) <= settings.refine_while_running_s
+    if not early or old.choice.total_s - new.choice.total_s < settings.adopt_gain_s:
+        return state
+    task = replace(state.task, decision=new)
+    return replace(state, task=_redirected(task, running, state.now_ns))
+
+
+def _redirected(task: Task, running: Running, now_ns: int) -> Task:
+    """The running action with new parameters if the decision begins with it, otherwise the decision's first action."""
+    assert task.decision is not None
+    following = first_action(task.decision, now_ns)
+    if following.action.name != running.action.name or following.step != running.step:
+        return replace(task, running=following, finished=task.finished + 1)
+    predicted_s = running.elapsed_s(now_ns) + following.predicted_s
+    return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
+
+
+def _bindings_violated(state: State) -> bool:
+    """Whether a believed value to which the running sequence is bound has moved beyond its tolerance."""
+    decision = state.task.decision
+    if decision is None or state.task.running is None:
+        return False
+    return decision.watch.bindings_violated(state.belief)
+
+
+def _improved_plan(context: Context, state: State, budget: Budget) -> State:
+    """While an action runs and nothing is to be decided: search for a better plan after this action."""
+    task, running = state.task, state.task.running
+    if running is None or running.asserted or task.plan is None or not context.settings.improve_plans:
+        return state
+    action = next((step.action for step in task.plan.steps if step.id == running.step), None)
+    if action is None:
+        return state
+    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    improvement = state.improvement
+    if improvement is None or not improvement.follows(task.plan, running.step, facts):
+        expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)
+        if improvement is None or not improvement.serves(task.plan, running.step, expected):
+            left = {step.id for step in task.plan.steps} - task.done - {running.step}
+            improvement = Improvement(context, task.plan, running.step, left, expected, task.goal, state.ground)
+        improvement.note(facts)
+    improvement.advance(budget)
+    return replace(state, improvement=improvement)

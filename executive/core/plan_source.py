@@ -1,0 +1,126 @@
+"""Sources of plans: the external planner if configured, otherwise the built-in search.
+
+Every plan is validated before use. The built-in search takes over when the external planner fails.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tailor.executive import planning
+from tailor.executive.core.context import Context
+from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.values import Fact
+from tailor.schemas.messages import PlanAnswer, PlanRequest
+
+GRACE_S = 2.0  # beyond the planner's own limit; after that the process that runs it must be gone
+
+Way = Literal["searched", "suffix", "improved", "external"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanFound:
+    """Result of one source; `status` as in planning.Result, or "failed" for an external planner."""
+
+    status: str
+    way: Way
+    plan: planning.Plan | None
+    generated: int
+    visited: int
+    reason: str
+
+
+class PlanSource:
+    """Plan for one problem, from the first source that yields one; resumable from tick to tick."""
+
+    def __init__(
+        self,
+        context: Context,
+        problem: planning.Problem,
+        ground: planning.GroundCache,
+        reused: PlanFound | None = None,
+        request: PlanRequest | None = None,
+    ) -> None:
+        """Prepare the search; all work is done in `advance`.
+
+        Args:
+          context: Domain and settings.
+          problem: Problem to solve.
+          ground: Grounding of earlier searches; reused while the objects stay the same.
+          reused: A plan that is known to be sound from the problem's initial state; then nothing is searched.
+          request: Request to the external planner, published by the caller; None: built-in search only.
+        """
+        self.request = request  # until it is answered
+        self._answer: PlanAnswer | None = None
+        self._limit_s = context.settings.external.limit_s + GRACE_S
+        self._domain = context.pddl_domain
+        self._problem = problem
+        self._reused = reused
+        self._search: planning.Search | None = None
+        if reused is None:
+            self._search = planning.Search(context.pddl_domain, problem, context.settings.planner, ground)
+
+    def receive(self, answer: PlanAnswer) -> None:
+        """Keep the first answer to the pending request; ignore answers to other requests."""
+        if self.request is not None and answer.id == self.request.id and self._answer is None:
+            self._answer = answer
+
+    def check_timeout(self, stamp_ns: int) -> None:
+        """Count a request without an answer as timed out at `stamp_ns`, planner.limit_s plus GRACE_S after it."""
+        if self.request is not None and stamp_ns - self.request.stamp_ns > self._limit_s * 1e9:
+            self.receive(PlanAnswer(stamp_ns, self.request.id, "timeout", "", f"no answer within {self._limit_s:g} s"))
+
+    def advance(self, budget: Budget) -> PlanFound | None:
+        """Continue until a source has a result or the budget is spent.
+
+        Returns:
+          The result; None if there is none yet. After a failed external planner another result follows.
+        """
+        if self._search is None:
+            return self._reused
+        if self.request is not None:
+            if self._answer is None or budget.spent():
+                return None
+            self.request = None
+            return _from_answer(self._answer, self._domain, self._problem)
+        result = self._search.advance(budget)
+        return validated(result, "searched", self._domain, self._problem) if result is not None else None
+
+
+def validated(result: planning.Result, way: Way, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
+    """Result of the built-in search; without its plan if that is unsound from the problem's initial state."""
+    plan, reason = result.plan, result.reason
+    if plan is not None:
+        reason = planning.validate(plan, domain, problem)
+        plan = plan if not reason else None
+    return PlanFound(result.status, way, plan, result.generated, result.visited, reason)
+
+
+def request_for(context: Context, problem: planning.Problem, number: int, now_ns: int) -> PlanRequest:
+    """Request to the external planner, with PDDL texts of domain and problem."""
+    return PlanRequest(context.stamp(now_ns), number, context.domain.pddl, planning.format_problem(problem))
+
+
+def current_problem(context: Context, facts: frozenset[Fact], goal: str) -> planning.Problem:
+    """The scenario's problem with `facts` as its initial state; an empty goal keeps the scenario's own."""
+    problem = context.problem.with_initial(sorted(facts))
+    return problem.with_goal(goal) if goal else problem
+
+
+def _from_answer(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
+    plan = _parsed(answer, domain, problem)
+    if isinstance(plan, planning.Plan):
+        return PlanFound("solved", "external", plan, 0, 0, "")
+    return PlanFound("failed", "external", None, 0, 0, f"{plan}; our own planner takes over")
+
+
+def _parsed(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Plan | str:
+    """The plan of an answer, or why there is none."""
+    if answer.outcome != "answered":
+        return f"{answer.outcome}: {answer.reason}"
+    try:
+        plan = planning.completed(planning.parse_plan(answer.output), domain, problem)
+    except planning.PlanTextError as error:
+        return f"{answer.reason}; {error}"
+    return plan if isinstance(plan, planning.Plan) else f"its plan is unsound: {plan}"
