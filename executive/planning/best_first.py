@@ -1,6 +1,6 @@
-"""A* through plan space, with several flaw orders that take turns, each with a queue of its own.
+"""A* through plan space with several flaw orders in round robin, each with its own queue.
 
-Source: Younes & Simmons, JAIR 20 (2003), section 4.4. No closed list: two ways to one plan count twice.
+Source: Younes & Simmons, JAIR 20 (2003), section 4.4. No closed list: a plan that is reached twice counts twice.
 """
 
 from __future__ import annotations
@@ -12,82 +12,83 @@ from dataclasses import dataclass, field
 from typing import Any, Generic
 
 from tailor.executive.planning.plan_space import P, PlanSpace
-from tailor.executive.planning.plans.plan import Result, dead_end, unreachable
+from tailor.executive.planning.plans.plan import Result
+from tailor.executive.planning.results import goal_unreachable, search_exhausted
 from tailor.executive.planning.settings import FlawOrder, Settings
 
-FIRST_TURN = 1000  # plans that a flaw order has generated when the next one's turn comes; doubles with every round
+INITIAL_QUOTA = 1000  # plans that each flaw order generates in the first round; doubles with every round
 
 MAX_ENTRIES = 40_000_000  # of the orderings of a queue's plans, 10 to 20 bytes each: half a gigabyte, seldom more
 
-Ranked = tuple[Any, ...]  # a rank with its plan as one more item: one flat tuple is compared faster than two nested
+Ranked = tuple[Any, ...]  # a rank with its plan as last item: one flat tuple is compared faster than two nested
 
 
 @dataclass(slots=True)
 class _Queue:
-    """The plans that wait for one flaw order."""
+    """Plans queued for one flaw order."""
 
     order: int
     limit: float
     plans: list[Ranked] = field(default_factory=list)
     generated: int = 0
 
-    def exhausted(self) -> bool:
-        """Whether the order has generated all that it may."""
+    def is_exhausted(self) -> bool:
+        """Whether the flaw order has generated as many plans as its own limit allows."""
         return self.generated >= self.limit
 
 
 class BestFirst(Generic[P]):
-    """The state of one search; `generated` and `visited` count plans as VHPOP does."""
+    """The state of one A* search; `generated` and `visited` count plans as VHPOP does."""
 
     def __init__(self, space: PlanSpace[P], settings: Settings) -> None:
         self._space = space
         self._limit = settings.node_limit
-        self._steps = settings.step_limit
-        self._too_long = False  # whether a plan was left out for its length: then running dry proves nothing
+        self._step_limit = settings.step_limit
+        self._pruned = False  # whether a plan was dropped for its length: an empty queue then proves nothing
         self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
         self.generated = 0
         self.visited = 0
 
     def run(self) -> Iterator[Result | None]:
-        """Works on one plan per iteration; yields None until the result."""
+        """Refines one plan per iteration; yields None until the result."""
         start = self._space.initial()
         rank = self._space.rank(start, 0)
         if rank is None:
-            yield unreachable()
+            yield goal_unreachable()
             return
         limits = [math.inf if order.limit is None else order.limit for order in self._orders]
         queues = [_Queue(n, limit, [(*rank, start)]) for n, limit in enumerate(limits)]
-        turn = FIRST_TURN
+        quota = INITIAL_QUOTA
         while queues:
             for queue in list(queues):
-                yield from self._work(queue, turn if len(queues) > 1 else math.inf)
-                if queue.exhausted():
+                yield from self._work(queue, quota if len(queues) > 1 else math.inf)
+                if queue.is_exhausted():
                     queues.remove(queue)
-            turn *= 2
-        yield self._limited("every flaw order has reached its limit of generated plans")
+            quota *= 2
+        yield self._limit_reached("every flaw order has reached its limit of generated plans")
 
-    def _work(self, queue: _Queue, turn: float) -> Iterator[Result | None]:
-        """Works with one flaw order until it has generated as many plans as its turn allows."""
+    def _work(self, queue: _Queue, quota: float) -> Iterator[Result | None]:
+        """Refines plans with one flaw order until it has generated its quota."""
         space, plans = self._space, queue.plans
-        if queue.generated == 0:  # its first turn: the initial plan counts for every order that sets to work
+        if queue.generated == 0:  # first round: the initial plan counts once per flaw order that starts
             queue.generated = 1
             self.generated += 1
-        end = min(queue.limit, turn)
+        end = min(queue.limit, quota)
         while queue.generated < end:
             if not plans:
-                yield dead_end(self._too_long, self._steps, self.generated, self.visited)
+                yield search_exhausted(self._pruned, self._step_limit, self.generated, self.visited)
                 return
             if self.generated >= self._limit:
-                yield self._limited(f"{self._limit} plans generated")
+                yield self._limit_reached(f"{self._limit} plans generated")
                 return
             plan: P = heapq.heappop(plans)[-1]
             if len(plans) * plan.orderings.entries > MAX_ENTRIES:  # the others are about as large
-                yield self._limited("the plans that wait take too much memory")
+                yield self._limit_reached("the queued plans take too much memory")
                 return
-            if len(plan.steps) > self._steps:
-                self._too_long = True
+            if len(plan.steps) > self._step_limit:
+                self._pruned = True
                 continue
-            if plan.open is None and plan.threats is None and space.complete(plan):
+            if plan.open is None and plan.threats is None and space.is_complete(plan):
                 yield Result("solved", space.extract(plan), "", self.generated, self.visited)
                 return
             self.visited += 1
@@ -95,7 +96,7 @@ class BestFirst(Generic[P]):
             yield None
 
     def _push(self, children: list[P], plans: list[Ranked]) -> int:
-        """Pushes the plans that a solution may come of; returns how many."""
+        """Pushes the plans of finite rank; returns their number."""
         rank, number = self._space.rank, self.generated
         for child in children:
             ranked = rank(child, number)
@@ -106,5 +107,5 @@ class BestFirst(Generic[P]):
         self.generated = number
         return pushed
 
-    def _limited(self, reason: str) -> Result:
+    def _limit_reached(self, reason: str) -> Result:
         return Result("limit", None, reason, self.generated, self.visited)

@@ -1,4 +1,7 @@
-"""IDA*: depth first up to a bound on the first quantity of the rank, which rises to the least value beyond it."""
+"""IDA*: depth-first search up to a bound on the first quantity of the rank.
+
+When a round is exhausted, the bound rises to the least value beyond it.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,15 @@ from typing import Generic
 
 from tailor.executive.planning.flaws.ranking import Rank
 from tailor.executive.planning.plan_space import P, PlanSpace
-from tailor.executive.planning.plans.plan import Result, dead_end, unreachable
+from tailor.executive.planning.plans.plan import Result
+from tailor.executive.planning.results import goal_unreachable, search_exhausted
 from tailor.executive.planning.settings import Settings
 
 
 class Deepening(Generic[P]):
-    """The state of one IDA* search; it needs no queue, only the path that it is on, but generates plans again.
+    """The state of one IDA* search: a stack instead of a queue; every round generates the plans again.
 
-    Flaw orders follow one another: the next begins when the one before has reached its limit.
+    Flaw orders follow one another: the next starts when the one before has reached its limit.
     """
 
     def __init__(self, space: PlanSpace[P], settings: Settings) -> None:
@@ -23,14 +27,14 @@ class Deepening(Generic[P]):
         self._settings = settings
         self.generated = 1
         self.visited = 0
-        self._too_long = False
+        self._pruned = False
 
     def run(self) -> Iterator[Result | None]:
-        """Works on one plan per iteration; yields None until the result."""
+        """Refines one plan per iteration; yields None until the result."""
         start = self._space.initial()
         rank = self._space.rank(start, 0)
         if rank is None:
-            yield unreachable()
+            yield goal_unreachable()
             return
         for number, order in enumerate(self._settings.flaw_orders):
             limit = self.generated + order.limit if order.limit is not None else math.inf
@@ -48,7 +52,7 @@ class Deepening(Generic[P]):
                 if self.generated >= limit:
                     return
                 _, plan = stack.pop()
-                if plan.open is None and plan.threats is None and self._space.complete(plan):
+                if plan.open is None and plan.threats is None and self._space.is_complete(plan):
                     yield Result("solved", self._space.extract(plan), "", self.generated, self.visited)
                     return
                 self.visited += 1
@@ -59,17 +63,17 @@ class Deepening(Generic[P]):
                         stack.append(other)
                 yield None
             bound = beyond
-        yield dead_end(self._too_long, self._settings.step_limit, self.generated, self.visited)
+        yield search_exhausted(self._pruned, self._settings.step_limit, self.generated, self.visited)
 
     def _children(self, plan: P, order: int) -> list[tuple[Rank, P]]:
-        """The children with their ranks, the best last: it is worked on first."""
+        """The children with their ranks, the best last: it is refined first."""
         children = []
         for child in self._space.refine(plan, order):
             rank = self._space.rank(child, self.generated)
             if rank is None:
                 continue
             if len(child.steps) > self._settings.step_limit:
-                self._too_long = True
+                self._pruned = True
                 continue
             children.append((rank, child))
             self.generated += 1

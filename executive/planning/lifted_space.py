@@ -1,4 +1,4 @@
-"""The plans of a lifted search as a plan space, and their words when they are done."""
+"""Plan space of a lifted task."""
 
 from __future__ import annotations
 
@@ -33,24 +33,24 @@ class LiftedSpace:
         self.rank = self._ranking.rank
 
     def initial(self) -> LiftedPlan:
-        """The goal as open conditions."""
+        """See `PlanSpace`: the goal as open conditions."""
         return initial_plan(self._task)
 
-    def complete(self, plan: LiftedPlan) -> bool:
-        """Whether there is an object for every variable."""
+    def is_complete(self, plan: LiftedPlan) -> bool:
+        """See `PlanSpace`: whether there is an object for every variable."""
         return plan.bindings.completed() is not None
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
-        """Chooses a flaw and mends it in every way; nothing is left to do for bindings that cannot be completed."""
+        """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
         if plan.open is None and plan.threats is None:
             return []
-        flaw = self._orders[order].choose(plan)
+        flaw = self._orders[order].select(plan)
         if isinstance(flaw, LiftedCondition):
             return refine_condition(self._task, plan, flaw)
         return refine_threat(self._task, plan, flaw)
 
     def extract(self, plan: LiftedPlan) -> Plan:
-        """The plan in words, with the lines that VHPOP prints about its bindings."""
+        """See `PlanSpace`; the bindings are lines as VHPOP prints them."""
         task, bindings = self._task, plan.bindings.completed()
         assert bindings is not None
         names = tuple(

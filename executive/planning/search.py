@@ -1,4 +1,4 @@
-"""One planning problem from grounding to result: resumable, one budget check per plan worked on."""
+"""Resumable search for a plan: grounding, then plan-space search, with one budget check per refined plan."""
 
 from __future__ import annotations
 
@@ -12,38 +12,40 @@ from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.deepening import Deepening
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import make_task
-from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, world_of
+from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, static_world
+from tailor.executive.planning.ground_space import GroundSpace
 from tailor.executive.planning.lifted.task import lifted_task
 from tailor.executive.planning.lifted_space import LiftedSpace
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plan_space import GroundSpace, P, PlanSpace
+from tailor.executive.planning.plan_space import P, PlanSpace
 from tailor.executive.planning.plans.plan import Result
 from tailor.executive.planning.settings import DEFAULT, Settings
 
 
 class GroundCache:
-    """Keeps the last grounding, which serves again while domain, objects and static facts stand."""
+    """Keeps the last grounding for reuse while domain, objects and static facts are unchanged."""
 
     def __init__(self) -> None:
+        """Starts empty; `Search` fills it."""
         self.last: GroundActions | None = None
 
 
 class Search:
-    """A search for a plan, advanced by as much as each tick can spare."""
+    """A search for a plan of one problem, advanced in portions of any size."""
 
     def __init__(
         self, domain: Domain, problem: Problem, settings: Settings = DEFAULT, ground: GroundCache | None = None
     ) -> None:
-        """Prepares; all work is done in `advance`.
+        """Stores the problem; all work is done in `advance`.
 
         Args:
-          domain: The problem's domain.
-          problem: What to solve.
-          settings: Rankings, flaw orders, limits.
-          ground: Hand in the same one when replanning: grounding is skipped while the world stands.
+          domain: The problem's domain; must equal `problem.domain`.
+          problem: Initial state and goal.
+          settings: Rankings, flaw orders, limits, random seed.
+          ground: Cache to share between searches: replanning skips grounding while static facts are unchanged.
         """
-        assert problem.domain == domain, "the problem is of another domain"
+        assert problem.domain == domain, "the problem belongs to another domain"
         self._problem = problem
         self._settings = settings
         self._cache = ground if ground is not None else GroundCache()
@@ -53,11 +55,20 @@ class Search:
 
     @property
     def counts(self) -> tuple[int, int]:
-        """Plans generated and visited so far."""
+        """Numbers of plans generated and visited so far."""
         return (self._algorithm.generated, self._algorithm.visited) if self._algorithm else (0, 0)
 
     def advance(self, budget: Budget) -> Result | None:
-        """Goes on until there is a result or the budget is spent (None: call again later)."""
+        """Continues the search until it ends or the budget is spent.
+
+        Deterministic for equal problem and settings, however the work is divided among calls.
+
+        Args:
+          budget: Checked once per refined plan, and once per 64 bindings while grounding.
+
+        Returns:
+          The result, and the same one at every later call; None if the budget was spent first: call again.
+        """
         while self._result is None and not budget.spent():
             self._result = next(self._work)
         return self._result
@@ -89,8 +100,8 @@ class Search:
         yield from algorithm.run()
 
     def _ground(self) -> Iterator[None]:
-        """Grounds the problem's world unless the cache has it."""
-        world, tick_s = world_of(self._problem), self._settings.tolerance_s
+        """Grounds the problem unless the cached grounding fits."""
+        world, tick_s = static_world(self._problem), self._settings.tolerance_s
         last = self._cache.last
         if last is not None and last.world == world and last.tick_s == tick_s:
             return

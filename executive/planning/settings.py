@@ -1,4 +1,4 @@
-"""What a user may choose about the search, in VHPOP's words."""
+"""Settings of a search, named as VHPOP names them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MIN_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's boun
 
 @dataclass(frozen=True, slots=True)
 class FlawOrder:
-    """A flaw selection order by name or notation, and how many plans it may generate (None: no limit of its own)."""
+    """A flaw selection order by name or notation, with its own limit of generated plans (None: no limit)."""
 
     text: str
     limit: int | None = None
@@ -23,12 +23,25 @@ class FlawOrder:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """All options of a search; a wrong one raises `UsageError` when the settings are made.
+    """All options of a search.
 
-    An empty `rankings` is ADDR/ADDR_WORK/BUC/LIFO, or ADDR/MAKESPAN/LIFO when the problem's metric is the makespan.
-    Several flaw orders take turns (round robin). `weight` is of the heuristic against the cost of the steps.
-    `node_limit` bounds the plans generated, `step_limit` their steps, `ground_limit` the bindings that grounding
-    tries; `tolerance_s` is one tick of a durative plan.
+    Attributes:
+      rankings: Compared from left to right, smallest first. Empty: ADDR/ADDR_WORK/BUC/LIFO, or ADDR/MAKESPAN/LIFO if
+        the problem's metric is the makespan.
+      flaw_orders: One or more; several are used in round robin.
+      search: A* ("A") or IDA* ("IDA").
+      ground: Plan with ground actions; False: with variables (lifted).
+      weight: Weight of the heuristic against the cost of the steps, finite and at least 0.
+      action_cost: Cost of a step: 1, its duration in seconds, or its duration relative to the shortest action.
+      node_limit: Maximum number of generated plans.
+      step_limit: Maximum number of steps in a plan.
+      ground_limit: Maximum number of bindings that grounding tries.
+      tolerance_s: One tick of a durative plan, in [1e-6, 1000] s.
+      seed: Random seed, at least 0.
+      random_open_conditions: Open an action's conditions in random order.
+
+    Raises:
+      UsageError: An option is out of its range.
     """
 
     rankings: tuple[str, ...] = ()
@@ -68,7 +81,7 @@ MATCHING = Settings(DEFAULT_RANKINGS, (FlawOrder("MW-Loc"),))  # the reference's
 
 
 def rankings_for(settings: Settings, metric: str) -> tuple[str, ...]:
-    """The rankings that the settings name, or those that go with the problem's metric."""
+    """The rankings of the settings, or the default rankings of the problem's metric."""
     if settings.rankings:
         return settings.rankings
     return MAKESPAN_RANKINGS if metric == "makespan" else DEFAULT_RANKINGS

@@ -198,7 +198,7 @@ def test_a_search_ends_in_a_limit_before_its_waiting_plans_fill_the_memory(monke
     assert Search(domain, problem).advance(CheckBudget(10_000)).status == "solved"
     monkeypatch.setattr(best_first, "MAX_ENTRIES", 2000)
     result = Search(domain, problem).advance(CheckBudget(10_000))
-    assert (result.status, result.reason) == ("limit", "the plans that wait take too much memory")
+    assert (result.status, result.reason) == ("limit", "the queued plans take too much memory")
 
 
 def test_a_message_stays_short_whatever_the_file_says():

@@ -25,7 +25,7 @@ T_contra = TypeVar("T_contra", contravariant=True)
 class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
     """What flaw orders ask about the flaws of a plan."""
 
-    def separable(self, plan: P_contra, threat: T_contra) -> bool:
+    def is_separable(self, plan: P_contra, threat: T_contra) -> bool:
         """Whether separation may mend a threat."""
         ...
 
@@ -37,19 +37,19 @@ class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
         """Whether no action touches the condition's predicate."""
         ...
 
-    def unsafe(self, plan: P_contra, condition: C_contra) -> bool:
+    def is_unsafe(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether some step may come before the consumer and undo the condition."""
         ...
 
-    def condition_choices(self, plan: P_contra, condition: C_contra) -> int:
+    def count_condition_refinements(self, plan: P_contra, condition: C_contra) -> int:
         """The number of ways to achieve a condition."""
         ...
 
-    def threat_choices(self, plan: P_contra, threat: T_contra) -> int:
+    def count_threat_refinements(self, plan: P_contra, threat: T_contra) -> int:
         """The number of ways to mend a threat."""
         ...
 
-    def by_new_step(self, plan: P_contra, condition: C_contra) -> bool:
+    def has_new_achiever(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether a new step can achieve the condition."""
         ...
 
@@ -57,13 +57,13 @@ class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
         """The heuristic's estimate without reuse of steps."""
         ...
 
-    def provided(self, plan: P_contra, condition: C_contra) -> bool:
+    def has_old_achiever(self, plan: P_contra, condition: C_contra) -> bool:
         """Whether a step of the plan may already achieve the condition."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
-class _Choice(Generic[P, C, T]):
+class _PreparedCriterion(Generic[P, C, T]):
     """A criterion with what it asks at every plan worked out once."""
 
     criterion: Criterion
@@ -85,9 +85,9 @@ class FlawSelection(Generic[P, C, T]):
         self._rng = rng
         self._choices = tuple(self._prepared(criterion) for criterion in criteria)
 
-    def _prepared(self, criterion: Criterion) -> _Choice[P, C, T]:
+    def _prepared(self, criterion: Criterion) -> _PreparedCriterion[P, C, T]:
         types = criterion.types
-        return _Choice(
+        return _PreparedCriterion(
             criterion,
             self._threat_key(criterion),
             self._condition_key(criterion),
@@ -97,7 +97,7 @@ class FlawSelection(Generic[P, C, T]):
             types <= {"n", "s"},
         )
 
-    def choose(self, plan: P) -> C | T:
+    def select(self, plan: P) -> C | T:
         """The flaw of a plan that has one."""
         for choice in self._choices:
             threats = [] if choice.no_threat else self._threats(plan, choice)
@@ -106,7 +106,7 @@ class FlawSelection(Generic[P, C, T]):
                 return self._best(plan, choice, threats, conditions)
         raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
 
-    def _best(self, plan: P, choice: _Choice[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
+    def _best(self, plan: P, choice: _PreparedCriterion[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
         """The flaw with the smallest key, of equals the newest."""
         best: C | T = threats[0] if threats else conditions[0]
         if len(threats) + len(conditions) == 1:
@@ -126,16 +126,16 @@ class FlawSelection(Generic[P, C, T]):
                 best, smallest = condition, key
         return best
 
-    def _threats(self, plan: P, choice: _Choice[P, C, T]) -> list[T]:
+    def _threats(self, plan: P, choice: _PreparedCriterion[P, C, T]) -> list[T]:
         """The threats that a criterion applies to."""
         threats: list[T] = cells_of(plan.threats)
         if choice.any_threat or not threats:
             return threats
         measures, types, limit = self._measures, choice.criterion.types, choice.criterion.limit
         if not {"n", "s"} <= types:
-            threats = [threat for threat in threats if measures.separable(plan, threat) == ("s" in types)]
+            threats = [threat for threat in threats if measures.is_separable(plan, threat) == ("s" in types)]
         if limit is not None:
-            threats = [threat for threat in threats if measures.threat_choices(plan, threat) <= limit]
+            threats = [threat for threat in threats if measures.count_threat_refinements(plan, threat) <= limit]
         return threats
 
     def _conditions(self, plan: P, criterion: Criterion) -> list[C]:
@@ -149,7 +149,7 @@ class FlawSelection(Generic[P, C, T]):
             else:
                 conditions = [condition for condition in conditions if measures.step(condition) == local]
         if limit is not None:
-            conditions = [c for c in conditions if measures.condition_choices(plan, c) <= limit]
+            conditions = [c for c in conditions if measures.count_condition_refinements(plan, c) <= limit]
         return conditions
 
     def _is(self, plan: P, condition: C, types: frozenset[str], local: int | None) -> bool:
@@ -157,13 +157,13 @@ class FlawSelection(Generic[P, C, T]):
         measures = self._measures
         return (
             (local is not None and measures.step(condition) == local)
-            or ("u" in types and measures.unsafe(plan, condition))
+            or ("u" in types and measures.is_unsafe(plan, condition))
             or ("t" in types and measures.static(condition))
         )
 
     # --- which comes first: the smallest key -----------------------------------------------------
     def _threat_key(self, criterion: Criterion) -> Callable[[P, T], float]:
-        choices = self._measures.threat_choices
+        choices = self._measures.count_threat_refinements
         keys: dict[str, Callable[[P, T], float]] = {
             "LR": choices,
             "MR": lambda plan, threat: -choices(plan, threat),
@@ -177,10 +177,10 @@ class FlawSelection(Generic[P, C, T]):
             "LIFO": lambda plan, condition: 0,
             "FIFO": lambda plan, condition: 0,
             "R": lambda plan, condition: float(self._rng.random()),
-            "LR": measures.condition_choices,
-            "MR": lambda plan, condition: -measures.condition_choices(plan, condition),
-            "NEW": lambda plan, condition: not measures.by_new_step(plan, condition),
-            "REUSE": measures.by_new_step,
+            "LR": measures.count_condition_refinements,
+            "MR": lambda plan, condition: -measures.count_condition_refinements(plan, condition),
+            "NEW": lambda plan, condition: not measures.has_new_achiever(plan, condition),
+            "REUSE": measures.has_new_achiever,
         }
         return keys.get(criterion.order) or self._estimated(criterion)
 
@@ -191,7 +191,7 @@ class FlawSelection(Generic[P, C, T]):
         reuse = criterion.heuristic == "addr"
 
         def key(plan: P, condition: C) -> float:
-            if reuse and measures.provided(plan, condition):
+            if reuse and measures.has_old_achiever(plan, condition):
                 return sign * field  # no cost, one unit of work
             return sign * measures.value(plan, condition)[field]
 

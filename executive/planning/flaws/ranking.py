@@ -67,7 +67,7 @@ class Ranking(Generic[P]):
         if chosen[-1:] == ("LIFO",):
             chosen = chosen[:-1]  # the last word of every rank
         self._weight = weight
-        self._usual = chosen in (("ADD", "ADD_WORK", "BUC"), ("ADDR", "ADDR_WORK", "BUC"))
+        self._is_default = chosen in (("ADD", "ADD_WORK", "BUC"), ("ADDR", "ADDR_WORK", "BUC"))
         self._terms = tuple(_term(name, estimates, weight) for name in chosen)
 
     def rank(self, plan: P, number: int) -> Rank | None:
@@ -75,7 +75,7 @@ class Ranking(Generic[P]):
         estimate = self._estimate(plan) if self._estimate is not None else (0, 0)
         if estimate[0] == math.inf:
             return None
-        if self._usual:  # spelled out, for nearly every plan of a search is only ranked and never looked at again
+        if self._is_default:  # spelled out, for nearly every plan of a search is only ranked and never looked at again
             cost, work = estimate
             return (plan.cost + self._weight * cost, work, plan.threat_count > 0, -number)
         return (*[term(plan, estimate, number) for term in self._terms], -number)

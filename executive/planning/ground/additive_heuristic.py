@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
-from tailor.executive.planning.structures.connectives import Every
+from tailor.executive.planning.structures.connectives import Conjunction
 
 Spanned = Iterable[tuple[GroundCondition, Span]]
 
@@ -52,7 +52,7 @@ def _value(condition: GroundCondition, values: Sequence[Value]) -> Value:
     if isinstance(condition, int):
         return values[condition]
     parts = [_value(part, values) for part in condition.parts]
-    return sum_of(parts) if isinstance(condition, Every) else min(parts, default=UNREACHABLE)
+    return sum_of(parts) if isinstance(condition, Conjunction) else min(parts, default=UNREACHABLE)
 
 
 def sum_of(parts: Iterable[Value]) -> Value:
@@ -103,7 +103,7 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
 
 def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> bool:
     """Improves what the action makes true, minimum by (cost, work); False when the action is not reached yet."""
-    before = sum_of(_value(condition, values) for condition, _ in action.needs)
+    before = sum_of(_value(condition, values) for condition, _ in action.external_conditions)
     if before.cost == math.inf:
         return False
     for effect in action.effects:

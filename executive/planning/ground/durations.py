@@ -6,11 +6,11 @@ import math
 from functools import partial, reduce
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.ground_formula import Binding, World
+from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
 
 
-def evaluate(number: Numeric, binding: Binding, world: World) -> float | None:
+def evaluate(number: Numeric, binding: Binding, world: StaticWorld) -> float | None:
     """The value in seconds; None where a static function has no value or a division is by zero."""
     match number:
         case Number(value):
@@ -37,7 +37,9 @@ def _operate(operator: str, a: float | None, b: float | None) -> float | None:
             return a / b if b else None
 
 
-def duration_range(bounds: tuple[DurationBound, ...], binding: Binding, world: World) -> tuple[float, float] | None:
+def duration_range(
+    bounds: tuple[DurationBound, ...], binding: Binding, world: StaticWorld
+) -> tuple[float, float] | None:
     """Shortest and longest duration in seconds (infinite without an upper limit); None when there is none."""
     shortest, longest = 0.0, math.inf
     for bound in bounds:

@@ -28,13 +28,13 @@ class GroundAction:
 
     Durations are in ticks of the settings' tolerance, `longest` is None without an upper limit; both are 0 when the
     domain has no durative actions. `bits` has, by literal that the action may make true, the moments as a bit mask.
-    `needs` are the conditions that others must achieve: see `needed`.
+    `external_conditions` are the conditions that others must achieve: see `external_conditions`.
     """
 
     number: int  # grounding order
     name: Fact
     conditions: tuple[tuple[GroundCondition, Span], ...]
-    needs: tuple[tuple[GroundCondition, Span], ...]
+    external_conditions: tuple[tuple[GroundCondition, Span], ...]
     effects: tuple[GroundEffect, ...]
     bits: dict[int, int]
     shortest: int = 0
@@ -46,7 +46,7 @@ class GroundAction:
         return f"({' '.join(self.name)})"
 
 
-def needed(
+def external_conditions(
     conditions: tuple[tuple[GroundCondition, Span], ...], effects: Iterable[GroundEffect]
 ) -> tuple[tuple[GroundCondition, Span], ...]:
     """The conditions of an action but those after its start that its start itself makes true."""

@@ -22,9 +22,16 @@ from tailor.executive.planning.pddl.language import (
     Quantified,
     Typed,
 )
-from tailor.executive.planning.structures.connectives import FALSE, TRUE, Every, Some, conjunction, disjunction
+from tailor.executive.planning.structures.connectives import (
+    FALSE,
+    TRUE,
+    Conjunction,
+    Disjunction,
+    conjunction,
+    disjunction,
+)
 
-GroundCondition = int | Every[int] | Some[int]
+GroundCondition = int | Conjunction[int] | Disjunction[int]
 MAX_FORMULAS = 60_000  # a third of a second of grounding; the competition problems at hand need 20 000
 
 
@@ -32,7 +39,7 @@ class TooMuchToGround(Exception):
     """Grounding has met more bindings or formulas than it was allowed to."""
 
 
-class Facts:
+class FactTable:
     """Numbers fluent facts in the order in which they are met; only ever grows, and up to a limit of work."""
 
     def __init__(self, known: Iterable[Fact] = (), limit: int = MAX_FORMULAS) -> None:
@@ -67,7 +74,7 @@ class Facts:
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class StaticWorld:
     """What stands still while planning: objects by type, and the facts of predicates that no action touches."""
 
     domain: Domain
@@ -88,7 +95,9 @@ class World:
 Binding = Mapping[str, str]
 
 
-def ground(formula: Formula, binding: Binding, world: World, facts: Facts, positive: bool = True) -> GroundCondition:
+def ground(
+    formula: Formula, binding: Binding, world: StaticWorld, facts: FactTable, positive: bool = True
+) -> GroundCondition:
     """The ground condition that a formula stands for, in negation normal form.
 
     Args:
@@ -118,7 +127,7 @@ def ground(formula: Formula, binding: Binding, world: World, facts: Facts, posit
             return conjunction(grounded) if every == positive else disjunction(grounded)
 
 
-def bindings(variables: tuple[Typed, ...], binding: Binding, world: World) -> Iterator[Binding]:
+def bindings(variables: tuple[Typed, ...], binding: Binding, world: StaticWorld) -> Iterator[Binding]:
     """All ways to extend a binding by objects for the variables."""
     if not variables:
         yield binding
@@ -133,7 +142,7 @@ def negation(condition: GroundCondition) -> GroundCondition:
     if isinstance(condition, int):
         return condition ^ 1
     parts = tuple(negation(part) for part in condition.parts)
-    return disjunction(parts) if isinstance(condition, Every) else conjunction(parts)
+    return disjunction(parts) if isinstance(condition, Conjunction) else conjunction(parts)
 
 
 def contradictory(conditions: Iterable[GroundCondition]) -> bool:

@@ -7,7 +7,7 @@ from typing import Literal as OneOf
 
 from tailor.executive.planning.ground.achievers import Achiever, achievers_of
 from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
-from tailor.executive.planning.ground.ground_formula import Facts, GroundCondition, contradictory, ground
+from tailor.executive.planning.ground.ground_formula import FactTable, GroundCondition, contradictory, ground
 from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
@@ -41,7 +41,7 @@ class GroundTask:
 
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
     """The task of a problem whose world has been grounded."""
-    facts = Facts(grounded.facts)
+    facts = FactTable(grounded.facts)
     goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
     if contradictory(goal):
         goal = (FALSE,)

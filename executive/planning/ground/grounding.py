@@ -12,13 +12,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
-from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, GroundAction, GroundEffect, Span, needed
+from tailor.executive.planning.ground.ground_action import (
+    INSTANT,
+    MOMENTS,
+    GroundAction,
+    GroundEffect,
+    Span,
+    external_conditions,
+)
 from tailor.executive.planning.ground.ground_formula import (
     Binding,
-    Facts,
+    FactTable,
     GroundCondition,
+    StaticWorld,
     TooMuchToGround,
-    World,
     bindings,
     contradictory,
     ground,
@@ -37,13 +44,13 @@ CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millis
 class GroundActions:
     """The ground actions of a world, with the numbers of the facts they speak of; reusable while the world stands."""
 
-    world: World
+    world: StaticWorld
     tick_s: float
     facts: tuple[tuple[str, ...], ...]
     actions: tuple[GroundAction, ...]
 
 
-def world_of(problem: Problem) -> World:
+def static_world(problem: Problem) -> StaticWorld:
     """The still part of a problem."""
     domain = problem.domain
     touched = {effect.atom.predicate for action in domain.actions for effect in action.effects}
@@ -56,16 +63,16 @@ def world_of(problem: Problem) -> World:
             objects[kind].append(item.name)
     facts = frozenset(fact for fact in problem.initial if fact[0] in static)
     by_type = {kind: tuple(names) for kind, names in objects.items()}
-    return World(domain, by_type, static, facts, dict(problem.values), domain.durative)
+    return StaticWorld(domain, by_type, static, facts, dict(problem.values), domain.durative)
 
 
-def ground_actions(world: World, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
+def ground_actions(world: StaticWorld, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
     """Grounds step by step: yields None every few bindings, and the ground actions at last.
 
     Raises:
       TooMuchToGround: More than `limit` bindings of parameters were tried.
     """
-    facts = Facts()
+    facts = FactTable()
     actions: list[GroundAction] = []
     tried = 0
     for schema in sorted(world.domain.actions, key=lambda action: action.name):
@@ -93,7 +100,7 @@ def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions
 
 
 # --- bindings ------------------------------------------------------------------------------------
-def _schema_bindings(schema: Action, world: World) -> Iterator[Binding | None]:
+def _schema_bindings(schema: Action, world: StaticWorld) -> Iterator[Binding | None]:
     """Complete bindings that pass the static conditions; None for each partial one that was cut or extended."""
     names = [parameter.name for parameter in schema.parameters]
     tests: list[list[Formula]] = [[] for _ in range(len(names) + 1)]
@@ -110,9 +117,9 @@ def _extend(
     names: list[str],
     choices: list[tuple[str, ...]],
     tests: list[list[Formula]],
-    world: World,
+    world: StaticWorld,
 ) -> Iterator[Binding | None]:
-    nothing = Facts()
+    nothing = FactTable()
     if any(ground(test, binding, world, nothing) == FALSE for test in tests[level]):
         yield None
     elif level == len(names):
@@ -123,7 +130,7 @@ def _extend(
             yield from _extend({**binding, names[level]: name}, level + 1, names, choices, tests, world)
 
 
-def _static_parts(schema: Action, world: World) -> Iterator[Formula]:
+def _static_parts(schema: Action, world: StaticWorld) -> Iterator[Formula]:
     """The conjuncts of the conditions that static facts and equality decide alone."""
     pending = [condition.formula for condition in schema.conditions]
     while pending:
@@ -149,7 +156,7 @@ def _terms(formula: Formula) -> tuple[str, ...]:
 
 # --- one ground action ---------------------------------------------------------------------------
 def _instance(
-    number: int, schema: Action, binding: Binding, world: World, facts: Facts, tick_s: float
+    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable, tick_s: float
 ) -> GroundAction | None:
     """The ground action, or None when it can never run or achieves nothing."""
     bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
@@ -167,7 +174,7 @@ def _instance(
         number,
         name,
         conditions,
-        needed(conditions, effects),
+        external_conditions(conditions, effects),
         effects,
         bits,
         *ticks_of(bounds, tick_s),
@@ -181,7 +188,7 @@ def _span(when: When, temporal: bool) -> Span:
 
 
 def _conditions(
-    conditions: tuple[Condition, ...], binding: Binding, world: World, facts: Facts
+    conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
 ) -> tuple[tuple[GroundCondition, Span], ...] | None:
     """The ground conditions by span, in order; None when one is false, or two of one span contradict each other."""
     grounded: list[tuple[GroundCondition, Span]] = []
@@ -197,7 +204,7 @@ def _conditions(
     return tuple(grounded)
 
 
-def _effects(schema: Action, binding: Binding, world: World, facts: Facts) -> list[GroundEffect]:
+def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTable) -> list[GroundEffect]:
     effects: dict[GroundEffect, None] = {}
     for effect in schema.effects:
         moment = _span(effect.when, world.temporal)[0]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.ground_formula import Binding, World, bindings
+from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
 from tailor.executive.planning.pddl.language import Action, And, Atom, Formula, Literal, Not
@@ -70,14 +70,14 @@ class Frame:
         )
 
 
-def extract(plan: PartialPlan, task: GroundTask, world: World) -> Plan:
+def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
     """The plan of a ground search in words."""
     names = tuple(action.name for action in plan.steps)
     frame = Frame(names, plan.orderings, task.first_node, task.moments, task.tick_s)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 
-def _links(plan: PartialPlan, task: GroundTask, world: World, steps: tuple[Step, ...]) -> Iterator[Link]:
+def _links(plan: PartialPlan, task: GroundTask, world: StaticWorld, steps: tuple[Step, ...]) -> Iterator[Link]:
     """Links by consumer; those from static facts, which the search never saw, count as the newest."""
     found: dict[int, list[Link]] = {}
     cell = plan.links
@@ -100,7 +100,7 @@ def _links(plan: PartialPlan, task: GroundTask, world: World, steps: tuple[Step,
     yield from found.get(GOAL, ())
 
 
-def _static_guard(schema: Action, binding: Binding, made: Literal, world: World) -> tuple[Literal, ...]:
+def _static_guard(schema: Action, binding: Binding, made: Literal, world: StaticWorld) -> tuple[Literal, ...]:
     """The static literals under which a conditional effect of the action makes a literal true."""
     for effect in schema.effects:
         if (effect.atom.predicate, effect.positive) == (made.fact[0], made.positive):
@@ -113,7 +113,7 @@ def _static_guard(schema: Action, binding: Binding, made: Literal, world: World)
     return ()
 
 
-def static_literals(formula: Formula, binding: Binding, world: World) -> tuple[Literal, ...]:
+def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
     """The static literals that a formula demands outright, without disjunctions; the last one first."""
     found: list[Literal] = []
     pending = [formula]

@@ -6,19 +6,19 @@ from tailor.executive.planning.ground.additive_heuristic import Value, literals_
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.open_conditions import reusable
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat
-from tailor.executive.planning.ground_plans.threats import choices
-from tailor.executive.planning.structures.connectives import Some
+from tailor.executive.planning.ground_plans.threats import count_refinements
+from tailor.executive.planning.structures.connectives import Disjunction
 
 
-class GroundFlaws:
+class GroundFlawMeasures:
     """See `FlawMeasures`; of a compound condition the parts count as its refinements."""
 
     def __init__(self, task: GroundTask) -> None:
         self._task = task
         self._first, self._moments = task.first_node, task.moments
-        self.threat_choices = choices
+        self.count_threat_refinements = count_refinements
 
-    def separable(self, plan: PartialPlan, threat: Threat) -> bool:
+    def is_separable(self, plan: PartialPlan, threat: Threat) -> bool:
         """Only a conditional effect can be separated."""
         return bool(threat.conditions)
 
@@ -30,23 +30,23 @@ class GroundFlaws:
         """Never: grounding has folded static conditions away."""
         return False
 
-    def unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+    def is_unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`."""
         late, masks = plan.orderings.late, plan.effects.masks()
-        if isinstance(condition.condition, Some):
+        if isinstance(condition.condition, Disjunction):
             return False
         literals = literals_of(condition.condition)
         return any(masks[x ^ 1] & ~late[condition.last] & ~(1 << condition.first) for x in literals)
 
-    def condition_choices(self, plan: PartialPlan, condition: OpenCondition) -> int:
+    def count_condition_refinements(self, plan: PartialPlan, condition: OpenCondition) -> int:
         """See `FlawMeasures`."""
         literal = condition.condition
         if not isinstance(literal, int):
-            return len(literal.parts) if isinstance(literal, Some) else 1
+            return len(literal.parts) if isinstance(literal, Disjunction) else 1
         old = reusable(plan, condition).bit_count()
         return len(self._task.achievers[literal]) + old + (literal in self._task.initial)
 
-    def by_new_step(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+    def has_new_achiever(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`."""
         return isinstance(condition.condition, int) and bool(self._task.achievers[condition.condition])
 
@@ -54,6 +54,6 @@ class GroundFlaws:
         """See `FlawMeasures`."""
         return self._task.estimates.of(condition.condition)
 
-    def provided(self, plan: PartialPlan, condition: OpenCondition) -> bool:
+    def has_old_achiever(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`."""
         return isinstance(condition.condition, int) and bool(reusable(plan, condition))

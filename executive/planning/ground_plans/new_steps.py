@@ -12,7 +12,7 @@ from tailor.executive.planning.ground_plans.threat_detection import Spanned, gua
 from tailor.executive.planning.structures.orderings import Orderings
 
 
-class _Place(NamedTuple):
+class _Insertion(NamedTuple):
     """What follows from the new step's place alone: actions that take as long share it."""
 
     orderings: Orderings
@@ -29,17 +29,17 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
     steps, _, effects, links, opened, _, open_count, _, cost = plan
     node = len(plan.orderings.late)
     masks, guarded = effects.masks(), guarded_links(links)
-    places: dict[tuple[int, int, int | None, int], _Place | None] = {}
+    insertions: dict[tuple[int, int, int | None, int], _Insertion | None] = {}
     children = []
     for action, effect in achievers:
-        undoes_it = literal ^ 1 in action.bits  # then no other action has the same threats to the new link
-        kind = (effect.moment, action.shortest, action.longest, action.number if undoes_it else -1)
-        if kind not in places:
-            places[kind] = _place(task, plan, flaw, action, effect)
-        place = places[kind]
-        if place is None:
+        undoes_literal = literal ^ 1 in action.bits  # then no other action has the same threats to the new link
+        kind = (effect.moment, action.shortest, action.longest, action.number if undoes_literal else -1)
+        if kind not in insertions:
+            insertions[kind] = _insertion(task, plan, flaw, action, effect)
+        insertion = insertions[kind]
+        if insertion is None:
             continue
-        orderings, link, threats, count = place
+        orderings, link, threats, count = insertion
         threats, count = threats_by(action, node, orderings.late, guarded, threats, count)
         conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
         children.append(
@@ -61,9 +61,9 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
     return children
 
 
-def _place(
+def _insertion(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
-) -> _Place | None:
+) -> _Insertion | None:
     """The place of one action and those like it; None when the orderings have none."""
     _, first, last, _ = flaw
     literal = effect.literal
@@ -75,7 +75,7 @@ def _place(
     undoing = plan.effects.masks()[literal ^ 1] | action.bits.get(literal ^ 1, 0) << node
     steps = (*plan.steps, action)
     threats, count = threats_to(task, steps, orderings, undoing, link, plan.threats, plan.threat_count)
-    return _Place(orderings, link, threats, count)
+    return _Insertion(orderings, link, threats, count)
 
 
 def opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:

@@ -12,7 +12,7 @@ from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.new_steps import new_step_plans, opened_by
 from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
 from tailor.executive.planning.ground_plans.threat_detection import Spanned, threats_to
-from tailor.executive.planning.structures.connectives import Every, Some
+from tailor.executive.planning.structures.connectives import Conjunction, Disjunction
 from tailor.executive.planning.structures.linked_list import without
 from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
@@ -21,9 +21,9 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
     """All plans that mend the flaw: by a new step of each achiever, by old ones, newest first, by the initial state."""
     condition = flaw.condition
     rest = _without(plan, flaw)
-    if isinstance(condition, Some):
+    if isinstance(condition, Disjunction):
         return [_opened(rest, part, flaw) for part in condition.parts]
-    if isinstance(condition, Every):
+    if isinstance(condition, Conjunction):
         return [_opened(rest, condition, flaw)]
     children = new_step_plans(task, rest, flaw, condition)
     for node in _nodes(reusable(plan, flaw)):
@@ -62,7 +62,7 @@ def _nodes(mask: int) -> Iterator[int]:
 
 def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) -> PartialPlan:
     """The plan with one part of a compound condition as its newest open conditions."""
-    parts = condition.parts if isinstance(condition, Every) else (condition,)
+    parts = condition.parts if isinstance(condition, Conjunction) else (condition,)
     return _with_conditions(plan, tuple((part, (flaw.first, flaw.last)) for part in parts), 0)
 
 

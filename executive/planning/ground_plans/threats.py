@@ -16,7 +16,7 @@ def is_threat(plan: PartialPlan, threat: Threat) -> bool:
     return not (late[link.last] >> node & 1 or late[node] >> link.producer & 1)
 
 
-def choices(plan: PartialPlan, threat: Threat) -> int:
+def count_refinements(plan: PartialPlan, threat: Threat) -> int:
     """The number of refinements of a threat; 0 when it is none any more, so that it is forgotten first."""
     late, (link, node, conditions, _) = plan.orderings.late, threat
     if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
@@ -30,16 +30,18 @@ def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[P
     """All plans that mend the threat; only one, that forgets it, when it is none any more."""
     steps, orderings, effects, links, opened, threats, open_count, threat_count, cost = plan
     threats, threat_count = without(threats, threat), threat_count - 1
-    forgotten = new(PartialPlan, (steps, orderings, effects, links, opened, threats, open_count, threat_count, cost))
+    without_threat = new(
+        PartialPlan, (steps, orderings, effects, links, opened, threats, open_count, threat_count, cost)
+    )
     if not is_threat(plan, threat):
-        return [forgotten]
-    children = separations(task, forgotten, threat) if threat.conditions else []
+        return [without_threat]
+    children = separations(task, without_threat, threat) if threat.conditions else []
     link, node = threat.link, threat.node
     for before, after in ((link.last, node), (node, link.producer)):  # promotion, then demotion
         ordered = orderings.ordered(before, after)
         if ordered is not None:
-            mended = (steps, ordered, effects, links, opened, threats, open_count, threat_count, cost)
-            children.append(new(PartialPlan, mended))
+            resolved = (steps, ordered, effects, links, opened, threats, open_count, threat_count, cost)
+            children.append(new(PartialPlan, resolved))
     return children
 
 

@@ -9,7 +9,7 @@ from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Spa
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.grounding import MAX_WAYS
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
-from tailor.executive.planning.lifted.lifter import Lowering, Names
+from tailor.executive.planning.lifted.lifter import Lifter, Names
 from tailor.executive.planning.pddl.language import Action, When
 from tailor.executive.planning.structures.connectives import FALSE, TRUE, conjunction, disjunction
 
@@ -43,7 +43,7 @@ def span_of(when: When, durative: bool) -> Span:
 
 
 def lifted_effects(
-    action: Action, names: Names, conditions: Spanned, lowering: Lowering, durative: bool
+    action: Action, names: Names, conditions: Spanned, lifter: Lifter, durative: bool
 ) -> tuple[LiftedEffect, ...]:
     """The effects of an action, in order, without those that achieve nothing; "forall" is spelled out.
 
@@ -56,14 +56,14 @@ def lifted_effects(
     """
     written: dict[LiftedEffect, None] = {}
     for effect in action.effects:
-        for inner in lowering.choices(effect.variables, names):
+        for inner in lifter.choices(effect.variables, names):
             literal = LiftedLiteral(
                 effect.atom.predicate, tuple(inner.get(t, t) for t in effect.atom.terms), effect.positive
             )
             guards = tuple(
                 Guard(
-                    lowering.lowered(c.formula, inner),
-                    lowering.lowered(c.formula, inner, False),
+                    lifter.lowered(c.formula, inner),
+                    lifter.lowered(c.formula, inner, False),
                     span_of(c.when, durative),
                 )
                 for c in effect.condition
@@ -103,15 +103,15 @@ def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list
         return ways
     for other in effects:
         if other.literal[0] == effect.literal[0] and other.literal.positive and other.moment == effect.moment:
-            losing = _losing(other, effect.literal)
-            if all(lost.holds != TRUE for lost in losing):
-                ways = [(*way, lost) for way in ways for lost in losing]
+            sparing = _sparing_guards(other, effect.literal)
+            if all(guard.holds != TRUE for guard in sparing):
+                ways = [(*way, guard) for way in ways for guard in sparing]
                 if len(ways) > MAX_WAYS:
                     raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
     return ways
 
 
-def _losing(winner: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
+def _sparing_guards(winner: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
     """How an add effect leaves a delete of `literal` alone: it adds another fact, or its guards of one span fail."""
     pairs = _differing(literal, winner.literal)
     apart: LiftedFormula = disjunction(equality(a, b, False) for a, b in pairs)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tailor.executive.planning.lifted.bindings import Term
-from tailor.executive.planning.structures.connectives import FALSE, TRUE, Every, Some
+from tailor.executive.planning.structures.connectives import FALSE, TRUE, Conjunction, Disjunction
 
 
 class LiftedLiteral(NamedTuple):
@@ -35,9 +35,9 @@ class Equality(NamedTuple):
         return Equality(tagged(self.left, step), tagged(self.right, step), self.same)
 
 
-Leaf = LiftedLiteral | Equality
-AnyOf = Some[Leaf]
-LiftedFormula = Leaf | Every[Leaf] | AnyOf
+LiftedLeaf = LiftedLiteral | Equality
+LiftedDisjunction = Disjunction[LiftedLeaf]
+LiftedFormula = LiftedLeaf | Conjunction[LiftedLeaf] | LiftedDisjunction
 
 
 def tagged(term: Term, step: int) -> Term:
@@ -48,10 +48,10 @@ def tagged(term: Term, step: int) -> Term:
 def of_step(formula: LiftedFormula, step: int) -> LiftedFormula:
     """A schema's formula with the variables of one step."""
     match formula:
-        case Every(parts):
-            return Every(tuple(of_step(part, step) for part in parts))
-        case Some(parts):
-            return Some(tuple(of_step(part, step) for part in parts))
+        case Conjunction(parts):
+            return Conjunction(tuple(of_step(part, step) for part in parts))
+        case Disjunction(parts):
+            return Disjunction(tuple(of_step(part, step) for part in parts))
         case literal:
             return literal.of_step(step)
 

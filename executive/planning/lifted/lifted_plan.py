@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.effects import Guard
-from tailor.executive.planning.lifted.formula import AnyOf, Equality, LiftedFormula, LiftedLiteral, of_step
+from tailor.executive.planning.lifted.formula import Equality, LiftedDisjunction, LiftedFormula, LiftedLiteral, of_step
 from tailor.executive.planning.lifted.schema import Schema
-from tailor.executive.planning.lifted.task import LiftedTask, Placed
-from tailor.executive.planning.structures.connectives import FALSE, Some, conjuncts
+from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
+from tailor.executive.planning.structures.connectives import FALSE, Disjunction, conjuncts
 from tailor.executive.planning.structures.orderings import GOAL, GOAL_STEP, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
@@ -28,7 +28,7 @@ class LiftedLink(NamedTuple):
 class LiftedCondition(NamedTuple):
     """An open condition: a literal or a disjunction; see `partial_plan.OpenCondition`."""
 
-    condition: LiftedLiteral | AnyOf
+    condition: LiftedLiteral | LiftedDisjunction
     first: int
     last: int
     rest: LiftedCondition | None
@@ -84,12 +84,12 @@ def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> L
             if bound is None:
                 return None
             bindings = bound
-        elif isinstance(part, LiftedLiteral | Some):
+        elif isinstance(part, LiftedLiteral | Disjunction):
             cell, count = LiftedCondition(part, first, last, cell), count + 1
     return plan._replace(open=cell, open_count=count, bindings=bindings)
 
 
-def effects_of(task: LiftedTask, plan: LiftedPlan) -> Iterator[Placed]:
+def effects_of(task: LiftedTask, plan: LiftedPlan) -> Iterator[PlacedEffect]:
     """All effects in a plan: those of the newest step first, those of timed literals last."""
     for step in range(len(plan.steps), 0, -1):
         yield from task.effects_of(plan.steps[step - 1], step)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tailor.executive.planning.ground.ground_formula import Facts, World, bindings
+from tailor.executive.planning.ground.ground_formula import FactTable, StaticWorld, bindings
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, disjunction
@@ -12,10 +12,10 @@ from tailor.executive.planning.structures.connectives import FALSE, conjunction,
 Names = Mapping[str, str]  # a formula's variable -> the schema's variable, or an object
 
 
-class Lowering:
+class Lifter:
     """Lowers the formulas of one schema, or of the goal; collects the variables that "exists" brings."""
 
-    def __init__(self, world: World, numbers: Iterator[int], work: Facts) -> None:
+    def __init__(self, world: StaticWorld, numbers: Iterator[int], work: FactTable) -> None:
         """Prepares.
 
         Args:

@@ -9,8 +9,8 @@ from tailor.executive.planning.lifted.formula import Equality, LiftedFormula, Li
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
 from tailor.executive.planning.lifted.open_conditions import initial_achievers, new_achievers, old_achievers
 from tailor.executive.planning.lifted.task import LiftedTask
-from tailor.executive.planning.lifted.threats import choices, separations
-from tailor.executive.planning.structures.connectives import Every, Some
+from tailor.executive.planning.lifted.threats import count_refinements, separations
+from tailor.executive.planning.structures.connectives import Conjunction, Disjunction
 from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.makespan import makespan_estimate
 
@@ -22,7 +22,7 @@ class LiftedMeasures:
         self._task = task
 
     # --- flaws -----------------------------------------------------------------------------------
-    def separable(self, plan: LiftedPlan, threat: LiftedThreat) -> bool:
+    def is_separable(self, plan: LiftedPlan, threat: LiftedThreat) -> bool:
         """See `FlawMeasures`."""
         return any(True for _ in separations(self._task, plan, threat))
 
@@ -35,7 +35,7 @@ class LiftedMeasures:
         literal = condition.condition
         return isinstance(literal, LiftedLiteral) and literal.predicate in self._task.world.static
 
-    def unsafe(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
+    def is_unsafe(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`; a disjunction never is."""
         late, literal = plan.orderings.late[condition.last], condition.condition
         return isinstance(literal, LiftedLiteral) and any(
@@ -43,7 +43,7 @@ class LiftedMeasures:
             for node, _, effect, _ in effects_of(self._task, plan)
         )
 
-    def condition_choices(self, plan: LiftedPlan, condition: LiftedCondition) -> int:
+    def count_condition_refinements(self, plan: LiftedPlan, condition: LiftedCondition) -> int:
         """See `FlawMeasures`."""
         literal = condition.condition
         if not isinstance(literal, LiftedLiteral):
@@ -52,11 +52,11 @@ class LiftedMeasures:
         old = sum(1 for _ in old_achievers(self._task, plan, condition, literal))
         return new + old + sum(1 for _ in initial_achievers(self._task, plan.bindings, literal))
 
-    def threat_choices(self, plan: LiftedPlan, threat: LiftedThreat) -> int:
+    def count_threat_refinements(self, plan: LiftedPlan, threat: LiftedThreat) -> int:
         """See `FlawMeasures`."""
-        return choices(self._task, plan, threat)
+        return count_refinements(self._task, plan, threat)
 
-    def by_new_step(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
+    def has_new_achiever(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`."""
         literal = condition.condition
         return isinstance(literal, LiftedLiteral) and any(
@@ -74,12 +74,12 @@ class LiftedMeasures:
             case Equality(left, right, same):
                 possible = bindings.may_equal(left, right) if same else not bindings.same(left, right)
                 return NOTHING if possible else UNREACHABLE
-            case Every(parts):
+            case Conjunction(parts):
                 return sum_of(self._value(part, bindings) for part in parts)
-            case Some(parts):
+            case Disjunction(parts):
                 return min((self._value(part, bindings) for part in parts), default=UNREACHABLE)
 
-    def provided(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
+    def has_old_achiever(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`."""
         literal = condition.condition
         return isinstance(literal, LiftedLiteral) and any(
@@ -97,7 +97,7 @@ class LiftedMeasures:
         cost: float = 0
         work: float = 0
         for condition in cells_of(plan.open):
-            if self.provided(plan, condition):
+            if self.has_old_achiever(plan, condition):
                 work += 1
             else:
                 value = self.value(plan, condition)

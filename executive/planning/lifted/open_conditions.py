@@ -19,9 +19,9 @@ from tailor.executive.planning.lifted.lifted_plan import (
     unifying,
 )
 from tailor.executive.planning.lifted.schema import Schema
-from tailor.executive.planning.lifted.task import Achiever, LiftedTask, Placed
+from tailor.executive.planning.lifted.task import Achiever, LiftedTask, PlacedEffect
 from tailor.executive.planning.lifted.threat_detection import threatened, threatened_by_step
-from tailor.executive.planning.structures.connectives import Some
+from tailor.executive.planning.structures.connectives import Disjunction
 from tailor.executive.planning.structures.linked_list import without
 from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
@@ -34,7 +34,7 @@ def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) 
     Of a disjunction each part is one way.
     """
     rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
-    if isinstance(flaw.condition, Some):
+    if isinstance(flaw.condition, Disjunction):
         parts = (opened(rest, part, flaw.first, flaw.last) for part in flaw.condition.parts)
         return [child for child in parts if child is not None]
     literal = flaw.condition
@@ -61,7 +61,7 @@ def _fits(schema: Schema, effect: LiftedEffect, bindings: Bindings, literal: Lif
 
 def old_achievers(
     task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral
-) -> Iterator[Placed]:
+) -> Iterator[PlacedEffect]:
     """Effects in the plan that may become the condition's literal and may come before it, the newest step's first."""
     late = plan.orderings.late[flaw.first]
     if flaw.first != flaw.last:
@@ -124,7 +124,7 @@ def _by_new_step(
     cell = grown.open
     for condition, (first, last) in reversed(schema.conditions):
         part = of_step(condition, step)
-        assert isinstance(part, LiftedLiteral | Some)
+        assert isinstance(part, LiftedLiteral | Disjunction)
         cell = LiftedCondition(part, node + first, node + last, cell)
     grown = grown._replace(
         steps=(*plan.steps, schema),
@@ -168,7 +168,7 @@ def _guarded(plan: LiftedPlan, guards: tuple[Guard, ...], step: int, node: int) 
 
 
 def _by_old_step(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral, placed: Placed
+    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral, placed: PlacedEffect
 ) -> LiftedPlan | None:
     node, step, _, effect = placed
     orderings = plan.orderings if node == flaw.first else plan.orderings.ordered(node, flaw.first)

@@ -10,10 +10,10 @@ import numpy as np
 
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
 from tailor.executive.planning.ground.ground_action import Span
-from tailor.executive.planning.ground.ground_formula import Facts, World
+from tailor.executive.planning.ground.ground_formula import FactTable, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
-from tailor.executive.planning.lifted.lifter import Lowering
+from tailor.executive.planning.lifted.lifter import Lifter
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 
@@ -38,7 +38,7 @@ class Schema:
     duration_s: float  # of the shortest
 
 
-def schemata(world: World, tick_s: float, work: Facts) -> tuple[Schema, ...]:
+def schemata(world: StaticWorld, tick_s: float, work: FactTable) -> tuple[Schema, ...]:
     """The domain's schemata by name.
 
     Raises:
@@ -50,7 +50,7 @@ def schemata(world: World, tick_s: float, work: Facts) -> tuple[Schema, ...]:
     ]
     made: list[Schema] = []
     for action, names in renamed:
-        made += _schemata(action, names, Lowering(world, parameters, work), world, tick_s)
+        made += _schemata(action, names, Lifter(world, parameters, work), world, tick_s)
     return tuple(sorted(made, key=lambda schema: schema.name))
 
 
@@ -61,25 +61,25 @@ def shuffled(schema: Schema, rng: np.random.Generator) -> Schema:
 
 
 def _schemata(
-    action: Action, names: dict[str, str], lowering: Lowering, world: World, tick_s: float
+    action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, tick_s: float
 ) -> Iterator[Schema]:
     """The schemata of one action: one, or one for each choice of the parameters that its duration depends on."""
     durative = world.temporal
     lowered: list[tuple[LiftedFormula, Span]] = []
     for condition in action.conditions:
-        parts: tuple[LiftedFormula, ...] = conjuncts(lowering.lowered(condition.formula, names))
+        parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lowered(condition.formula, names))
         lowered += [(part, span_of(condition.when, durative)) for part in parts]
     if any(part == FALSE for part, _ in lowered):
         return
     conditions = tuple((part, span) for part, span in lowered if not isinstance(part, Equality))
     equalities = tuple(part for part, _ in lowered if isinstance(part, Equality))
-    effects = lifted_effects(action, names, conditions, lowering, durative)
+    effects = lifted_effects(action, names, conditions, lifter, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
-    for fixed, bounds in _durations(action, lowering, world):
+    for fixed, bounds in _durations(action, lifter, world):
         yield Schema(
             action.name,
             parameters,
-            tuple(lowering.variables),
+            tuple(lifter.variables),
             conditions,
             equalities,
             {names[name]: value for name, value in fixed.items()},
@@ -90,14 +90,14 @@ def _schemata(
 
 
 def _durations(
-    action: Action, lowering: Lowering, world: World
+    action: Action, lifter: Lifter, world: StaticWorld
 ) -> Iterator[tuple[Mapping[str, str], tuple[float, float]]]:
     """Choices for the parameters that the duration depends on, with the shortest and longest duration in seconds."""
     if action.duration is None:
         yield {}, (0.0, 0.0)
         return
     needed = {term for bound in action.duration for term in _terms(bound.value)}
-    for fixed in lowering.choices(tuple(p for p in action.parameters if p.name in needed), {}):
+    for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in needed), {}):
         allowed = duration_range(action.duration, fixed, world)
         if allowed is not None:
             yield fixed, allowed

@@ -11,22 +11,22 @@ import numpy as np
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
-from tailor.executive.planning.ground.ground_formula import Facts, World
+from tailor.executive.planning.ground.ground_formula import FactTable, StaticWorld
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
-from tailor.executive.planning.lifted.lifter import Lowering
+from tailor.executive.planning.lifted.lifter import Lifter
 from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.structures.orderings import FIRST
 
-Pattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects where they are known
-Place = tuple[str, bool, int, str]  # predicate, positive, position (-1: any), object
+LiteralPattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects where they are known
+ArgumentKey = tuple[str, bool, int, str]  # predicate, positive, position (-1: any), object
 Achiever = tuple[Schema, LiftedEffect]
 MAX_FORMULAS = 50_000  # a quarter of a second; only "forall" over many objects comes near
 
 
-class Placed(NamedTuple):
+class PlacedEffect(NamedTuple):
     """An effect of a step (0: a timed literal) at its node of a plan, with the variables of the step."""
 
     node: int
@@ -40,16 +40,16 @@ class LiftedTask:
     """What a lifted search plans with. `values` and `placed` grow as they are asked; that never changes an answer."""
 
     ground: GroundTask
-    world: World
+    world: StaticWorld
     initial: dict[str, tuple[Fact, ...]]  # by predicate, in the problem's order
     goal: LiftedFormula
     goal_variables: tuple[Typed, ...]  # of "exists"
-    timed: tuple[Placed, ...]  # the timed literals
+    timed: tuple[PlacedEffect, ...]  # the timed literals
     achievers: dict[tuple[str, bool], tuple[Achiever, ...]]  # by predicate and sign
     costs: dict[Schema, float]
-    names: dict[Place, list[int]]  # the ground literals that have an object at a place of their predicate
-    values: dict[Pattern, Value]
-    placed: dict[tuple[Schema, int], tuple[Placed, ...]] = field(default_factory=dict)
+    names: dict[ArgumentKey, list[int]]  # the ground literals that have an object at a place of their predicate
+    values: dict[LiteralPattern, Value]
+    placed: dict[tuple[Schema, int], tuple[PlacedEffect, ...]] = field(default_factory=dict)
 
     @property
     def first_node(self) -> int:
@@ -71,12 +71,12 @@ class LiftedTask:
         """The first node of a step."""
         return self.first_node + (step - 1) * self.moments
 
-    def effects_of(self, schema: Schema, step: int) -> tuple[Placed, ...]:
+    def effects_of(self, schema: Schema, step: int) -> tuple[PlacedEffect, ...]:
         """The effects of a schema as a step of a plan."""
         placed = self.placed.get((schema, step))
         if placed is None:
             node = self.node_of(step)
-            placed = tuple(Placed(node + e.moment, step, e.literal.of_step(step), e) for e in schema.effects)
+            placed = tuple(PlacedEffect(node + e.moment, step, e.literal.of_step(step), e) for e in schema.effects)
             self.placed[schema, step] = placed
         return placed
 
@@ -86,24 +86,24 @@ class LiftedTask:
         pattern = (predicate, positive, known)
         value = self.values.get(pattern)
         if value is None:
-            value = self.values[pattern] = min(self._fitting(pattern), default=UNREACHABLE)
+            value = self.values[pattern] = min(self._matching_values(pattern), default=UNREACHABLE)
         return value
 
-    def _fitting(self, pattern: Pattern) -> Iterator[Value]:
+    def _matching_values(self, pattern: LiteralPattern) -> Iterator[Value]:
         predicate, positive, known = pattern
         if predicate in self.world.static:
-            found = sum(_fits(fact, known) for fact in self.initial.get(predicate, ()))
-            if (found > 0) if positive else (found == 0 or None in known):
+            matches = sum(_matches(fact, known) for fact in self.initial.get(predicate, ()))
+            if (matches > 0) if positive else (matches == 0 or None in known):
                 yield NOTHING
             return
         if None in known:  # `values` knows the others from the start
             for number in self._candidates(pattern):
-                if _fits(self.ground.names[number].fact, known):
+                if _matches(self.ground.names[number].fact, known):
                     yield self.ground.estimates.values[number]
         if not positive:
             yield NOTHING._replace(work=1)  # facts that no action speaks of are false from the start
 
-    def _candidates(self, pattern: Pattern) -> list[int]:
+    def _candidates(self, pattern: LiteralPattern) -> list[int]:
         """The ground literals of a predicate and sign, with the object that fewest of them have where it is known."""
         predicate, positive, known = pattern
         places = [(predicate, positive, n, name) for n, name in enumerate(known) if name is not None]
@@ -111,19 +111,19 @@ class LiftedTask:
         return min(lists, key=len)
 
 
-def _fits(fact: Fact, known: tuple[str | None, ...]) -> bool:
+def _matches(fact: Fact, known: tuple[str | None, ...]) -> bool:
     return all(name is None or name == own for name, own in zip(known, fact[1:], strict=True))
 
 
 def lifted_task(
-    ground: GroundTask, world: World, cost: CostOf = "unit", rng: np.random.Generator | None = None
+    ground: GroundTask, world: StaticWorld, cost: CostOf = "unit", rng: np.random.Generator | None = None
 ) -> LiftedTask:
     """The lifted task of a problem; with `rng`, conditions stand in random order.
 
     Raises:
       TooMuchToGround: Universal quantifiers or durations bring too many formulas.
     """
-    problem, work = ground.problem, Facts(limit=MAX_FORMULAS)
+    problem, work = ground.problem, FactTable(limit=MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
@@ -131,25 +131,25 @@ def lifted_task(
     if rng is not None:
         made = tuple(shuffled(schema, rng) for schema in made)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))
-    lowering = Lowering(world, numbers, work)  # its variables are the goal's: they meet no schema's
-    goal = lowering.lowered(problem.goal, {})
+    lifter = Lifter(world, numbers, work)  # its variables are the goal's: they meet no schema's
+    goal = lifter.lowered(problem.goal, {})
     literals = (LiftedLiteral(t.literal.fact[0], t.literal.fact[1:], t.literal.positive) for t in problem.timed)
     return LiftedTask(
         ground,
         world,
         {predicate: tuple(own) for predicate, own in initial.items()},
         goal,
-        tuple(lowering.variables),
-        tuple(Placed(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
+        tuple(lifter.variables),
+        tuple(PlacedEffect(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
         _achievers(made),
         _costs(made, cost),
-        _places(ground),
+        _literals_by_argument(ground),
         {(n.fact[0], n.positive, n.fact[1:]): v for n, v in zip(ground.names, ground.estimates.values, strict=True)},
     )
 
 
-def _places(ground: GroundTask) -> dict[Place, list[int]]:
-    places: dict[Place, list[int]] = {}
+def _literals_by_argument(ground: GroundTask) -> dict[ArgumentKey, list[int]]:
+    places: dict[ArgumentKey, list[int]] = {}
     for number, (predicate, *terms) in enumerate(name.fact for name in ground.names):
         positive = ground.names[number].positive
         for place in ((-1, ""), *enumerate(terms)):
@@ -158,11 +158,11 @@ def _places(ground: GroundTask) -> dict[Place, list[int]]:
 
 
 def _achievers(made: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achiever, ...]]:
-    found: dict[tuple[str, bool], list[Achiever]] = {}
+    matches: dict[tuple[str, bool], list[Achiever]] = {}
     for schema in made:
         for effect in schema.effects:
-            found.setdefault((effect.literal.predicate, effect.literal.positive), []).append((schema, effect))
-    return {key: tuple(own) for key, own in found.items()}
+            matches.setdefault((effect.literal.predicate, effect.literal.positive), []).append((schema, effect))
+    return {key: tuple(own) for key, own in matches.items()}
 
 
 def _costs(made: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:

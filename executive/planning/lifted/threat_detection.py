@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tailor.executive.planning.lifted.lifted_plan import LiftedLink, LiftedPlan, LiftedThreat, opposing
-from tailor.executive.planning.lifted.task import LiftedTask, Placed
+from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
 
 
 def threatened_by_step(
-    task: LiftedTask, plan: LiftedPlan, effects: tuple[Placed, ...], links: LiftedLink | None
+    task: LiftedTask, plan: LiftedPlan, effects: tuple[PlacedEffect, ...], links: LiftedLink | None
 ) -> LiftedPlan:
     """The plan with the threats of a new step's effects to older links, the newest link's first."""
     while links is not None:
@@ -19,7 +19,7 @@ def threatened_by_step(
     return plan
 
 
-def threatened(task: LiftedTask, plan: LiftedPlan, effects: Iterable[Placed], link: LiftedLink) -> LiftedPlan:
+def threatened(task: LiftedTask, plan: LiftedPlan, effects: Iterable[PlacedEffect], link: LiftedLink) -> LiftedPlan:
     """The plan with the threats of some effects to one link."""
     cell, count = plan.threats, plan.threat_count
     for placed in effects:

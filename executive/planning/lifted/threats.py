@@ -38,7 +38,7 @@ def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Ite
             yield child
 
 
-def choices(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
+def count_refinements(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
     """The number of refinements of a threat."""
     if not is_threat(task, plan, threat):
         return 1

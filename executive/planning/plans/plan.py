@@ -1,4 +1,4 @@
-"""The plan that the planner hands over: steps by time, causal links, orderings. And the result that carries it."""
+"""The finished plan (steps by time, causal links, orderings) and the result of a search."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Status = OneOf["solved", "unsolvable", "limit", "unsupported"]
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """An action at its place: `start` counts levels from 1, or seconds from 0 in a durative plan."""
+    """A scheduled action: `start` counts levels from 1, or seconds from 0 in a durative plan."""
 
     id: int
     action: Fact
@@ -38,8 +38,8 @@ DEFAULT_TICK_S = 0.01  # VHPOP's tolerance
 class Plan:
     """A partial-order plan with a schedule.
 
-    `steps` stand by start time, `links` by consumer in the order of the steps (the goal last), each consumer's newest
-    first, links to static facts included. `orderings` are the pairs (i, j) of steps with i before j: without
+    `steps` are sorted by start time; `links` by consumer in the order of the steps (the goal last), each consumer's
+    newest first, links from static facts included. `orderings` are the pairs (i, j) of steps with i before j: without
     durations all of them, with durations those where i ends before j starts. `bounds` is the temporal network of a
     durative plan: [a][b] is the greatest t_b - t_a in ticks of `tick_s` (None: unbounded) over the initial state and
     then start and end of steps 1, 2, ...; `bindings` are the lines that VHPOP adds to a lifted plan.
@@ -69,22 +69,14 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """How a search ended: a plan, a proof that there is none, a limit, or a feature that the planner does not speak."""
+    """Outcome of a search, with the numbers of plans generated and visited.
+
+    `solved` comes with a plan, the others with a reason: `unsolvable` is proven, `limit` is a limit of plans, steps,
+    time or memory, `unsupported` is a PDDL feature outside the planner's language.
+    """
 
     status: Status
     plan: Plan | None
     reason: str
     generated: int
     visited: int
-
-
-def unreachable() -> Result:
-    """The proof without a search: the relaxed planning graph never reaches the goal."""
-    return Result("unsolvable", None, "the goal cannot be reached, not even without delete effects", 1, 0)
-
-
-def dead_end(too_long: bool, step_limit: int, generated: int, visited: int) -> Result:
-    """The search ran dry: a proof, unless plans were left out for their length."""
-    if too_long:
-        return Result("limit", None, f"no plan of up to {step_limit} steps", generated, visited)
-    return Result("unsolvable", None, "every partial plan has been refined to a dead end", generated, visited)

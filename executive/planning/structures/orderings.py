@@ -15,7 +15,7 @@ GOAL_STEP = -1  # step number of the goal; the initial state is step 0
 FIRST = 2  # node of the first step, or of the first timed literal
 
 
-class Lasting(Protocol):
+class HasDuration(Protocol):
     """What takes time, in ticks; `longest` is None without an upper limit."""
 
     @property
@@ -42,7 +42,7 @@ class Orderings(Protocol):
         """How many numbers they consist of: nearly all of the memory that a plan does not share with its parent."""
         ...
 
-    def with_step(self, action: Lasting, moment: int, before: int) -> Orderings | None:
+    def with_step(self, action: HasDuration, moment: int, before: int) -> Orderings | None:
         """The orderings with the nodes of one more step, after the initial state and before the goal.
 
         Args:
@@ -74,7 +74,7 @@ class Closure(NamedTuple):
         """See `Orderings`."""
         return len(self.late)
 
-    def with_step(self, action: Lasting, moment: int, before: int) -> Closure:
+    def with_step(self, action: HasDuration, moment: int, before: int) -> Closure:
         """See `Orderings`; such a step has one node, and nothing comes before it but the initial state."""
         late = self.late
         bit = 1 << len(late)

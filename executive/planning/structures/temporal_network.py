@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tailor.executive.planning.structures.orderings import GOAL, INITIAL, Lasting
+from tailor.executive.planning.structures.orderings import GOAL, INITIAL, HasDuration
 
 UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
 _FAR = UNBOUNDED // 2  # as good as unbounded
@@ -37,7 +37,7 @@ class TemporalNetwork(NamedTuple):
         """See `Orderings`."""
         return len(self.rows) ** 2
 
-    def with_step(self, action: Lasting, moment: int, before: int) -> TemporalNetwork | None:
+    def with_step(self, action: HasDuration, moment: int, before: int) -> TemporalNetwork | None:
         """See `Orderings`: start and end, as far apart as the duration allows, one of them before a node."""
         start = len(self.rows)
         end = start + 1

@@ -2,7 +2,7 @@
 
 from tailor.executive.planning.ground.achievers import SIZES
 from tailor.executive.planning.ground.ground_task import make_task
-from tailor.executive.planning.ground.grounding import ground_actions, world_of
+from tailor.executive.planning.ground.grounding import ground_actions, static_world
 from tests.support.planning_problems import read
 
 DOMAIN = """(define (domain d) (:requirements :typing) (:types lamp)
@@ -16,7 +16,7 @@ def achievers(lamps):
     objects = " ".join(f"l{n:03}" for n in range(lamps))
     parts = f"(:objects {objects} - lamp) (:init (power)) (:goal (light))"
     _, problem = read(DOMAIN, f"(define (problem p) (:domain d) {parts})")
-    *_, grounded = ground_actions(world_of(problem), 0.01, 10_000)
+    *_, grounded = ground_actions(static_world(problem), 0.01, 10_000)
     task = make_task(problem, grounded)
     number = next(n for n, name in enumerate(task.names) if name.positive and name.fact == ("light",))
     return [(action.name[0], int(action.name[1][1:])) for action, _ in task.achievers[number]]

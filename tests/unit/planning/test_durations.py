@@ -6,7 +6,7 @@ import random
 import pytest
 
 from tailor.executive.planning.ground.durations import duration_range
-from tailor.executive.planning.ground.grounding import world_of
+from tailor.executive.planning.ground.grounding import static_world
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Operation
 from tailor.executive.planning.plans.durations import allowed_durations
 from tests.support.planning_problems import own
@@ -48,7 +48,7 @@ def numeric(rng, depth):
 
 def test_validator_and_search_agree_on_random_durations():
     _, problem = own("soccer-durative-p1")
-    world, rng = world_of(problem), random.Random(1)
+    world, rng = static_world(problem), random.Random(1)
     world = type(world)(world.domain, world.objects, world.static, world.facts, VALUES, world.temporal)
     for _ in range(500):
         bounds = tuple(DurationBound(rng.choice(["=", "<=", ">="]), numeric(rng, 3)) for _ in range(rng.randint(1, 3)))

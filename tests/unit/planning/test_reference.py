@@ -101,9 +101,9 @@ def test_reads_what_the_original_prints(name, form):
 # --- IPC -----------------------------------------------------------------------------------------
 IPC = {key: row for key, row in reference(SHARED, "22-ipc3").items() if key[0].startswith("ipc/")}
 # within the first 1000 plans only the first flaw order has had its turn: these are its figures
-FIRST_TURN = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
+INITIAL_QUOTA = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
 # rovers' {u} criterion asks for steps that delete a condition; the original also takes those that restore it at once
-IN_TURNS = {key: row for key, row in IPC.items() if key not in FIRST_TURN and key[0] != "ipc/rovers-strips"}
+IN_TURNS = {key: row for key, row in IPC.items() if key not in INITIAL_QUOTA and key[0] != "ipc/rovers-strips"}
 given = pytest.mark.skipif(not IPC, reason="../shared/pddl is absent: no competition problems to compare with")
 
 
@@ -112,13 +112,13 @@ def ipc(folder, name):
 
 
 @given
-@pytest.mark.parametrize("key", sorted(FIRST_TURN), ids="-".join)
+@pytest.mark.parametrize("key", sorted(INITIAL_QUOTA), ids="-".join)
 def test_ipc_counts_are_the_originals(key):
     domain, problem = ipc(*key)
     result = solve(domain, problem)
     assert validate(result.plan, domain, problem) == ""
-    assert len(result.plan.steps) <= int(FIRST_TURN[key]["steps"])
-    assert_same_counts(result, FIRST_TURN[key])
+    assert len(result.plan.steps) <= int(INITIAL_QUOTA[key]["steps"])
+    assert_same_counts(result, INITIAL_QUOTA[key])
 
 
 @given

@@ -1,0 +1,51 @@
+"""Plan space of a ground task."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
+from tailor.executive.planning.flaws.flaw_selection import FlawSelection
+from tailor.executive.planning.flaws.ranking import Ranking
+from tailor.executive.planning.ground.ground_formula import StaticWorld
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground_plans.extraction import extract
+from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasures
+from tailor.executive.planning.ground_plans.open_conditions import refine_open
+from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, initial_plan
+from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimates
+from tailor.executive.planning.ground_plans.threats import refine_threat
+from tailor.executive.planning.plans.plan import Plan
+from tailor.executive.planning.settings import Settings, rankings_for
+
+
+class GroundSpace:
+    """See `PlanSpace`."""
+
+    def __init__(self, task: GroundTask, world: StaticWorld, settings: Settings, rng: np.random.Generator) -> None:
+        self._task = task
+        self._world = world
+        names = rankings_for(settings, task.problem.metric)
+        self._ranking = Ranking(names, GroundEstimates(task), settings.weight)
+        measures = GroundFlawMeasures(task)
+        self._orders = [FlawSelection(parse_flaw_order(order.text), measures, rng) for order in settings.flaw_orders]
+        self.rank = self._ranking.rank
+
+    def initial(self) -> PartialPlan:
+        """See `PlanSpace`: the goal as open conditions."""
+        return initial_plan(self._task)
+
+    def is_complete(self, plan: PartialPlan) -> bool:
+        """See `PlanSpace`; always true of a ground plan."""
+        return True
+
+    def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
+        """See `PlanSpace`."""
+        flaw = self._orders[order].select(plan)
+        if isinstance(flaw, OpenCondition):
+            return refine_open(self._task, plan, flaw)
+        return refine_threat(self._task, plan, flaw)
+
+    def extract(self, plan: PartialPlan) -> Plan:
+        """See `PlanSpace`."""
+        return extract(plan, self._task, self._world)
