@@ -1,4 +1,4 @@
-"""Flaw selection orders in VHPOP's notation: `{flaw types}[limit]criterion/...`, and those with a name.
+"""Flaw selection orders in VHPOP notation, `{flaw types}[limit]criterion/...`, and the named ones.
 
 Source: Younes & Simmons, JAIR 20 (2003), section 4, after Pollack, Joslin & Paolucci (1997).
 """
@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from tailor.schemas.errors import UsageError
 
-# n, s: threat that no separation mends, one that separation mends; o: open condition; of these t: static, l: local to
-# the step of the newest one, u: unsafe (a step may undo it)
+# n, s: threat without or with a separation; o: open condition; among these t: static, l: local to the step of the
+# newest one, u: unsafe (a step may undo it)
 FLAW_TYPES = "nsotlu"
 HEURISTICS = ("add", "addr", "makespan")
 _PLAIN = ("LIFO", "FIFO", "R", "LR", "MR", "NEW", "REUSE")
@@ -53,7 +53,7 @@ NAMED = {
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
-    """One selection criterion: which flaws, with at most how many refinements, and which of them comes first."""
+    """One selection criterion: flaw types, maximum number of refinements, and the order among the flaws."""
 
     types: frozenset[str]
     limit: int | None
@@ -62,10 +62,13 @@ class Criterion:
 
 
 def parse_flaw_order(text: str) -> tuple[Criterion, ...]:
-    """The criteria of a named flaw order or of one in VHPOP's notation; case does not matter.
+    """The criteria of a flaw order.
+
+    Args:
+      text: A name from `NAMED` or VHPOP notation; case does not matter.
 
     Raises:
-      UsageError: Unknown name, malformed notation, or flaws that no criterion would ever select.
+      UsageError: Unknown name, malformed notation, or flaws that no criterion selects.
     """
     names = {name.lower(): notation for name, notation in NAMED.items()}
     notation = names.get(text.lower(), text)

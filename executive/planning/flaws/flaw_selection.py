@@ -1,4 +1,4 @@
-"""Chooses the flaw to work on: the earliest criterion that applies to any; by it the best, of equals the newest."""
+"""Selects the flaw to resolve: the first criterion that applies to any flaw decides, among equals the newest flaw."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ T_contra = TypeVar("T_contra", contravariant=True)
 
 
 class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
-    """What flaw orders ask about the flaws of a plan."""
+    """Interface of the flaw properties that flaw orders use."""
 
     def is_separable(self, plan: P_contra, threat: T_contra) -> bool:
-        """Whether separation may mend a threat."""
+        """Whether separation can resolve a threat."""
         ...
 
     def step(self, condition: C_contra) -> int:
-        """A number that tells the step that a condition belongs to from all others."""
+        """Number of the step that a condition belongs to, unique within the plan."""
         ...
 
     def static(self, condition: C_contra) -> bool:
-        """Whether no action touches the condition's predicate."""
+        """Whether no action changes the condition's predicate."""
         ...
 
     def is_unsafe(self, plan: P_contra, condition: C_contra) -> bool:
@@ -42,11 +42,11 @@ class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
         ...
 
     def count_condition_refinements(self, plan: P_contra, condition: C_contra) -> int:
-        """The number of ways to achieve a condition."""
+        """Number of refinements of an open condition."""
         ...
 
     def count_threat_refinements(self, plan: P_contra, threat: T_contra) -> int:
-        """The number of ways to mend a threat."""
+        """Number of refinements of a threat."""
         ...
 
     def has_new_achiever(self, plan: P_contra, condition: C_contra) -> bool:
@@ -54,36 +54,36 @@ class FlawMeasures(Protocol[P_contra, C_contra, T_contra]):
         ...
 
     def value(self, plan: P_contra, condition: C_contra) -> Value:
-        """The heuristic's estimate without reuse of steps."""
+        """The additive estimate, without reuse of steps."""
         ...
 
     def has_old_achiever(self, plan: P_contra, condition: C_contra) -> bool:
-        """Whether a step of the plan may already achieve the condition."""
+        """Whether a step already in the plan may achieve the condition."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class _PreparedCriterion(Generic[P, C, T]):
-    """A criterion with what it asks at every plan worked out once."""
+    """A criterion with its key functions and flags, computed once per search."""
 
     criterion: Criterion
     threat_key: Callable[[P, T], float]
     condition_key: Callable[[P, C], float]
-    least: float  # no key is smaller
-    any_threat: bool  # takes threats of both kinds, whatever their number of refinements
+    least: float  # lower bound of all keys
+    any_threat: bool  # applies to threats of both kinds, whatever their number of refinements
     no_threat: bool
     no_condition: bool
 
 
 class FlawSelection(Generic[P, C, T]):
-    """One flaw order, ready to choose in the plans of one search."""
+    """One flaw order, prepared for the plans of one search."""
 
     def __init__(
         self, criteria: tuple[Criterion, ...], measures: FlawMeasures[P, C, T], rng: np.random.Generator
     ) -> None:
         self._measures = measures
         self._rng = rng
-        self._choices = tuple(self._prepared(criterion) for criterion in criteria)
+        self._criteria = tuple(self._prepared(criterion) for criterion in criteria)
 
     def _prepared(self, criterion: Criterion) -> _PreparedCriterion[P, C, T]:
         types = criterion.types
@@ -98,40 +98,40 @@ class FlawSelection(Generic[P, C, T]):
         )
 
     def select(self, plan: P) -> C | T:
-        """The flaw of a plan that has one."""
-        for choice in self._choices:
-            threats = [] if choice.no_threat else self._threats(plan, choice)
-            conditions = [] if choice.no_condition else self._conditions(plan, choice.criterion)
+        """The flaw to resolve next, of a plan with at least one."""
+        for prepared in self._criteria:
+            threats = [] if prepared.no_threat else self._threats(plan, prepared)
+            conditions = [] if prepared.no_condition else self._conditions(plan, prepared.criterion)
             if threats or conditions:
-                return self._best(plan, choice, threats, conditions)
-        raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order sees to it
+                return self._best(plan, prepared, threats, conditions)
+        raise AssertionError("a flaw order selects every flaw")  # parse_flaw_order guarantees it
 
-    def _best(self, plan: P, choice: _PreparedCriterion[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
+    def _best(self, plan: P, prepared: _PreparedCriterion[P, C, T], threats: list[T], conditions: list[C]) -> C | T:
         """The flaw with the smallest key, of equals the newest."""
         best: C | T = threats[0] if threats else conditions[0]
         if len(threats) + len(conditions) == 1:
             return best
-        if choice.criterion.order == "FIFO":
+        if prepared.criterion.order == "FIFO":
             return conditions[-1] if conditions else threats[-1]
         smallest = math.inf
         for threat in threats:
-            key = choice.threat_key(plan, threat)
+            key = prepared.threat_key(plan, threat)
             if key < smallest:
                 best, smallest = threat, key
-                if key <= choice.least:
+                if key <= prepared.least:
                     return best
         for condition in conditions:
-            key = choice.condition_key(plan, condition)
+            key = prepared.condition_key(plan, condition)
             if key < smallest:
                 best, smallest = condition, key
         return best
 
-    def _threats(self, plan: P, choice: _PreparedCriterion[P, C, T]) -> list[T]:
+    def _threats(self, plan: P, prepared: _PreparedCriterion[P, C, T]) -> list[T]:
         """The threats that a criterion applies to."""
         threats: list[T] = cells_of(plan.threats)
-        if choice.any_threat or not threats:
+        if prepared.any_threat or not threats:
             return threats
-        measures, types, limit = self._measures, choice.criterion.types, choice.criterion.limit
+        measures, types, limit = self._measures, prepared.criterion.types, prepared.criterion.limit
         if not {"n", "s"} <= types:
             threats = [threat for threat in threats if measures.is_separable(plan, threat) == ("s" in types)]
         if limit is not None:
@@ -161,12 +161,12 @@ class FlawSelection(Generic[P, C, T]):
             or ("t" in types and measures.static(condition))
         )
 
-    # --- which comes first: the smallest key -----------------------------------------------------
+    # --- keys: the smallest comes first ----------------------------------------------------------
     def _threat_key(self, criterion: Criterion) -> Callable[[P, T], float]:
-        choices = self._measures.count_threat_refinements
+        count = self._measures.count_threat_refinements
         keys: dict[str, Callable[[P, T], float]] = {
-            "LR": choices,
-            "MR": lambda plan, threat: -choices(plan, threat),
+            "LR": count,
+            "MR": lambda plan, threat: -count(plan, threat),
             "R": lambda plan, threat: float(self._rng.random()),
         }
         return keys.get(criterion.order, lambda plan, threat: 0)

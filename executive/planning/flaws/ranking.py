@@ -1,6 +1,6 @@
-"""Ranks plans: a list of quantities, compared from left to right, the smallest first.
+"""Ranks of plans: tuples of quantities, compared from left to right, smallest first.
 
-Source: Younes & Simmons, JAIR 20 (2003), section 3: ADD and its reuse-aware kind ADDR.
+Source: Younes & Simmons, JAIR 20 (2003), section 3: ADD and its reuse-aware variant ADDR.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tailor.executive.planning.structures.refinable import Refinable
 from tailor.schemas.errors import UsageError
 
 Rank = tuple[float, ...]
-Estimate = tuple[float, float]  # cost, work of the open conditions
+Estimate = tuple[float, float]  # cost and work of the open conditions
 P = TypeVar("P", bound=Refinable)
 P_contra = TypeVar("P_contra", bound=Refinable, contravariant=True)
 
@@ -29,7 +29,7 @@ def check_rankings(names: tuple[str, ...]) -> tuple[str, ...]:
     """The names in upper case.
 
     Raises:
-      UsageError: Unknown ones, or rankings with and without reuse beside each other.
+      UsageError: An unknown ranking, or rankings with and without reuse in one list.
     """
     chosen = tuple(name.upper() for name in names)
     for given, name in zip(names, chosen, strict=True):
@@ -41,14 +41,14 @@ def check_rankings(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class PlanEstimates(Protocol[P_contra]):
-    """What the heuristic says about the open conditions of a plan."""
+    """Interface of the heuristic estimates of a plan's open conditions."""
 
     def plain(self, plan: P_contra) -> Estimate:
-        """Cost and work as if each condition were achieved for itself."""
+        """Cost and work with every condition achieved independently."""
         ...
 
     def reusing(self, plan: P_contra) -> Estimate:
-        """The same, but what a step of the plan may already provide costs nothing, and one unit of work."""
+        """As `plain`, but a condition that a step of the plan may achieve costs nothing and one unit of work."""
         ...
 
     def makespan(self, plan: P_contra) -> float:
@@ -57,7 +57,7 @@ class PlanEstimates(Protocol[P_contra]):
 
 
 class Ranking(Generic[P]):
-    """The rank of a plan, with its number of creation as the last word: of equals the newest first."""
+    """The rank of a plan; its number of generation comes last: among equals the newest first."""
 
     def __init__(self, names: tuple[str, ...], estimates: PlanEstimates[P], weight: float) -> None:
         chosen = check_rankings(names)
@@ -65,17 +65,17 @@ class Ranking(Generic[P]):
         plain = any(name in _PLAIN for name in chosen)
         self._estimate = estimates.reusing if reusing else estimates.plain if plain else None
         if chosen[-1:] == ("LIFO",):
-            chosen = chosen[:-1]  # the last word of every rank
+            chosen = chosen[:-1]  # every rank ends with it
         self._weight = weight
         self._is_default = chosen in (("ADD", "ADD_WORK", "BUC"), ("ADDR", "ADDR_WORK", "BUC"))
         self._terms = tuple(_term(name, estimates, weight) for name in chosen)
 
     def rank(self, plan: P, number: int) -> Rank | None:
-        """The rank of the plan that was created as the `number`-th; None when its first quantity is infinite."""
+        """The rank of the `number`-th plan generated; None if its cost estimate is infinite."""
         estimate = self._estimate(plan) if self._estimate is not None else (0, 0)
         if estimate[0] == math.inf:
             return None
-        if self._is_default:  # spelled out, for nearly every plan of a search is only ranked and never looked at again
+        if self._is_default:  # written out for speed: most plans are only ranked, never refined
             cost, work = estimate
             return (plan.cost + self._weight * cost, work, plan.threat_count > 0, -number)
         return (*[term(plan, estimate, number) for term in self._terms], -number)

@@ -18,7 +18,7 @@ Spanned = Iterable[tuple[GroundCondition, Span]]
 
 
 class Value(NamedTuple):
-    """An estimate: the actions' cost, the planning work (flaws to mend), the time in ticks or unit steps."""
+    """An estimate: cost of the actions, planning work (flaws to resolve), makespan in ticks or unit steps."""
 
     cost: float
     work: float
@@ -26,13 +26,13 @@ class Value(NamedTuple):
 
 
 UNREACHABLE = Value(math.inf, math.inf, math.inf)
-INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action but some work
+INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action, but one unit of work
 NOTHING = Value(0, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
 class Estimates:
-    """The values of all literals, by number; and the numbers of the reachable actions, level by level of the graph."""
+    """The values of all literals, and the numbers of the reachable actions level by level of the graph."""
 
     values: tuple[Value, ...]
     cost: tuple[float, ...]
@@ -56,7 +56,7 @@ def _value(condition: GroundCondition, values: Sequence[Value]) -> Value:
 
 
 def sum_of(parts: Iterable[Value]) -> Value:
-    """Costs and work add up; for the makespan the parts run side by side."""
+    """Costs and work are added; the makespan is the maximum, as parts may run in parallel."""
     cost, work, makespan = NOTHING
     for part in parts:
         cost += part.cost
@@ -75,12 +75,12 @@ def action_costs(actions: Sequence[GroundAction], kind: str) -> tuple[float, ...
 
 
 def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: Iterable[int], count: int) -> Estimates:
-    """The relaxed fixpoint, level by level, each level from the values of the one before.
+    """The fixpoint of the relaxed planning graph; each level is computed from the values of the one before.
 
     Args:
       actions: All ground actions.
-      costs: By the action's number.
-      initial: Literals that hold at first (or by themselves later).
+      costs: Cost of each action, by its number.
+      initial: Literals of the initial state and timed literals.
       count: Number of literals.
     """
     values = [UNREACHABLE] * count
@@ -102,7 +102,7 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
 
 
 def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: dict[int, Value]) -> bool:
-    """Improves what the action makes true, minimum by (cost, work); False when the action is not reached yet."""
+    """Improves the values of the action's effects, minimum by (cost, work); False if the action is not yet reached."""
     before = sum_of(_value(condition, values) for condition, _ in action.external_conditions)
     if before.cost == math.inf:
         return False
@@ -110,17 +110,17 @@ def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: 
         start = before
         if effect.conditions:
             start = sum_of([before, *(_value(condition, values) for condition, _ in effect.conditions)])
-        lasts = (action.shortest if effect.moment else 0) if action.duration_s else 1
-        value = (start.cost + cost, start.work + 1, start.makespan + lasts)
+        duration = (action.shortest if effect.moment else 0) if action.duration_s else 1
+        value = (start.cost + cost, start.work + 1, start.makespan + duration)
         old = changed.get(effect.literal) or values[effect.literal]
         if value < old and value[0] < math.inf:
-            # each quantity is minimal for itself where that matters: makespan never rises
+            # the makespan never rises, whichever achiever is the cheapest
             changed[effect.literal] = Value(value[0], value[1], min(value[2], old.makespan))
     return True
 
 
 def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:
-    """By literal, the numbers of the actions whose conditions speak of it."""
+    """The numbers of the actions whose conditions mention a literal, by literal."""
     users: list[list[int]] = [[] for _ in range(count)]
     for action in actions:
         spanned = [*action.conditions, *(c for effect in action.effects for c in effect.conditions)]
@@ -130,7 +130,7 @@ def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:
 
 
 def literals_of(condition: GroundCondition) -> Iterable[int]:
-    """Every literal that stands in a condition."""
+    """The literals of a condition."""
     if isinstance(condition, int):
         return (condition,)
     return (literal for part in condition.parts for literal in literals_of(part))

@@ -1,4 +1,4 @@
-"""Evaluates the durations of ground actions."""
+"""Durations of ground actions, in seconds and ticks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tailor.executive.planning.pddl.language import DurationBound, Function, Num
 
 
 def evaluate(number: Numeric, binding: Binding, world: StaticWorld) -> float | None:
-    """The value in seconds; None where a static function has no value or a division is by zero."""
+    """The value in seconds; None if a static function has no value or a divisor is 0."""
     match number:
         case Number(value):
             return value
@@ -40,7 +40,7 @@ def _operate(operator: str, a: float | None, b: float | None) -> float | None:
 def duration_range(
     bounds: tuple[DurationBound, ...], binding: Binding, world: StaticWorld
 ) -> tuple[float, float] | None:
-    """Shortest and longest duration in seconds (infinite without an upper limit); None when there is none."""
+    """Shortest and longest duration in seconds (infinite without an upper limit); None if no duration is allowed."""
     shortest, longest = 0.0, math.inf
     for bound in bounds:
         value = evaluate(bound.value, binding, world)
@@ -56,7 +56,7 @@ def duration_range(
 def ticks_of(bounds: tuple[float, float], tick_s: float) -> tuple[int, int | None]:
     """Shortest and longest duration in ticks, None without an upper limit.
 
-    What may take time takes a tick at least, lest its end meets its start.
+    An action that may take time takes at least one tick, so that start and end differ.
     """
     shortest = round(bounds[0] / tick_s)
     if math.isinf(bounds[1]):

@@ -1,4 +1,4 @@
-"""Ground actions: what a step of a ground plan is an instance of."""
+"""Ground actions and their effects; each step of a ground plan is an instance of one."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tailor.executive.planning.ground.ground_formula import GroundCondition
 
 Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end
 MOMENTS: dict[str, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}
-INSTANT: Span = (0, 0)  # of every condition and effect when actions take no time
+INSTANT: Span = (0, 0)  # span of every condition and effect if actions take no time
 
 
 class GroundEffect(NamedTuple):  # a tuple: grounding makes and compares thousands
-    """A literal that becomes true at a moment, if `conditions` (each with its span) hold."""
+    """A literal that becomes true at a moment if `conditions` (each with its span) hold."""
 
     literal: int
     moment: int
@@ -24,11 +24,11 @@ class GroundEffect(NamedTuple):  # a tuple: grounding makes and compares thousan
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundAction:
-    """An action with objects for parameters; without effects that achieve nothing (the no-op rule).
+    """An action with objects for its parameters, without effects that achieve nothing (the no-op rule).
 
-    Durations are in ticks of the settings' tolerance, `longest` is None without an upper limit; both are 0 when the
-    domain has no durative actions. `bits` has, by literal that the action may make true, the moments as a bit mask.
-    `external_conditions` are the conditions that others must achieve: see `external_conditions`.
+    Durations are in ticks of the settings' tolerance, `longest` is None without an upper limit; both are 0 if the
+    domain has no durative actions. `bits` maps each literal that the action may make true to a bit mask of moments.
+    `external_conditions` must be achieved by other steps: see the function of that name.
     """
 
     number: int  # grounding order
@@ -39,7 +39,7 @@ class GroundAction:
     bits: dict[int, int]
     shortest: int = 0
     longest: int | None = 0
-    duration_s: float = 0.0  # of the shortest
+    duration_s: float = 0.0  # shortest duration
     simple: bool = True  # no conditional effects
 
     def __str__(self) -> str:
@@ -49,6 +49,6 @@ class GroundAction:
 def external_conditions(
     conditions: tuple[tuple[GroundCondition, Span], ...], effects: Iterable[GroundEffect]
 ) -> tuple[tuple[GroundCondition, Span], ...]:
-    """The conditions of an action but those after its start that its start itself makes true."""
+    """The conditions of an action, without the later ones that its own start makes true."""
     own = {effect.literal for effect in effects if effect.moment == 0 and not effect.conditions}
     return tuple([(part, span) for part, span in conditions if span[1] == 0 or part not in own])

@@ -1,6 +1,6 @@
-"""Turns formulas into ground conditions: literals as small ints, static facts folded to true or false.
+"""Converts formulas to ground conditions: literals are small ints, static facts are folded to true or false.
 
-Literal `2 * i` says that fluent fact number i holds, `2 * i + 1` that it does not: `literal ^ 1` is the opposite.
+Literal `2 * i` means that fluent fact number i holds, `2 * i + 1` that it does not: `literal ^ 1` is the negation.
 """
 
 from __future__ import annotations
@@ -36,26 +36,33 @@ MAX_FORMULAS = 60_000  # a third of a second of grounding; the competition probl
 
 
 class TooMuchToGround(Exception):
-    """Grounding has met more bindings or formulas than it was allowed to."""
+    """Grounding exceeds its limit of bindings, formulas or actions."""
 
 
-class FactTable:
-    """Numbers fluent facts in the order in which they are met; only ever grows, and up to a limit of work."""
+class FormulaLimit:
+    """Counts converted formulas down from a limit."""
 
-    def __init__(self, known: Iterable[Fact] = (), limit: int = MAX_FORMULAS) -> None:
-        """Starts with known facts; `limit` bounds the formulas that may be grounded."""
-        self._numbers: dict[Fact, int] = {}
+    def __init__(self, limit: int) -> None:
         self._left = limit
-        for fact in known:
-            self.literal(fact)
 
     def spend(self) -> None:
-        """One more formula is grounded."""
+        """Counts one more formula; raises TooMuchToGround beyond the limit."""
         self._left -= 1
         if self._left < 0:
             raise TooMuchToGround(
                 "grounding met more formulas than its limit; are there quantifiers over many objects?"
             )
+
+
+class FactTable(FormulaLimit):
+    """Numbers fluent facts in the order of their first occurrence; never shrinks."""
+
+    def __init__(self, facts: Iterable[Fact] = (), limit: int = MAX_FORMULAS) -> None:
+        """Numbers the given facts first; `limit` bounds the formulas that may be grounded."""
+        super().__init__(limit)
+        self._numbers: dict[Fact, int] = {}
+        for fact in facts:
+            self.literal(fact)
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -64,28 +71,28 @@ class FactTable:
         return iter(self._numbers)
 
     def literal(self, fact: Fact, positive: bool = True) -> int:
-        """The literal of a fact, which gets a number when it has none."""
+        """The literal of a fact; a new fact gets the next number."""
         number = self._numbers.setdefault(fact, len(self._numbers))
         return 2 * number + (not positive)
 
     def names(self) -> tuple[Literal, ...]:
-        """The literals in words, by number."""
+        """The literals by number."""
         return tuple(Literal(fact, positive) for fact in self._numbers for positive in (True, False))
 
 
 @dataclass(frozen=True, slots=True)
 class StaticWorld:
-    """What stands still while planning: objects by type, and the facts of predicates that no action touches."""
+    """The part of a problem that no action changes: objects by type, static facts, values of functions."""
 
     domain: Domain
-    objects: Mapping[str, tuple[str, ...]]  # by type, in the order in which they are tried
-    static: frozenset[str]  # predicates
-    facts: frozenset[Fact]  # the static ones that hold
-    values: Mapping[Fact, float]  # of static functions
+    objects: Mapping[str, tuple[str, ...]]  # by type, in the order in which bindings are tried
+    static: frozenset[str]  # predicates that no action changes
+    facts: frozenset[Fact]  # facts of static predicates that hold
+    values: Mapping[Fact, float]  # values of static functions
     temporal: bool  # whether any action takes time
 
     def choices(self, variable: Typed) -> tuple[str, ...]:
-        """The objects that a variable may stand for."""
+        """The objects of a variable's types."""
         if len(variable.types) == 1:
             return self.objects.get(variable.types[0], ())
         allowed = {name for kind in variable.types for name in self.objects.get(kind, ())}
@@ -98,14 +105,17 @@ Binding = Mapping[str, str]
 def ground(
     formula: Formula, binding: Binding, world: StaticWorld, facts: FactTable, positive: bool = True
 ) -> GroundCondition:
-    """The ground condition that a formula stands for, in negation normal form.
+    """The ground condition of a formula, in negation normal form.
 
     Args:
-      formula: Every free variable of it is in `binding`.
-      binding: Variable to object.
+      formula: Formula whose free variables are all bound.
+      binding: Object of each variable.
       world: Objects and static facts.
-      facts: Numbers for fluent facts; new ones are added.
+      facts: Numbers of fluent facts; new facts are added.
       positive: False for the formula's negation.
+
+    Raises:
+      TooMuchToGround: The table's limit of formulas is reached.
     """
     facts.spend()
     match formula:
@@ -128,7 +138,7 @@ def ground(
 
 
 def bindings(variables: tuple[Typed, ...], binding: Binding, world: StaticWorld) -> Iterator[Binding]:
-    """All ways to extend a binding by objects for the variables."""
+    """All extensions of a binding by objects for the variables."""
     if not variables:
         yield binding
         return
@@ -138,7 +148,7 @@ def bindings(variables: tuple[Typed, ...], binding: Binding, world: StaticWorld)
 
 
 def negation(condition: GroundCondition) -> GroundCondition:
-    """The opposite condition."""
+    """The negation of a condition."""
     if isinstance(condition, int):
         return condition ^ 1
     parts = tuple(negation(part) for part in condition.parts)
@@ -146,6 +156,6 @@ def negation(condition: GroundCondition) -> GroundCondition:
 
 
 def contradictory(conditions: Iterable[GroundCondition]) -> bool:
-    """Whether a literal and its opposite stand among conditions of one moment."""
+    """Whether conditions of one moment include a literal and its negation."""
     literals = {condition for condition in conditions if isinstance(condition, int)}
     return any(literal ^ 1 in literals for literal in literals)

@@ -1,4 +1,4 @@
-"""The ground task that one search plans with: reachable ground actions, initial literals, goal, estimates."""
+"""The ground task of a search: reachable ground actions, initial literals, goal, estimates."""
 
 from __future__ import annotations
 
@@ -19,10 +19,7 @@ CostOf = OneOf["unit", "duration", "relative"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundTask:
-    """A ground planning problem; literals as in `ground_formula`.
-
-    `achievers` has, by literal, the reachable ground actions with the effect that makes it true: see `achievers_of`.
-    """
+    """A ground planning problem; literals as in `ground_formula`, achievers by literal as in `achievers_of`."""
 
     problem: Problem
     temporal: bool
@@ -32,15 +29,15 @@ class GroundTask:
     timed: tuple[tuple[int, int], ...]  # literal, tick
     goal: tuple[GroundCondition, ...]
     achievers: tuple[tuple[Achiever, ...], ...]
-    costs: tuple[float, ...]  # by the action's number
+    costs: tuple[float, ...]  # by action number
     estimates: Estimates
     simple: bool  # no action has conditional effects
-    first_node: int  # of the first step: behind the initial state, the goal and the timed literals
-    moments: int  # of a step: start and end, or only one when actions take no time
+    first_node: int  # node of the first step, after the initial state, the goal and the timed literals
+    moments: int  # nodes of a step: start and end, or only one if actions take no time
 
 
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
-    """The task of a problem whose world has been grounded."""
+    """The task of a problem, given the ground actions of its static world."""
     facts = FactTable(grounded.facts)
     goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
     if contradictory(goal):

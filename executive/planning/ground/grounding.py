@@ -1,6 +1,6 @@
-"""Grounding: action schemas x objects -> ground actions, cut early on static facts and inequalities.
+"""Grounding: action schemas x objects -> ground actions, pruned early by static facts and inequalities.
 
-Owns the order that every count depends on: actions by name, objects by name (constants first), parameters left
+Owns the order that every count depends on: actions by name, objects by name (constants first), parameters from left
 to right.
 """
 
@@ -36,13 +36,13 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
 MAX_ACTIONS = 10_000  # of a ground task; the competition problems at hand have 756 at most
-MAX_WAYS = 64  # to escape the additions of the same action: they double with each that looks at two moments
+MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
 
 
 @dataclass(frozen=True, slots=True)
 class GroundActions:
-    """The ground actions of a world, with the numbers of the facts they speak of; reusable while the world stands."""
+    """The ground actions of a static world and the facts they mention, by number; reusable with an equal world."""
 
     world: StaticWorld
     tick_s: float
@@ -51,11 +51,11 @@ class GroundActions:
 
 
 def static_world(problem: Problem) -> StaticWorld:
-    """The still part of a problem."""
+    """The part of a problem that no action changes."""
     domain = problem.domain
-    touched = {effect.atom.predicate for action in domain.actions for effect in action.effects}
-    touched |= {timed.literal.fact[0] for timed in problem.timed}
-    static = frozenset(set(domain.predicates) - touched)
+    changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
+    changing |= {timed.literal.fact[0] for timed in problem.timed}
+    static = frozenset(set(domain.predicates) - changing)
     ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
     objects: dict[str, list[str]] = {kind: [] for kind in domain.types}
     for item in ordered:
@@ -67,10 +67,10 @@ def static_world(problem: Problem) -> StaticWorld:
 
 
 def ground_actions(world: StaticWorld, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
-    """Grounds step by step: yields None every few bindings, and the ground actions at last.
+    """Grounds all actions: yields None every CHECK_EVERY bindings, and the ground actions at the end.
 
     Raises:
-      TooMuchToGround: More than `limit` bindings of parameters were tried.
+      TooMuchToGround: More than `limit` bindings of parameters tried, or too many formulas or actions.
     """
     facts = FactTable()
     actions: list[GroundAction] = []
@@ -91,7 +91,7 @@ def ground_actions(world: StaticWorld, tick_s: float, limit: int) -> Iterator[Gr
 
 
 def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions:
-    """The same ground actions with their conditions in random order: so open conditions come in another order."""
+    """The same ground actions with their conditions, hence the open conditions, in random order."""
     mixed = (
         tuple(action.conditions[n] for n in rng.permutation(len(action.conditions))) for action in grounded.actions
     )
@@ -101,7 +101,7 @@ def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions
 
 # --- bindings ------------------------------------------------------------------------------------
 def _schema_bindings(schema: Action, world: StaticWorld) -> Iterator[Binding | None]:
-    """Complete bindings that pass the static conditions; None for each partial one that was cut or extended."""
+    """Complete bindings that satisfy the static conditions; None for each partial binding that was tried."""
     names = [parameter.name for parameter in schema.parameters]
     tests: list[list[Formula]] = [[] for _ in range(len(names) + 1)]
     for part in _static_parts(schema, world):
@@ -131,7 +131,7 @@ def _extend(
 
 
 def _static_parts(schema: Action, world: StaticWorld) -> Iterator[Formula]:
-    """The conjuncts of the conditions that static facts and equality decide alone."""
+    """The conjuncts of the conditions that static facts and equality decide."""
     pending = [condition.formula for condition in schema.conditions]
     while pending:
         formula = pending.pop()
@@ -158,7 +158,7 @@ def _terms(formula: Formula) -> tuple[str, ...]:
 def _instance(
     number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable, tick_s: float
 ) -> GroundAction | None:
-    """The ground action, or None when it can never run or achieves nothing."""
+    """The ground action; None if it is never applicable or achieves nothing."""
     bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
     conditions = _conditions(schema.conditions, binding, world, facts)
     if bounds is None or conditions is None:
@@ -190,7 +190,7 @@ def _span(when: When, temporal: bool) -> Span:
 def _conditions(
     conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
 ) -> tuple[tuple[GroundCondition, Span], ...] | None:
-    """The ground conditions by span, in order; None when one is false, or two of one span contradict each other."""
+    """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
     grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
         result = ground(condition.formula, binding, world, facts)
@@ -212,7 +212,7 @@ def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTa
             conditions = _conditions(effect.condition, inner, world, facts)
             if conditions is not None:
                 literal = ground(effect.atom, inner, world, facts, effect.positive)
-                assert isinstance(literal, int)  # an atom that an action touches is no static one
+                assert isinstance(literal, int)  # the predicate of an effect is not static
                 effects.setdefault(GroundEffect(literal, moment, conditions))
     return list(effects)
 
@@ -220,40 +220,40 @@ def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTa
 def _useful(
     conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
 ) -> tuple[GroundEffect, ...]:
-    """The no-op rule: without effects that the action itself demands already, or undoes at the same moment.
+    """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
 
-    A delete that the same action adds again neither achieves nor threatens: add effects win. An effect that the
-    action's own condition promises to hold up to that very moment changes nothing.
+    An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
+    same action adds at that moment neither achieves nor threatens: add effects win.
     """
-    demanded = {(part, span[1]) for part, span in conditions}
+    required = {(part, span[1]) for part, span in conditions}
     at: dict[tuple[int, int], list[GroundEffect]] = {}
     for effect in effects:
         at.setdefault((effect.literal, effect.moment), []).append(effect)
     kept: list[GroundEffect] = []
     for effect in effects:
-        if (effect.literal, effect.moment) not in demanded:
+        if (effect.literal, effect.moment) not in required:
             additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
             kept += _unless_added(effect, additions)
     return tuple(kept)
 
 
 def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
-    """An effect under the conditions that no add effect of the same moment wins; none when one always does.
+    """An effect under conditions that exclude the add effects of its moment; empty if one of these always happens.
 
-    Where an add effect looks at several moments, it is enough that it fails at one: each is an effect of its own.
+    An add effect with conditions at several moments fails if those of one moment fail: each gives one variant.
     """
-    ways = [effect.conditions]
+    variants = [effect.conditions]
     for other in additions:
         spans: dict[Span, list[GroundCondition]] = {}
         for condition, span in other.conditions:
             spans.setdefault(span, []).append(condition)
-        lost = [(negation(conjunction(own)), span) for span, own in spans.items()]
-        ways = [
-            (*way, *((part, span) for part in conjuncts(fails)))
-            for way in ways
-            for fails, span in lost
+        failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
+        variants = [
+            (*variant, *((part, span) for part in conjuncts(fails)))
+            for variant in variants
+            for fails, span in failures
             if fails != FALSE
         ]
-        if len(ways) > MAX_WAYS:
-            raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
-    return [effect._replace(conditions=way) for way in ways] if additions else [effect]
+        if len(variants) > MAX_VARIANTS:
+            raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
+    return [effect._replace(conditions=variant) for variant in variants] if additions else [effect]

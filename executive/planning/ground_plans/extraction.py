@@ -1,4 +1,4 @@
-"""Turns a partial plan without flaws into the plan that is handed over: schedule, links in words, static links."""
+"""Converts a partial plan without flaws to a finished plan: schedule, links by name, links from static facts."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from tailor.executive.planning.structures.temporal_network import TemporalNetwor
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The steps of a finished plan by name, and where their nodes stand in its orderings."""
+    """The actions of a finished plan, with the layout of their nodes in its orderings."""
 
     names: tuple[Fact, ...]
     orderings: Orderings
     first_node: int
-    moments: int  # nodes of a step
+    moments: int  # nodes per step
     tick_s: float
 
     def steps(self) -> tuple[Step, ...]:
-        """The steps by start time; of those that start together the newest first, as VHPOP prints them."""
+        """The steps by start time; of simultaneous ones the newest first, as VHPOP prints them."""
         times, temporal = self.orderings.earliest(), self.moments == 2
         tick = self.tick_s if temporal else 1.0
         steps = []
@@ -38,7 +38,7 @@ class Frame:
         return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
 
     def pairs(self) -> Iterator[tuple[int, int]]:
-        """The steps (i, j) of which i must end before j starts."""
+        """The pairs (i, j) of steps where i must end before j starts."""
         late, count = self.orderings.late, len(self.names)
         for i in range(count):
             after = late[self.first_node + i * self.moments + self.moments - 1]
@@ -50,7 +50,7 @@ class Frame:
         """The temporal network's bounds without the nodes of the goal and of timed literals; () without durations."""
         if not isinstance(self.orderings, TemporalNetwork):
             return ()
-        bounds = self.orderings.bounds()  # the goal's row and column are left out already
+        bounds = self.orderings.bounds()  # without the goal's row and column
         kept = [0, *range(self.first_node - 1, len(bounds))]
         return tuple(tuple(bounds[i][j] for j in kept) for i in kept)
 
@@ -71,51 +71,51 @@ class Frame:
 
 
 def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
-    """The plan of a ground search in words."""
+    """The finished plan of a ground search."""
     names = tuple(action.name for action in plan.steps)
     frame = Frame(names, plan.orderings, task.first_node, task.moments, task.tick_s)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 
 def _links(plan: PartialPlan, task: GroundTask, world: StaticWorld, steps: tuple[Step, ...]) -> Iterator[Link]:
-    """Links by consumer; those from static facts, which the search never saw, count as the newest."""
-    found: dict[int, list[Link]] = {}
+    """Links by consumer; links from static facts, which grounding removes, are added as the newest."""
+    links_by_consumer: dict[int, list[Link]] = {}
     cell = plan.links
     while cell is not None:
         link = Link(step_of(task, cell.producer), task.names[cell.literal], step_of(task, cell.first))
-        if link not in found.setdefault(link.consumer, []):
-            found[link.consumer].append(link)
+        if link not in links_by_consumer.setdefault(link.consumer, []):
+            links_by_consumer[link.consumer].append(link)
         cell = cell.rest
     schemata = {action.name: action for action in world.domain.actions}
     for step in steps:
         schema = schemata[step.action[0]]
         binding = {p.name: name for p, name in zip(schema.parameters, step.action[1:], strict=True)}
         formulas = [condition.formula for condition in schema.conditions]
-        made = (link.literal for links in found.values() for link in links if link.producer == step.id)
+        achieved = (link.literal for links in links_by_consumer.values() for link in links if link.producer == step.id)
         static = dict.fromkeys(static_literals(And(tuple(formulas)), binding, world))
-        static.update(dict.fromkeys(x for literal in made for x in _static_guard(schema, binding, literal, world)))
+        static.update(dict.fromkeys(x for literal in achieved for x in _static_guard(schema, binding, literal, world)))
         yield from (Link(0, literal, step.id) for literal in static)
-        yield from found.get(step.id, ())
+        yield from links_by_consumer.get(step.id, ())
     yield from (Link(0, literal, GOAL) for literal in static_literals(task.problem.goal, {}, world))
-    yield from found.get(GOAL, ())
+    yield from links_by_consumer.get(GOAL, ())
 
 
-def _static_guard(schema: Action, binding: Binding, made: Literal, world: StaticWorld) -> tuple[Literal, ...]:
-    """The static literals under which a conditional effect of the action makes a literal true."""
+def _static_guard(schema: Action, binding: Binding, achieved: Literal, world: StaticWorld) -> tuple[Literal, ...]:
+    """The static conditions of the conditional effect that achieves a literal."""
     for effect in schema.effects:
-        if (effect.atom.predicate, effect.positive) == (made.fact[0], made.positive):
+        if (effect.atom.predicate, effect.positive) == (achieved.fact[0], achieved.positive):
             formula = And(tuple(condition.formula for condition in effect.condition))
             for inner in bindings(effect.variables, binding, world):
                 fact: Fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
                 static = static_literals(formula, inner, world)
-                if fact == made.fact and all((x.fact in world.facts) == x.positive for x in static):
+                if fact == achieved.fact and all((x.fact in world.facts) == x.positive for x in static):
                     return static
     return ()
 
 
 def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
-    """The static literals that a formula demands outright, without disjunctions; the last one first."""
-    found: list[Literal] = []
+    """The static literals that a formula implies, disjunctions ignored; the last one first."""
+    literals: list[Literal] = []
     pending = [formula]
     while pending:
         part = pending.pop()
@@ -124,6 +124,6 @@ def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> t
             pending += part.parts
         elif isinstance(inner, Atom) and inner.predicate in world.static:
             fact: Fact = (inner.predicate, *(binding.get(term, term) for term in inner.terms))
-            if Literal(fact, positive) not in found:
-                found.append(Literal(fact, positive))
-    return tuple(found)
+            if Literal(fact, positive) not in literals:
+                literals.append(Literal(fact, positive))
+    return tuple(literals)

@@ -1,4 +1,4 @@
-"""What flaw orders ask about the flaws of a ground plan."""
+"""Properties of a ground plan's flaws, for flaw orders."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tailor.executive.planning.structures.connectives import Disjunction
 
 
 class GroundFlawMeasures:
-    """See `FlawMeasures`; of a compound condition the parts count as its refinements."""
+    """See `FlawMeasures`; each part of a compound condition counts as one refinement."""
 
     def __init__(self, task: GroundTask) -> None:
         self._task = task
@@ -19,7 +19,7 @@ class GroundFlawMeasures:
         self.count_threat_refinements = count_refinements
 
     def is_separable(self, plan: PartialPlan, threat: Threat) -> bool:
-        """Only a conditional effect can be separated."""
+        """See `FlawMeasures`; only threats by conditional effects are separable."""
         return bool(threat.conditions)
 
     def step(self, condition: OpenCondition) -> int:
@@ -27,7 +27,7 @@ class GroundFlawMeasures:
         return (condition.first - self._first) // self._moments
 
     def static(self, condition: OpenCondition) -> bool:
-        """Never: grounding has folded static conditions away."""
+        """See `FlawMeasures`; always false, as grounding folds static conditions."""
         return False
 
     def is_unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:

@@ -1,4 +1,4 @@
-"""Refining an open condition by a new step: one plan for each action that achieves it."""
+"""Refinement of an open condition by a new step: one plan per action that achieves it."""
 
 from __future__ import annotations
 
@@ -13,16 +13,23 @@ from tailor.executive.planning.structures.orderings import Orderings
 
 
 class _Insertion(NamedTuple):
-    """What follows from the new step's place alone: actions that take as long share it."""
+    """The changes that do not depend on the action's name; actions of equal duration share them."""
 
     orderings: Orderings
     link: Link
-    threats: Threat | None  # those to the new link put in front
+    threats: Threat | None  # threats to the new link first
     threat_count: int
 
 
 def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int) -> list[PartialPlan]:
-    """The plans in which a new step mends a flaw that `plan` no longer has, in the order of the achievers."""
+    """The plans in which a new step achieves the condition, in the order of the achievers.
+
+    Args:
+      task: The ground task.
+      plan: The partial plan, the open condition already removed.
+      flaw: The open condition.
+      literal: Its literal.
+    """
     achievers = task.achievers[literal]
     if not achievers:
         return []
@@ -32,7 +39,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
     insertions: dict[tuple[int, int, int | None, int], _Insertion | None] = {}
     children = []
     for action, effect in achievers:
-        undoes_literal = literal ^ 1 in action.bits  # then no other action has the same threats to the new link
+        undoes_literal = literal ^ 1 in action.bits  # its threats to the new link are then its own
         kind = (effect.moment, action.shortest, action.longest, action.number if undoes_literal else -1)
         if kind not in insertions:
             insertions[kind] = _insertion(task, plan, flaw, action, effect)
@@ -64,7 +71,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
 def _insertion(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, action: GroundAction, effect: GroundEffect
 ) -> _Insertion | None:
-    """The place of one action and those like it; None when the orderings have none."""
+    """The insertion of an action and those of its kind; None if the orderings become inconsistent."""
     _, first, last, _ = flaw
     literal = effect.literal
     orderings = plan.orderings.with_step(action, effect.moment, first)
@@ -79,7 +86,7 @@ def _insertion(
 
 
 def opened_by(conditions: Spanned, node: int, cell: OpenCondition | None) -> OpenCondition | None:
-    """Opens a step's conditions so that the first stands at the head; `node` is the step's start."""
+    """The list with a step's conditions in front, the first at the head; `node` is the step's start."""
     for condition, (first, last) in reversed(conditions):
         cell = new(OpenCondition, (condition, node + first, node + last, cell))
     return cell

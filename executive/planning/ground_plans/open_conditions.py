@@ -1,4 +1,4 @@
-"""Refining an open condition: a new step, an old step, or the initial state achieves it.
+"""Refinements of an open condition: achieved by a new step, an old step or the initial state.
 
 Owns the order of the children, which every count depends on.
 """
@@ -18,7 +18,7 @@ from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
 
 def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> list[PartialPlan]:
-    """All plans that mend the flaw: by a new step of each achiever, by old ones, newest first, by the initial state."""
+    """All resolvers of an open condition: new steps, old steps (newest first), the initial state."""
     condition = flaw.condition
     rest = _without(plan, flaw)
     if isinstance(condition, Disjunction):
@@ -34,16 +34,16 @@ def refine_open(task: GroundTask, plan: PartialPlan, flaw: OpenCondition) -> lis
 
 
 def _without(plan: PartialPlan, flaw: OpenCondition) -> PartialPlan:
-    """The plan without an open condition; spelled out because `_replace` takes six times as long."""
+    """The plan without an open condition; written out because `_replace` takes six times as long."""
     steps, orderings, effects, links, opened, threats, open_count, threat_count, cost = plan
     opened = without(opened, flaw)
     return new(PartialPlan, (steps, orderings, effects, links, opened, threats, open_count - 1, threat_count, cost))
 
 
 def reusable(plan: PartialPlan, flaw: OpenCondition) -> int:
-    """The mask of the nodes that make the (literal) condition true and may come before its consumer.
+    """Bit mask of the nodes that achieve the (literal) condition and may come before its consumer.
 
-    A condition over all of an action may be met by the action's own start.
+    A condition over all of an action may be achieved by the action's own start.
     """
     assert isinstance(flaw.condition, int)
     late = plan.orderings.late[flaw.first]
@@ -61,7 +61,7 @@ def _nodes(mask: int) -> Iterator[int]:
 
 
 def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) -> PartialPlan:
-    """The plan with one part of a compound condition as its newest open conditions."""
+    """The plan with a part of a compound condition as newest open conditions."""
     parts = condition.parts if isinstance(condition, Conjunction) else (condition,)
     return _with_conditions(plan, tuple((part, (flaw.first, flaw.last)) for part in parts), 0)
 
@@ -72,7 +72,7 @@ def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> Parti
     return plan._replace(open=opened, open_count=plan.open_count + len(conditions))
 
 
-# --- the three ways ------------------------------------------------------------------------------
+# --- achievers -----------------------------------------------------------------------------------
 def _by_old_step(
     task: GroundTask, plan: PartialPlan, flaw: OpenCondition, literal: int, node: int
 ) -> list[PartialPlan]:

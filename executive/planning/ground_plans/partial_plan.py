@@ -1,6 +1,6 @@
-"""The partial plan: steps, orderings, causal links, and its flaws. Immutable; lists are shared with the parent plan.
+"""The ground partial plan: steps, orderings, causal links and flaws. Immutable; shares lists with its parent.
 
-Terms as in Younes & Simmons, JAIR 20 (2003), section 2. Flaws stand in singly linked lists, the newest at the head.
+Terms as in Younes & Simmons, JAIR 20 (2003), section 2. Flaws are singly linked lists, the newest at the head.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from tailor.executive.planning.ground_plans.step_effects import StepEffects
 from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
-new = tuple.__new__  # makes a named tuple of a plain one in half the time of its constructor, a Python function
+new = tuple.__new__  # makes a named tuple from a plain one in half the time of its constructor
 
 
 class Link(NamedTuple):
-    """A causal link: `producer` makes `literal` true, and nothing may undo it until `last`.
+    """A causal link: `producer` makes `literal` true, and no step may undo it until `last`.
 
-    The condition belongs to the node `first`; `last` is another one only for a condition over all of an action.
+    The condition belongs to the node `first`; `last` differs from it only for a condition over all of an action.
     """
 
     producer: int
@@ -52,7 +52,7 @@ Flaw = OpenCondition | Threat
 
 
 class PartialPlan(NamedTuple):
-    """A set of plans: all that keep to these steps, orderings and links. Step i is `steps[i - 1]`."""
+    """Represents all plans with these steps, orderings and links. Step i is `steps[i - 1]`."""
 
     steps: tuple[GroundAction, ...]
     orderings: Orderings
@@ -66,7 +66,7 @@ class PartialPlan(NamedTuple):
 
 
 def step_of(task: GroundTask, node: int) -> int:
-    """The step that a node belongs to: 0 is the initial state with its timed literals."""
+    """The step that a node belongs to: 0 for the initial state and timed literals, GOAL_STEP for the goal."""
     if node == GOAL:
         return GOAL_STEP
     beyond = node - task.first_node

@@ -1,4 +1,4 @@
-"""What the additive heuristic says about the open conditions of a ground plan."""
+"""Additive estimates of the open conditions of a ground plan."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class GroundEstimates:
         return cost, work
 
     def reusing(self, plan: PartialPlan) -> Estimate:
-        """See `PlanEstimates`; the hottest loop of the planner, hence without calls."""
+        """See `PlanEstimates`; without calls, as it is the planner's hottest loop."""
         costs, works = self._costs, self._works
         late, effects = plan.orderings.late, plan.effects
         known, bits, node = effects.known, effects.bits, effects.node
@@ -37,7 +37,7 @@ class GroundEstimates:
         cell = plan.open
         while cell is not None:
             condition, first, _, cell = cell
-            if condition.__class__ is int:  # quicker than isinstance, and as true
+            if condition.__class__ is int:  # faster than isinstance
                 mask = known[condition]
                 if bits is not None and condition in bits:
                     mask |= bits[condition] << node
@@ -53,7 +53,7 @@ class GroundEstimates:
         return cost, work
 
     def makespan(self, plan: PartialPlan) -> float:
-        """See `makespan`."""
+        """See `PlanEstimates`."""
         conditions = []
         cell = plan.open
         while cell is not None:

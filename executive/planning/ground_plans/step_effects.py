@@ -1,4 +1,4 @@
-"""Which nodes of a plan make which literal true: one bit mask of nodes per literal, built when first asked for."""
+"""Nodes of a plan that make each literal true: one bit mask of nodes per literal, built on first use."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tailor.executive.planning.ground.ground_action import GroundAction
 class StepEffects:
     """The effects of a plan's steps; plans with the same steps share one.
 
-    A plan is often thrown away before anyone asks, so a new step is first only noted: `masks()` copies the table.
+    Most plans are dropped before their masks are read, so a new step is only noted; `masks()` copies the table.
     """
 
     __slots__ = ("_masks", "bits", "known", "node")
@@ -25,7 +25,7 @@ class StepEffects:
         return StepEffects(self.masks(), action.bits, node)
 
     def masks(self) -> list[int]:
-        """By literal, the mask of the nodes that make it true; not to be changed."""
+        """Bit mask of the nodes that make each literal true, by literal; read only."""
         if self._masks is None:
             assert self.bits is not None
             masks = self.known.copy()

@@ -1,6 +1,6 @@
-"""Finding threats: what may undo a new link, and which links a new step may undo.
+"""Detection of threats: steps that may undo a new link, and links that a new step may undo.
 
-Owns the order in which they are noted, which every count depends on.
+Owns the order in which threats are listed, which every count depends on.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _ALWAYS: tuple[Spanned, ...] = ((),)  # one effect without conditions
 
 
 def guarded_links(link: Link | None) -> Guarded:
-    """Links, newest first, each behind the literal that would undo it."""
+    """Links, newest first, each with the literal that undoes it."""
     guarded = []
     while link is not None:
         guarded.append((link.literal ^ 1, link))
@@ -35,14 +35,14 @@ def threats_to(
     threats: Threat | None,
     count: int,
 ) -> Threats:
-    """Adds the threats to a new link by the nodes that undo it: newest first, so that the oldest ends at the head."""
+    """Adds the threats to a new link by the nodes in the mask `undoing`; the oldest node ends at the head."""
     if not undoing:
         return threats, count
     producer, literal, first, last, _ = link
     late = orderings.late
     mask = undoing & ~late[last] & ~(1 << producer)
     if first == last:
-        mask &= ~(1 << first)  # the consumer may undo its condition; not at its start what it needs over all
+        mask &= ~(1 << first)  # the consumer may undo its own condition, except a condition over all at its start
     while mask:
         node = mask.bit_length() - 1
         mask ^= 1 << node
@@ -77,8 +77,8 @@ def threats_by(
 
 
 def _deletions(action: GroundAction, literal: int, moment: int) -> tuple[Spanned, ...]:
-    """The conditions under which an action makes a literal true at a moment: one empty set when it always does."""
+    """The conditions under which an action makes a literal true at a moment; one empty tuple if unconditional."""
     if action.simple:
         return _ALWAYS
-    found = tuple(e.conditions for e in action.effects if e.literal == literal and e.moment == moment)
-    return _ALWAYS if () in found else found
+    alternatives = tuple(e.conditions for e in action.effects if e.literal == literal and e.moment == moment)
+    return _ALWAYS if () in alternatives else alternatives

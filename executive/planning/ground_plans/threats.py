@@ -1,4 +1,4 @@
-"""Refining a threat: separation, promotion, demotion; and how many of these there are."""
+"""Refinements of a threat: separation, promotion, demotion; and their number."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def is_threat(plan: PartialPlan, threat: Threat) -> bool:
 
 
 def count_refinements(plan: PartialPlan, threat: Threat) -> int:
-    """The number of refinements of a threat; 0 when it is none any more, so that it is forgotten first."""
+    """Number of refinements of a threat; 0 if it no longer threatens, so that it is dropped first."""
     late, (link, node, conditions, _) = plan.orderings.late, threat
     if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
         return 0
@@ -27,15 +27,13 @@ def count_refinements(plan: PartialPlan, threat: Threat) -> int:
 
 
 def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
-    """All plans that mend the threat; only one, that forgets it, when it is none any more."""
+    """All resolvers of the threat; the plan without it if it no longer threatens."""
     steps, orderings, effects, links, opened, threats, open_count, threat_count, cost = plan
     threats, threat_count = without(threats, threat), threat_count - 1
-    without_threat = new(
-        PartialPlan, (steps, orderings, effects, links, opened, threats, open_count, threat_count, cost)
-    )
+    rest = new(PartialPlan, (steps, orderings, effects, links, opened, threats, open_count, threat_count, cost))
     if not is_threat(plan, threat):
-        return [without_threat]
-    children = separations(task, without_threat, threat) if threat.conditions else []
+        return [rest]
+    children = separations(task, rest, threat) if threat.conditions else []
     link, node = threat.link, threat.node
     for before, after in ((link.last, node), (node, link.producer)):  # promotion, then demotion
         ordered = orderings.ordered(before, after)

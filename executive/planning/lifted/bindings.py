@@ -1,4 +1,4 @@
-"""Binding constraints: which variables of a plan's steps are the same, apart, or a certain object."""
+"""Binding constraints: variables of a plan's steps that are equal, different, or bound to an object."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ Pairs = Iterable[tuple[Term, Term]]
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Variables that are the same; the object they stand for, if decided; those they must differ from."""
+    """Codesignating variables, the object they are bound to (if any), and the variables they must differ from."""
 
     members: tuple[Variable, ...]
-    choices: frozenset[str]  # objects that are still possible
+    choices: frozenset[str]  # objects still possible
     value: str | None = None
     apart: tuple[Variable, ...] = ()
 
 
 class Bindings:
-    """Immutable: each change gives new bindings, or None when it contradicts."""
+    """Immutable binding constraints; a change returns new bindings, or None if they are inconsistent."""
 
     __slots__ = ("_groups",)
 
@@ -29,17 +29,17 @@ class Bindings:
         self._groups: dict[Variable, Group] = dict(groups or {})
 
     def with_variables(self, choices: Mapping[Variable, Iterable[str]]) -> Bindings:
-        """New variables, each with the objects that it may stand for."""
+        """The bindings with new variables, each with its possible objects."""
         new = {variable: Group((variable,), frozenset(objects)) for variable, objects in choices.items()}
         return Bindings({**self._groups, **new})
 
-    # --- questions -------------------------------------------------------------------------------
+    # --- queries ---------------------------------------------------------------------------------
     def value(self, term: Term) -> str | None:
-        """The object that a term stands for, or None while that is open."""
+        """The object that a term is bound to; None while unbound."""
         return term if isinstance(term, str) else self._groups[term].value
 
     def same(self, a: Term, b: Term) -> bool:
-        """Whether the terms are the same in every completion."""
+        """Whether the terms are equal in every completion."""
         if a == b:
             return True
         value = self.value(a)
@@ -48,7 +48,7 @@ class Bindings:
         return self._groups[a] is self._groups[b]
 
     def may_equal(self, a: Term, b: Term) -> bool:
-        """Whether some completion makes the terms the same."""
+        """Whether the constraints allow the terms to be equal."""
         if self.same(a, b):
             return True
         if isinstance(a, str):
@@ -64,16 +64,16 @@ class Bindings:
         return not group.choices.isdisjoint(other.choices)
 
     def may_unify(self, pairs: Pairs) -> bool:
-        """Whether each pair for itself may become the same."""
+        """Whether each pair, considered alone, may be equal."""
         return all(self.may_equal(a, b) for a, b in pairs)
 
     def differing(self, pairs: Pairs) -> tuple[tuple[Term, Term], ...]:
-        """The pairs that are not yet the same."""
+        """The pairs that are not yet equal."""
         return tuple((a, b) for a, b in pairs if not self.same(a, b))
 
     # --- changes ---------------------------------------------------------------------------------
     def unified(self, pairs: Pairs) -> Bindings | None:
-        """The bindings with both terms of each pair the same; None when that cannot be."""
+        """The bindings with the terms of each pair equal; None if inconsistent."""
         result: Bindings | None = self
         for a, b in pairs:
             if result is None or result.same(a, b):
@@ -82,7 +82,7 @@ class Bindings:
         return result
 
     def separated(self, a: Term, b: Term) -> Bindings | None:
-        """The bindings with two terms that must differ; None when they are the same."""
+        """The bindings with two terms different; None if they are equal."""
         if self.same(a, b):
             return None
         if not self.may_equal(a, b):
@@ -100,7 +100,7 @@ class Bindings:
         return both._changed(replace(other, apart=(*other.apart, a)))
 
     def equated(self, a: Term, b: Term, same: bool) -> Bindings | None:
-        """The bindings with two terms the same, or not; None when that cannot be."""
+        """The bindings with two terms equal (`same`) or different; None if inconsistent."""
         return self.unified([(a, b)]) if same else self.separated(a, b)
 
     def _joined(self, a: Term, b: Term) -> Bindings | None:
@@ -120,7 +120,7 @@ class Bindings:
         return self._changed(joined)
 
     def _changed(self, group: Group) -> Bindings | None:
-        """With one group renewed, moved behind all others; a decided object is struck off the groups apart."""
+        """The bindings with one group replaced and moved to the end; its object is excluded from the groups apart."""
         if not group.choices:
             return None
         groups = {variable: old for variable, old in self._groups.items() if variable not in group.members}
@@ -133,16 +133,16 @@ class Bindings:
                     result = result._narrowed(variable, group.value)
         return result
 
-    def _narrowed(self, variable: Variable, gone: str) -> Bindings | None:
+    def _narrowed(self, variable: Variable, excluded: str) -> Bindings | None:
         group = self._groups[variable]
-        narrowed = replace(group, choices=group.choices - {gone})
+        narrowed = replace(group, choices=group.choices - {excluded})
         if not narrowed.choices:
             return None
         return Bindings({**self._groups, **dict.fromkeys(group.members, narrowed)})
 
     # --- completion ------------------------------------------------------------------------------
     def completed(self) -> Bindings | None:
-        """The bindings with an object for every variable, the first by name that fits; None when there is none."""
+        """The bindings with an object for every variable, the first consistent by name; None if there is none."""
         current: Bindings | None = self
         tried: list[tuple[Bindings, Variable, Iterator[str]]] = []  # no recursion: there may be thousands of variables
         while current is not None:
@@ -154,13 +154,13 @@ class Bindings:
         return None
 
     def lines(self) -> tuple[str, ...]:
-        """The bindings as VHPOP prints them: a line per group, the one changed last first."""
+        """The bindings as VHPOP prints them: one line per group, last changed first."""
         groups = dict.fromkeys(reversed(self._groups.values()))
         return tuple(_line(group) for group in groups)
 
 
 def _next_bound(tried: list[tuple[Bindings, Variable, Iterator[str]]]) -> Bindings | None:
-    """The next choice for the last variable tried; where it has none left, for the one before."""
+    """The next choice for the last variable, backtracking to earlier ones."""
     while tried:
         bindings, variable, names = tried[-1]
         for name in names:

@@ -1,4 +1,4 @@
-"""The effects of a schema: under which conditions each one holds, achieves something, and is not undone."""
+"""Effects of a schema, with the conditions under which each happens, is not a no-op and is not undone."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
-from tailor.executive.planning.ground.grounding import MAX_WAYS
+from tailor.executive.planning.ground.grounding import MAX_VARIANTS
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.lifted.lifter import Lifter, Names
 from tailor.executive.planning.pddl.language import Action, When
@@ -18,7 +18,7 @@ Pairs = tuple[tuple[str, str], ...]
 
 
 class Guard(NamedTuple):
-    """A condition of a conditional effect, and its opposite."""
+    """A condition of a conditional effect, and its negation."""
 
     holds: LiftedFormula
     fails: LiftedFormula
@@ -26,9 +26,9 @@ class Guard(NamedTuple):
 
 
 class LiftedEffect(NamedTuple):
-    """A literal that becomes true at a moment where all guards hold.
+    """A literal that becomes true at a moment if all guards hold.
 
-    To achieve anything, each pair of `apart` must differ: lest the action demands the effect already (the no-op rule).
+    The terms of each pair in `apart` must differ: otherwise a condition implies the effect (the no-op rule).
     """
 
     literal: LiftedLiteral
@@ -38,14 +38,14 @@ class LiftedEffect(NamedTuple):
 
 
 def span_of(when: When, durative: bool) -> Span:
-    """The moments of a condition or effect."""
+    """First and last moment of a condition or effect."""
     return MOMENTS[when] if durative else INSTANT
 
 
 def lifted_effects(
     action: Action, names: Names, conditions: Spanned, lifter: Lifter, durative: bool
 ) -> tuple[LiftedEffect, ...]:
-    """The effects of an action, in order, without those that achieve nothing; "forall" is spelled out.
+    """The effects of an action, in order, without no-ops; "forall" is expanded over the objects.
 
     Args:
       action: The action.
@@ -62,8 +62,8 @@ def lifted_effects(
             )
             guards = tuple(
                 Guard(
-                    lifter.lowered(c.formula, inner),
-                    lifter.lowered(c.formula, inner, False),
+                    lifter.lift(c.formula, inner),
+                    lifter.lift(c.formula, inner, False),
                     span_of(c.when, durative),
                 )
                 for c in effect.condition
@@ -79,7 +79,7 @@ def lifted_effects(
 
 
 def _no_op(effect: LiftedEffect, conditions: Spanned) -> Pairs | None:
-    """The pairs that must differ lest the effect be demanded already; None when it always is."""
+    """The pairs that must differ for the effect not to be a no-op; None if it always is one."""
     literal = effect.literal
     apart: Pairs = ()
     for condition, span in conditions:
@@ -89,35 +89,35 @@ def _no_op(effect: LiftedEffect, conditions: Spanned) -> Pairs | None:
             differing = _differing(literal, condition)
             if not differing:
                 return None
-            apart += differing if len(differing) == 1 else ()  # with more, no single pair need differ
+            apart += differing if len(differing) == 1 else ()  # with several pairs, none in particular must differ
     return apart
 
 
 def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list[tuple[Guard, ...]]:
-    """The guards with which an effect lasts; for a delete effect several ways to escape the adds that would win.
+    """Alternative guards of an effect; those of a delete effect exclude the add effects of the same moment.
 
-    Where an add effect looks at several moments, it is enough that it fails at one: each is a way of its own.
+    An add effect with guards at several moments fails if those of one moment fail: each gives one alternative.
     """
-    ways = [effect.guards]
+    variants = [effect.guards]
     if effect.literal.positive:
-        return ways
+        return variants
     for other in effects:
         if other.literal[0] == effect.literal[0] and other.literal.positive and other.moment == effect.moment:
             sparing = _sparing_guards(other, effect.literal)
             if all(guard.holds != TRUE for guard in sparing):
-                ways = [(*way, guard) for way in ways for guard in sparing]
-                if len(ways) > MAX_WAYS:
-                    raise TooMuchToGround(f"more than {MAX_WAYS} ways in which an action's additions spare a deletion")
-    return ways
+                variants = [(*variant, guard) for variant in variants for guard in sparing]
+                if len(variants) > MAX_VARIANTS:
+                    raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
+    return variants
 
 
-def _sparing_guards(winner: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
-    """How an add effect leaves a delete of `literal` alone: it adds another fact, or its guards of one span fail."""
-    pairs = _differing(literal, winner.literal)
+def _sparing_guards(addition: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
+    """Guards under which an add effect spares a delete of `literal`: other terms, or its guards of one span fail."""
+    pairs = _differing(literal, addition.literal)
     apart: LiftedFormula = disjunction(equality(a, b, False) for a, b in pairs)
     same: LiftedFormula = conjunction(equality(a, b, True) for a, b in pairs)
-    spans: dict[Span, list[Guard]] = {} if winner.guards else {(winner.moment, winner.moment): []}
-    for guard in winner.guards:
+    spans: dict[Span, list[Guard]] = {} if addition.guards else {(addition.moment, addition.moment): []}
+    for guard in addition.guards:
         spans.setdefault(guard.span, []).append(guard)
     return [
         Guard(disjunction([apart, *(g.fails for g in own)]), conjunction([same, *(g.holds for g in own)]), span)
@@ -126,5 +126,5 @@ def _sparing_guards(winner: LiftedEffect, literal: LiftedLiteral) -> list[Guard]
 
 
 def _differing(a: LiftedLiteral, b: LiftedLiteral) -> Pairs:
-    """The pairs of terms that are not the same name; schema terms are plain names."""
+    """The pairs of terms with different names; schema terms are plain names."""
     return tuple((str(x), str(y)) for x, y in zip(a.terms, b.terms, strict=True) if x != y)

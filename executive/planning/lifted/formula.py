@@ -1,6 +1,6 @@
-"""Lifted conditions: literals and (in)equalities over terms, joined by "all of" and "any of", in negation normal form.
+"""Lifted conditions: and/or trees of literals and (in)equalities over terms, in negation normal form.
 
-In a schema variables are plain names; in a plan each is tagged with its step (`of_step`).
+Variables are plain names in a schema; in a plan each is tagged with its step (`of_step`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class LiftedLiteral(NamedTuple):
 
 
 class Equality(NamedTuple):
-    """Two terms are the same, or (`same` false) they differ."""
+    """Two terms are equal or, with `same` false, different."""
 
     left: Term
     right: Term
@@ -41,12 +41,12 @@ LiftedFormula = LiftedLeaf | Conjunction[LiftedLeaf] | LiftedDisjunction
 
 
 def tagged(term: Term, step: int) -> Term:
-    """A schema's term as one of a step: objects stay as they are."""
+    """A term of a schema as a term of one step; objects are unchanged."""
     return (term, step) if isinstance(term, str) and term[0] == "?" else term
 
 
 def of_step(formula: LiftedFormula, step: int) -> LiftedFormula:
-    """A schema's formula with the variables of one step."""
+    """A formula of a schema with the variables of one step."""
     match formula:
         case Conjunction(parts):
             return Conjunction(tuple(of_step(part, step) for part in parts))
@@ -57,7 +57,7 @@ def of_step(formula: LiftedFormula, step: int) -> LiftedFormula:
 
 
 def equality(left: Term, right: Term, same: bool) -> LiftedFormula:
-    """The equality of two terms of a schema, decided where it can be."""
+    """The equality of two terms of a schema, simplified to TRUE or FALSE if possible."""
     if left == right:
         return TRUE if same else FALSE
     if str(left)[0] != "?" and str(right)[0] != "?":  # two objects

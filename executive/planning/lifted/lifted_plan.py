@@ -1,4 +1,4 @@
-"""The partial plan of lifted search: as the ground one, but literals have variables and there are bindings."""
+"""The lifted partial plan: as the ground one, but with variables in its literals, and with bindings."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ class LiftedCondition(NamedTuple):
 
 
 class LiftedThreat(NamedTuple):
-    """An effect at `node` that may become the opposite of a link's literal, and may fall into the link.
+    """An effect at `node` that unifies with the negation of a link's literal and may come within the link.
 
-    `guards` are the effect's, as its schema has them.
+    `guards` are those of the effect in its schema.
     """
 
     link: LiftedLink
@@ -48,7 +48,7 @@ class LiftedThreat(NamedTuple):
 
 
 class LiftedPlan(NamedTuple):
-    """Steps, orderings, bindings, links, flaws. Step i is `steps[i - 1]`; its variables are tagged with i."""
+    """Steps, orderings, bindings, links and flaws. Step i is `steps[i - 1]`; its variables are tagged with i."""
 
     steps: tuple[Schema, ...]
     orderings: Orderings
@@ -72,9 +72,9 @@ def initial_plan(task: LiftedTask) -> LiftedPlan:
 
 
 def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> LiftedPlan | None:
-    """The plan with a formula's parts as its newest open conditions, the first at the head.
+    """The plan with a formula's parts as newest open conditions, the first at the head.
 
-    An equality binds at once: None when that contradicts.
+    An equality is added to the bindings; None if these become inconsistent.
     """
     cell, count, bindings = plan.open, plan.open_count, plan.bindings
     parts: tuple[LiftedFormula, ...] = conjuncts(formula)
@@ -90,14 +90,14 @@ def opened(plan: LiftedPlan, formula: LiftedFormula, first: int, last: int) -> L
 
 
 def effects_of(task: LiftedTask, plan: LiftedPlan) -> Iterator[PlacedEffect]:
-    """All effects in a plan: those of the newest step first, those of timed literals last."""
+    """All effects in a plan, newest step first, timed literals last."""
     for step in range(len(plan.steps), 0, -1):
         yield from task.effects_of(plan.steps[step - 1], step)
     yield from reversed(task.timed)
 
 
 def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
-    """Whether an effect may become this very literal."""
+    """Whether an effect unifies with a literal."""
     return (
         literal.predicate == effect.predicate
         and literal.positive == effect.positive
@@ -106,7 +106,7 @@ def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) 
 
 
 def opposing(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
-    """Whether an effect may become the opposite of a literal."""
+    """Whether an effect unifies with the negation of a literal."""
     return (
         literal.predicate == effect.predicate
         and literal.positive != effect.positive

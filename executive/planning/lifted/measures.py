@@ -1,13 +1,13 @@
-"""What flaw orders and rankings ask about lifted plans."""
+"""Properties and estimates of a lifted plan's flaws, for flaw orders and rankings."""
 
 from __future__ import annotations
 
 from tailor.executive.planning.flaws.ranking import Estimate
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value, sum_of
+from tailor.executive.planning.lifted.achievers import initial_achievers, new_achievers, old_achievers
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula, LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, effects_of, opposing
-from tailor.executive.planning.lifted.open_conditions import initial_achievers, new_achievers, old_achievers
 from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import count_refinements, separations
 from tailor.executive.planning.structures.connectives import Conjunction, Disjunction
@@ -31,12 +31,12 @@ class LiftedMeasures:
         return self._task.step_of(condition.first)
 
     def static(self, condition: LiftedCondition) -> bool:
-        """See `FlawMeasures`; a disjunction never is."""
+        """See `FlawMeasures`; false for a disjunction."""
         literal = condition.condition
         return isinstance(literal, LiftedLiteral) and literal.predicate in self._task.world.static
 
     def is_unsafe(self, plan: LiftedPlan, condition: LiftedCondition) -> bool:
-        """See `FlawMeasures`; a disjunction never is."""
+        """See `FlawMeasures`; false for a disjunction."""
         late, literal = plan.orderings.late[condition.last], condition.condition
         return isinstance(literal, LiftedLiteral) and any(
             node != condition.first and not late >> node & 1 and opposing(literal, effect, plan.bindings)

@@ -1,13 +1,11 @@
-"""Refining a lifted open condition: a new step, an old one or the initial state, each with its bindings."""
+"""Refinements of a lifted open condition: a new step, an old step or the initial state, each with its bindings."""
 
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Iterator
 
-from tailor.executive.planning.ground.ground_formula import TooMuchToGround
-from tailor.executive.planning.lifted.bindings import Bindings, Term
+from tailor.executive.planning.lifted.achievers import initial_achievers, new_achievers, old_achievers
+from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.effects import Guard, LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedLiteral, of_step, tagged
 from tailor.executive.planning.lifted.lifted_plan import (
@@ -16,30 +14,29 @@ from tailor.executive.planning.lifted.lifted_plan import (
     LiftedPlan,
     effects_of,
     opened,
-    unifying,
 )
 from tailor.executive.planning.lifted.schema import Schema
-from tailor.executive.planning.lifted.task import Achiever, LiftedTask, PlacedEffect
+from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
 from tailor.executive.planning.lifted.threat_detection import threatened, threatened_by_step
 from tailor.executive.planning.structures.connectives import Disjunction
 from tailor.executive.planning.structures.linked_list import without
 from tailor.executive.planning.structures.orderings import INITIAL, Orderings
 
-MAX_ABSENT = 2_500  # facts that a negative condition with free variables is tried on: a tenth of a second
-
 
 def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) -> list[LiftedPlan]:
-    """All plans that mend the flaw: new steps by name, old steps newest first, then initial facts in their order.
+    """All resolvers of an open condition: new steps by name, old steps (newest first), initial facts in their order.
 
-    Of a disjunction each part is one way.
+    Each part of a disjunction is one resolver.
     """
     rest = plan._replace(open=without(plan.open, flaw), open_count=plan.open_count - 1)
     if isinstance(flaw.condition, Disjunction):
         parts = (opened(rest, part, flaw.first, flaw.last) for part in flaw.condition.parts)
         return [child for child in parts if child is not None]
     literal = flaw.condition
-    new = (_by_new_step(task, rest, flaw, literal, *found) for found in new_achievers(task, plan.bindings, literal))
-    old = (_by_old_step(task, rest, flaw, literal, found) for found in old_achievers(task, plan, flaw, literal))
+    new = (
+        _by_new_step(task, rest, flaw, literal, *achiever) for achiever in new_achievers(task, plan.bindings, literal)
+    )
+    old = (_by_old_step(task, rest, flaw, literal, placed) for placed in old_achievers(task, plan, flaw, literal))
     start = (
         _linked(task, rest._replace(bindings=bindings), flaw, literal, INITIAL, plan.orderings)
         for bindings in initial_achievers(task, plan.bindings, literal)
@@ -47,62 +44,7 @@ def refine_condition(task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition) 
     return [child for child in itertools.chain(new, old, start) if child is not None]
 
 
-def new_achievers(task: LiftedTask, bindings: Bindings, literal: LiftedLiteral) -> Iterator[Achiever]:
-    """Schemata with an effect of the literal's predicate and sign, whose fixed parameters fit."""
-    for schema, effect in task.achievers.get((literal.predicate, literal.positive), ()):
-        if not schema.fixed or _fits(schema, effect, bindings, literal):
-            yield schema, effect
-
-
-def _fits(schema: Schema, effect: LiftedEffect, bindings: Bindings, literal: LiftedLiteral) -> bool:
-    fixed = (schema.fixed.get(str(term)) for term in effect.literal.terms)
-    return all(name is None or bindings.may_equal(term, name) for name, term in zip(fixed, literal.terms, strict=True))
-
-
-def old_achievers(
-    task: LiftedTask, plan: LiftedPlan, flaw: LiftedCondition, literal: LiftedLiteral
-) -> Iterator[PlacedEffect]:
-    """Effects in the plan that may become the condition's literal and may come before it, the newest step's first."""
-    late = plan.orderings.late[flaw.first]
-    if flaw.first != flaw.last:
-        late ^= 1 << flaw.first  # the action's own start may make true what it needs over all
-    for placed in effects_of(task, plan):
-        if not late >> placed.node & 1 and unifying(literal, placed.literal, plan.bindings):
-            yield placed
-
-
-def initial_achievers(task: LiftedTask, bindings: Bindings, literal: LiftedLiteral) -> Iterator[Bindings]:
-    """The bindings with which a literal holds in the initial state; for a negative one by closed world.
-
-    Raises:
-      TooMuchToGround: A negative literal has more than MAX_ABSENT instances.
-    """
-    facts = task.initial.get(literal.predicate, ())
-    if literal.positive:
-        for fact in facts:
-            bound = bindings.unified(zip(literal.terms, fact[1:], strict=True))
-            if bound is not None:
-                yield bound
-        return
-    absent = set(facts)
-    objects = [_objects(task, bindings, term) for term in literal.terms]
-    if math.prod(len(names) for names in objects) > MAX_ABSENT:
-        raise TooMuchToGround(f"'not {literal.predicate}' has more than {MAX_ABSENT} instances")
-    for names in itertools.product(*objects):
-        if (literal.predicate, *names) not in absent:
-            bound = bindings.unified(zip(literal.terms, names, strict=True))
-            if bound is not None:
-                yield bound
-
-
-def _objects(task: LiftedTask, bindings: Bindings, term: Term) -> tuple[str, ...]:
-    value = bindings.value(term)
-    if value is not None:
-        return (value,)
-    return tuple(name for name in task.world.objects["object"] if bindings.may_equal(term, name))
-
-
-# --- the ways ------------------------------------------------------------------------------------
+# --- achievers -----------------------------------------------------------------------------------
 def _by_new_step(
     task: LiftedTask,
     plan: LiftedPlan,
@@ -137,7 +79,7 @@ def _by_new_step(
 
 
 def _bound(task: LiftedTask, bindings: Bindings, schema: Schema, step: int) -> Bindings | None:
-    """The bindings with the variables of a new step and what the schema says of them."""
+    """The bindings with the variables of a new step and the schema's equalities."""
     choices = {(p.name, step): task.world.choices(p) for p in (*schema.parameters, *schema.variables)}
     if not all(choices.values()):
         return None
@@ -150,7 +92,7 @@ def _bound(task: LiftedTask, bindings: Bindings, schema: Schema, step: int) -> B
 
 
 def _achieving(bindings: Bindings, effect: LiftedEffect, step: int, literal: LiftedLiteral) -> Bindings | None:
-    """The bindings with which an effect becomes a literal, and is no no-op."""
+    """The bindings with an effect unified with a literal and not a no-op."""
     terms = effect.literal.of_step(step).terms
     bound = bindings.unified(zip(terms, literal.terms, strict=True))
     for left, right in effect.apart:
@@ -159,7 +101,7 @@ def _achieving(bindings: Bindings, effect: LiftedEffect, step: int, literal: Lif
 
 
 def _guarded(plan: LiftedPlan, guards: tuple[Guard, ...], step: int, node: int) -> LiftedPlan | None:
-    """The plan with an effect's guards as open conditions of its step, whose first node is given."""
+    """The plan with an effect's guards as open conditions of its step; `node` is the step's first."""
     grown: LiftedPlan | None = plan
     for guard in reversed(guards):
         first, last = guard.span
@@ -188,7 +130,7 @@ def _linked(
     producer: int,
     orderings: Orderings,
 ) -> LiftedPlan:
-    """The plan with one more link, and the threats to it: newest step first, so that the oldest ends at the head."""
+    """The plan with one more link and the threats to it; the oldest step's threat ends at the head."""
     link = LiftedLink(producer, literal, flaw.first, flaw.last, plan.links)
     grown = plan._replace(orderings=orderings, links=link)
     if literal.predicate in task.world.static:

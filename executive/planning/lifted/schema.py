@@ -1,4 +1,4 @@
-"""Action schemata as lifted planning uses them: conditions over variables, what must be the same, effects, duration."""
+"""Lifted action schemata: conditions over variables, equalities, effects, duration."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
 from tailor.executive.planning.ground.ground_action import Span
-from tailor.executive.planning.ground.ground_formula import FactTable, StaticWorld
+from tailor.executive.planning.ground.ground_formula import FormulaLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
 from tailor.executive.planning.lifted.lifter import Lifter
@@ -22,40 +22,40 @@ from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 class Schema:
     """An action schema; its parameters are renamed ?v1, ?v2, ... over the whole domain, as VHPOP prints them.
 
-    An action whose duration depends on parameters gives one schema for each choice of objects for these: they are
-    `fixed`. Lengths are in ticks, `longest` is None without an upper limit.
+    An action whose duration depends on parameters gives one schema per choice of objects for these parameters, which
+    are then `fixed`. Durations are in ticks; `longest` is None without an upper limit.
     """
 
     name: str
     parameters: tuple[Typed, ...]
-    variables: tuple[Typed, ...]  # of "exists" in its conditions
+    variables: tuple[Typed, ...]  # bound by "exists" in its conditions
     conditions: Spanned  # literals and disjunctions
     equalities: tuple[Equality, ...]
     fixed: Mapping[str, str]
     effects: tuple[LiftedEffect, ...]
     shortest: int
     longest: int | None
-    duration_s: float  # of the shortest
+    duration_s: float  # shortest duration
 
 
-def schemata(world: StaticWorld, tick_s: float, work: FactTable) -> tuple[Schema, ...]:
+def schemata(world: StaticWorld, tick_s: float, limit: FormulaLimit) -> tuple[Schema, ...]:
     """The domain's schemata by name.
 
     Raises:
-      TooMuchToGround: "forall" or durations that depend on parameters bring more formulas than `work` allows.
+      TooMuchToGround: "forall", or durations that depend on parameters, exceed the limit of formulas.
     """
     parameters = itertools.count(1)
     renamed = [
         (action, {p.name: f"?v{next(parameters)}" for p in action.parameters}) for action in world.domain.actions
     ]
-    made: list[Schema] = []
+    expanded: list[Schema] = []
     for action, names in renamed:
-        made += _schemata(action, names, Lifter(world, parameters, work), world, tick_s)
-    return tuple(sorted(made, key=lambda schema: schema.name))
+        expanded += _schemata(action, names, Lifter(world, parameters, limit), world, tick_s)
+    return tuple(sorted(expanded, key=lambda schema: schema.name))
 
 
 def shuffled(schema: Schema, rng: np.random.Generator) -> Schema:
-    """The same schema with its conditions in random order: so open conditions come in another order."""
+    """The same schema with its conditions, hence the open conditions, in random order."""
     conditions = tuple(schema.conditions[n] for n in rng.permutation(len(schema.conditions)))
     return replace(schema, conditions=conditions)
 
@@ -63,16 +63,16 @@ def shuffled(schema: Schema, rng: np.random.Generator) -> Schema:
 def _schemata(
     action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, tick_s: float
 ) -> Iterator[Schema]:
-    """The schemata of one action: one, or one for each choice of the parameters that its duration depends on."""
+    """The schemata of one action: one per choice of the parameters that its duration depends on."""
     durative = world.temporal
-    lowered: list[tuple[LiftedFormula, Span]] = []
+    spanned: list[tuple[LiftedFormula, Span]] = []
     for condition in action.conditions:
-        parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lowered(condition.formula, names))
-        lowered += [(part, span_of(condition.when, durative)) for part in parts]
-    if any(part == FALSE for part, _ in lowered):
+        parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lift(condition.formula, names))
+        spanned += [(part, span_of(condition.when, durative)) for part in parts]
+    if any(part == FALSE for part, _ in spanned):
         return
-    conditions = tuple((part, span) for part, span in lowered if not isinstance(part, Equality))
-    equalities = tuple(part for part, _ in lowered if isinstance(part, Equality))
+    conditions = tuple((part, span) for part, span in spanned if not isinstance(part, Equality))
+    equalities = tuple(part for part, _ in spanned if isinstance(part, Equality))
     effects = lifted_effects(action, names, conditions, lifter, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
     for fixed, bounds in _durations(action, lifter, world):
@@ -92,15 +92,15 @@ def _schemata(
 def _durations(
     action: Action, lifter: Lifter, world: StaticWorld
 ) -> Iterator[tuple[Mapping[str, str], tuple[float, float]]]:
-    """Choices for the parameters that the duration depends on, with the shortest and longest duration in seconds."""
+    """Choices of the parameters that the duration depends on, with shortest and longest duration in seconds."""
     if action.duration is None:
         yield {}, (0.0, 0.0)
         return
-    needed = {term for bound in action.duration for term in _terms(bound.value)}
-    for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in needed), {}):
-        allowed = duration_range(action.duration, fixed, world)
-        if allowed is not None:
-            yield fixed, allowed
+    relevant = {term for bound in action.duration for term in _terms(bound.value)}
+    for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in relevant), {}):
+        durations = duration_range(action.duration, fixed, world)
+        if durations is not None:
+            yield fixed, durations
 
 
 def _terms(number: Numeric) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The task of a lifted search: schemata, initial facts, goal, and estimates borrowed from the ground relaxed graph."""
+"""The task of a lifted search: schemata, initial facts, goal, and estimates from the ground relaxed graph."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
-from tailor.executive.planning.ground.ground_formula import FactTable, StaticWorld
+from tailor.executive.planning.ground.ground_formula import FormulaLimit, StaticWorld
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
@@ -20,8 +20,8 @@ from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.structures.orderings import FIRST
 
-LiteralPattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects where they are known
-ArgumentKey = tuple[str, bool, int, str]  # predicate, positive, position (-1: any), object
+LiteralPattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects (None: unbound)
+ArgumentKey = tuple[str, bool, int, str]  # predicate, positive, argument position (-1: none), object
 Achiever = tuple[Schema, LiftedEffect]
 MAX_FORMULAS = 50_000  # a quarter of a second; only "forall" over many objects comes near
 
@@ -37,17 +37,17 @@ class PlacedEffect(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiftedTask:
-    """What a lifted search plans with. `values` and `placed` grow as they are asked; that never changes an answer."""
+    """A lifted planning problem. `values` and `placed` are caches, filled on use."""
 
     ground: GroundTask
     world: StaticWorld
-    initial: dict[str, tuple[Fact, ...]]  # by predicate, in the problem's order
+    initial: dict[str, tuple[Fact, ...]]  # facts by predicate, in the problem's order
     goal: LiftedFormula
-    goal_variables: tuple[Typed, ...]  # of "exists"
+    goal_variables: tuple[Typed, ...]  # bound by "exists" in the goal
     timed: tuple[PlacedEffect, ...]  # the timed literals
     achievers: dict[tuple[str, bool], tuple[Achiever, ...]]  # by predicate and sign
     costs: dict[Schema, float]
-    names: dict[ArgumentKey, list[int]]  # the ground literals that have an object at a place of their predicate
+    names: dict[ArgumentKey, list[int]]  # ground literals by an object among their arguments
     values: dict[LiteralPattern, Value]
     placed: dict[tuple[Schema, int], tuple[PlacedEffect, ...]] = field(default_factory=dict)
 
@@ -58,7 +58,7 @@ class LiftedTask:
 
     @property
     def moments(self) -> int:
-        """Nodes of a step."""
+        """Number of nodes per step."""
         return self.ground.moments
 
     def step_of(self, node: int) -> int:
@@ -81,58 +81,58 @@ class LiftedTask:
         return placed
 
     # --- estimates -------------------------------------------------------------------------------
-    def value(self, predicate: str, positive: bool, known: tuple[str | None, ...]) -> Value:
-        """The least estimate of any ground literal that fits what is known of the terms."""
-        pattern = (predicate, positive, known)
+    def value(self, predicate: str, positive: bool, terms: tuple[str | None, ...]) -> Value:
+        """The least estimate of the ground literals that match the bound terms."""
+        pattern = (predicate, positive, terms)
         value = self.values.get(pattern)
         if value is None:
             value = self.values[pattern] = min(self._matching_values(pattern), default=UNREACHABLE)
         return value
 
     def _matching_values(self, pattern: LiteralPattern) -> Iterator[Value]:
-        predicate, positive, known = pattern
+        predicate, positive, terms = pattern
         if predicate in self.world.static:
-            matches = sum(_matches(fact, known) for fact in self.initial.get(predicate, ()))
-            if (matches > 0) if positive else (matches == 0 or None in known):
+            matches = sum(_matches(fact, terms) for fact in self.initial.get(predicate, ()))
+            if (matches > 0) if positive else (matches == 0 or None in terms):
                 yield NOTHING
             return
-        if None in known:  # `values` knows the others from the start
+        if None in terms:  # `values` holds the fully bound ones from the start
             for number in self._candidates(pattern):
-                if _matches(self.ground.names[number].fact, known):
+                if _matches(self.ground.names[number].fact, terms):
                     yield self.ground.estimates.values[number]
         if not positive:
-            yield NOTHING._replace(work=1)  # facts that no action speaks of are false from the start
+            yield NOTHING._replace(work=1)  # facts that no action mentions are false initially
 
     def _candidates(self, pattern: LiteralPattern) -> list[int]:
-        """The ground literals of a predicate and sign, with the object that fewest of them have where it is known."""
-        predicate, positive, known = pattern
-        places = [(predicate, positive, n, name) for n, name in enumerate(known) if name is not None]
-        lists = [self.names.get(place, []) for place in places or [(predicate, positive, -1, "")]]
+        """The ground literals of a predicate and sign that share the rarest bound object of the pattern."""
+        predicate, positive, terms = pattern
+        keys = [(predicate, positive, n, name) for n, name in enumerate(terms) if name is not None]
+        lists = [self.names.get(key, []) for key in keys or [(predicate, positive, -1, "")]]
         return min(lists, key=len)
 
 
-def _matches(fact: Fact, known: tuple[str | None, ...]) -> bool:
-    return all(name is None or name == own for name, own in zip(known, fact[1:], strict=True))
+def _matches(fact: Fact, terms: tuple[str | None, ...]) -> bool:
+    return all(name is None or name == own for name, own in zip(terms, fact[1:], strict=True))
 
 
 def lifted_task(
     ground: GroundTask, world: StaticWorld, cost: CostOf = "unit", rng: np.random.Generator | None = None
 ) -> LiftedTask:
-    """The lifted task of a problem; with `rng`, conditions stand in random order.
+    """The lifted task of a problem; with `rng`, conditions are in random order.
 
     Raises:
-      TooMuchToGround: Universal quantifiers or durations bring too many formulas.
+      TooMuchToGround: Universal quantifiers or durations exceed the limit of formulas.
     """
-    problem, work = ground.problem, FactTable(limit=MAX_FORMULAS)
+    problem, limit = ground.problem, FormulaLimit(MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
-    made = schemata(world, ground.tick_s, work)
+    schemas = schemata(world, ground.tick_s, limit)
     if rng is not None:
-        made = tuple(shuffled(schema, rng) for schema in made)
+        schemas = tuple(shuffled(schema, rng) for schema in schemas)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))
-    lifter = Lifter(world, numbers, work)  # its variables are the goal's: they meet no schema's
-    goal = lifter.lowered(problem.goal, {})
+    lifter = Lifter(world, numbers, limit)  # of the goal's variables, numbered after those of the schemata
+    goal = lifter.lift(problem.goal, {})
     literals = (LiftedLiteral(t.literal.fact[0], t.literal.fact[1:], t.literal.positive) for t in problem.timed)
     return LiftedTask(
         ground,
@@ -141,33 +141,33 @@ def lifted_task(
         goal,
         tuple(lifter.variables),
         tuple(PlacedEffect(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
-        _achievers(made),
-        _costs(made, cost),
+        _achievers(schemas),
+        _costs(schemas, cost),
         _literals_by_argument(ground),
         {(n.fact[0], n.positive, n.fact[1:]): v for n, v in zip(ground.names, ground.estimates.values, strict=True)},
     )
 
 
 def _literals_by_argument(ground: GroundTask) -> dict[ArgumentKey, list[int]]:
-    places: dict[ArgumentKey, list[int]] = {}
+    literals: dict[ArgumentKey, list[int]] = {}
     for number, (predicate, *terms) in enumerate(name.fact for name in ground.names):
         positive = ground.names[number].positive
-        for place in ((-1, ""), *enumerate(terms)):
-            places.setdefault((predicate, positive, *place), []).append(number)
-    return places
+        for argument in ((-1, ""), *enumerate(terms)):
+            literals.setdefault((predicate, positive, *argument), []).append(number)
+    return literals
 
 
-def _achievers(made: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achiever, ...]]:
+def _achievers(schemas: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achiever, ...]]:
     matches: dict[tuple[str, bool], list[Achiever]] = {}
-    for schema in made:
+    for schema in schemas:
         for effect in schema.effects:
             matches.setdefault((effect.literal.predicate, effect.literal.positive), []).append((schema, effect))
     return {key: tuple(own) for key, own in matches.items()}
 
 
-def _costs(made: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:
-    """By schema, 1, its duration in seconds, or that relative to the shortest one."""
-    durations = {schema: schema.duration_s or 1.0 for schema in made}
+def _costs(schemas: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:
+    """The cost of each schema: 1, its duration in seconds, or its duration relative to the shortest one."""
+    durations = {schema: schema.duration_s or 1.0 for schema in schemas}
     if kind == "unit" or not durations:
         return dict.fromkeys(durations, 1.0)
     unit = min(durations.values()) if kind == "relative" else 1.0

@@ -1,4 +1,4 @@
-"""Which effects of a lifted plan threaten which causal links."""
+"""Detection of threats by effects of a lifted plan to causal links."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
 def threatened_by_step(
     task: LiftedTask, plan: LiftedPlan, effects: tuple[PlacedEffect, ...], links: LiftedLink | None
 ) -> LiftedPlan:
-    """The plan with the threats of a new step's effects to older links, the newest link's first."""
+    """The plan with the threats of a new step's effects to older links, newest link first."""
     while links is not None:
         if links.literal.predicate not in task.world.static:
             plan = threatened(task, plan, effects, links)
@@ -31,10 +31,10 @@ def threatened(task: LiftedTask, plan: LiftedPlan, effects: Iterable[PlacedEffec
 
 
 def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
-    """Whether the effect may still undo the link: by order, by bindings, and unless its own step restores it."""
+    """Whether the effect may still undo the link, by orderings and bindings, and its own step does not restore it."""
     late, link, node = plan.orderings.late, threat.link, threat.node
     if node in (link.producer, link.last):
-        return False  # the consumer may undo its condition; not at its start what it needs over all
+        return False  # the consumer may undo its own condition, except a condition over all at its start
     if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
         return False
     if not opposing(link.literal, threat.effect, plan.bindings):

@@ -1,4 +1,4 @@
-"""Refining a lifted threat: separation by bindings or by a condition that fails, promotion, demotion."""
+"""Refinements of a lifted threat: separation by bindings or by a failing guard, promotion, demotion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tailor.executive.planning.structures.linked_list import without
 
 
 def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> list[LiftedPlan]:
-    """All plans that mend the threat; only one, that forgets it, when it is none any more."""
+    """All resolvers of the threat; the plan without it if it no longer threatens."""
     rest = plan._replace(threats=without(plan.threats, threat), threat_count=plan.threat_count - 1)
     if not is_threat(task, plan, threat):
         return [rest]
@@ -25,7 +25,7 @@ def refine_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> l
 
 
 def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Iterator[LiftedPlan]:
-    """The plan where the effect never touches the link: a pair of terms differs, or a guard of the effect fails."""
+    """The plans in which the effect does not undo the link: a pair of terms differs, or a guard of the effect fails."""
     for a, b in plan.bindings.differing(zip(threat.effect.terms, threat.link.literal.terms, strict=True)):
         bindings = plan.bindings.separated(a, b)
         if bindings is not None:
@@ -39,7 +39,7 @@ def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Ite
 
 
 def count_refinements(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> int:
-    """The number of refinements of a threat."""
+    """Number of refinements of a threat; 1 if it no longer threatens."""
     if not is_threat(task, plan, threat):
         return 1
     late, link, node = plan.orderings.late, threat.link, threat.node

@@ -1,4 +1,4 @@
-"""Conjunctions and disjunctions over parts of any kind: what ground and lifted conditions are built with."""
+"""Conjunctions and disjunctions over leaves of any type; ground and lifted conditions are built from them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FALSE: Disjunction[Any] = Disjunction(())
 
 
 def conjunction(conditions: Iterable[AndOrTree[L]]) -> AndOrTree[L]:
-    """All of them, flattened, in order, as often as they stand there; FALSE when one is false."""
+    """The conjunction, flattened, in order, duplicates kept; FALSE if a part is false."""
     parts: list[AndOrTree[L]] = []
     for condition in conditions:
         if condition == FALSE:
@@ -39,7 +39,7 @@ def conjunction(conditions: Iterable[AndOrTree[L]]) -> AndOrTree[L]:
 
 
 def disjunction(conditions: Iterable[AndOrTree[L]]) -> AndOrTree[L]:
-    """Any of them, flattened, each once, in order; TRUE when one is true."""
+    """The disjunction, flattened, in order, without duplicates; TRUE if a part is true."""
     parts: dict[AndOrTree[L], None] = {}
     for condition in conditions:
         if condition == TRUE:
@@ -49,5 +49,5 @@ def disjunction(conditions: Iterable[AndOrTree[L]]) -> AndOrTree[L]:
 
 
 def conjuncts(condition: AndOrTree[L]) -> tuple[AndOrTree[L], ...]:
-    """The condition as a list of parts that must all hold."""
+    """The parts of a conjunction; a tuple of one for any other condition."""
     return condition.parts if isinstance(condition, Conjunction) else (condition,)

@@ -1,4 +1,4 @@
-"""Flaws stand in persistent lists that plans share with their parents: reads such a list, takes one cell out of it."""
+"""Persistent linked lists of flaws and links; a plan shares their tails with its parent."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, Protocol, TypeVar
 
 
 class Cell(Protocol):
-    """A named tuple with the cell behind it as its last field, `rest`."""
+    """A named tuple whose last field, `rest`, is the next cell."""
 
     @property
     def rest(self) -> Any:
@@ -22,21 +22,21 @@ _new: Any = tuple.__new__  # makes a named tuple in a third of the time of its `
 
 def cells_of(cells: C | None) -> list[C]:
     """The cells of a list, the newest first."""
-    found = []
+    members = []
     while cells is not None:
-        found.append(cells)
+        members.append(cells)
         cells = cells.rest
-    return found
+    return members
 
 
-def without(cells: C | None, gone: C) -> C | None:
-    """The list without one of its cells, which must be in it; what stands behind that cell is shared."""
+def without(cells: C | None, removed: C) -> C | None:
+    """The list without one of its cells, which must be in it; the tail behind that cell is shared."""
     before = []
-    while cells is not gone:
+    while cells is not removed:
         assert cells is not None
         before.append(cells)
         cells = cells.rest
-    rest: C | None = gone.rest
+    rest: C | None = removed.rest
     for cell in reversed(before):
         rest = _new(type(cell), (*cell[:-1], rest))
     return rest

@@ -1,4 +1,4 @@
-"""An optimistic makespan of a partial plan: no step starts before its open conditions can hold."""
+"""Lower bound on the makespan of a partial plan: no step starts before its open conditions can hold."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ def makespan_estimate(orderings: Orderings, conditions: Iterable[tuple[int, floa
     """The least makespan in ticks (in levels without durations).
 
     Args:
-      orderings: Of the plan.
-      conditions: By open condition, its node and the earliest time at which it can hold.
+      orderings: Orderings of the plan.
+      conditions: Of each open condition its node, and the earliest time at which it can hold.
     """
     earliest: dict[int, float] = {}
     for node, time in conditions:
@@ -35,7 +35,7 @@ def _over_network(network: TemporalNetwork, earliest: dict[int, float]) -> float
 
 
 def _over_levels(late: tuple[int, ...], earliest: dict[int, float]) -> float:
-    """The longest chain of unit steps, each lifted to the level that its open conditions need."""
+    """The longest chain of unit steps, each raised to the level that its open conditions require."""
     levels: dict[int, float] = {}
     for node in sorted(range(len(late)), key=lambda n: -late[n].bit_count()):
         before = [level for other, level in levels.items() if late[other] >> node & 1]

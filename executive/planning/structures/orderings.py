@@ -1,8 +1,8 @@
-"""Orderings of plan nodes, and their plain kind: the transitive closure of "before", one int per node.
+"""Orderings of plan nodes: the interface, and the transitive closure of "before" with one int per node.
 
-A node is a moment of a step: its only one, or its start and its end when actions take time. `late[n]` is the mask of
-the nodes that cannot come before node n: n itself and all that must come after it. Every test of the planner is one
-AND with such a mask; the temporal network keeps the same masks.
+A node is a moment of a step: its only one, or its start and its end if actions take time. `late[n]` is the bit mask
+of the nodes that cannot come before node n: n itself and all that must come after it. Every ordering test is one AND
+with such a mask; the temporal network keeps the same masks.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FIRST = 2  # node of the first step, or of the first timed literal
 
 
 class HasDuration(Protocol):
-    """What takes time, in ticks; `longest` is None without an upper limit."""
+    """An action with a duration in ticks; `longest` is None without an upper limit."""
 
     @property
     def shortest(self) -> int:
@@ -39,24 +39,24 @@ class Orderings(Protocol):
 
     @property
     def entries(self) -> int:
-        """How many numbers they consist of: nearly all of the memory that a plan does not share with its parent."""
+        """Number of stored entries: nearly all of the memory that a plan does not share with its parent."""
         ...
 
     def with_step(self, action: HasDuration, moment: int, before: int) -> Orderings | None:
         """The orderings with the nodes of one more step, after the initial state and before the goal.
 
         Args:
-          action: Of the step.
-          moment: 0 for the step's start, 1 for its end ...
-          before: ... which comes before this node.
+          action: Action of the step.
+          moment: 0 for the step's start, 1 for its end.
+          before: Node that this moment comes before.
 
         Returns:
-          None when that is impossible.
+          None if the constraints become inconsistent.
         """
         ...
 
     def ordered(self, a: int, b: int) -> Orderings | None:
-        """The orderings with node a before node b; None when that is impossible."""
+        """The orderings with node a before node b; None if that is inconsistent."""
         ...
 
     def earliest(self) -> tuple[float, ...]:
@@ -75,7 +75,7 @@ class Closure(NamedTuple):
         return len(self.late)
 
     def with_step(self, action: HasDuration, moment: int, before: int) -> Closure:
-        """See `Orderings`; such a step has one node, and nothing comes before it but the initial state."""
+        """See `Orderings`; the step has one node, and only the initial state comes before it."""
         late = self.late
         bit = 1 << len(late)
         return tuple.__new__(Closure, ((late[0] | bit, *late[1:], bit | late[before]),))

@@ -1,4 +1,4 @@
-"""What searches, rankings and flaw orders read of any partial plan, ground or lifted."""
+"""Interface of a partial plan, ground or lifted, as searches, rankings and flaw orders read it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tailor.executive.planning.structures.orderings import Orderings
 
 
 class Refinable(Protocol):
-    """A partial plan; its flaws stand in linked lists, the newest at the head."""
+    """A partial plan; its flaws are linked lists, the newest at the head."""
 
     @property
     def steps(self) -> Sized:

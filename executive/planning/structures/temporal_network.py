@@ -1,7 +1,8 @@
 """Orderings of nodes that take time: a simple temporal network with all-pairs bounds in ticks.
 
 `rows[b][a]` is the greatest t_b - t_a that the constraints allow. Kept minimal by an incremental shortest-path update
-(Dechter, Meiri & Pearl 1991); an order between two nodes costs at least one tick, so that no two needed events meet.
+(Dechter, Meiri & Pearl 1991). An order between two nodes costs at least one tick, so that no two dependent events
+coincide.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from tailor.executive.planning.structures.orderings import GOAL, INITIAL, HasDur
 UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
 _FAR = UNBOUNDED // 2  # as good as unbounded
 Row = tuple[int, ...]
-_FREE: Row = (UNBOUNDED, UNBOUNDED)  # the bounds of a new step's start and end to what does not touch them
+_FREE: Row = (UNBOUNDED, UNBOUNDED)  # bounds between a new step's start and end and unrelated nodes
 
 
 class TemporalNetwork(NamedTuple):
@@ -38,7 +39,7 @@ class TemporalNetwork(NamedTuple):
         return len(self.rows) ** 2
 
     def with_step(self, action: HasDuration, moment: int, before: int) -> TemporalNetwork | None:
-        """See `Orderings`: start and end, as far apart as the duration allows, one of them before a node."""
+        """See `Orderings`: the nodes of start and end, bounded by the duration."""
         start = len(self.rows)
         end = start + 1
         longest = UNBOUNDED if action.longest is None else action.longest
@@ -55,7 +56,7 @@ class TemporalNetwork(NamedTuple):
         late = list(self.late)
         late[INITIAL] |= 3 << start
         rows = [first, *[row + _FREE for row in self.rows[1:]], *own]
-        # only the initial state comes before the step: others are bound to it by way of the start of all, if at all
+        # only the initial state comes before the step: all other bounds on it pass through the initial state
         for other, row in enumerate(rows):
             if other != INITIAL and row[INITIAL] < _FAR:
                 rows[other] = _through(row, row[INITIAL], first)
@@ -91,7 +92,7 @@ class TemporalNetwork(NamedTuple):
 
 
 def _through(row: Row, reach: int, via: Row) -> Row:
-    """The row with every bound that gets smaller by way of another node: `reach` to it, and its own row."""
+    """The row after relaxing it through another node: `reach` is the bound to that node, `via` that node's row."""
     return tuple([old if old <= reach + more else reach + more for old, more in zip(row, via, strict=True)])
 
 
