@@ -1,1 +1,1 @@
-"""What `tailor bench` measures, one module each, with `configure(parser)` and `run(arguments)`."""
+"""Benchmarks of `tailor bench`, one module each, with `run(console, quick)`."""

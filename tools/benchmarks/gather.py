@@ -1,4 +1,4 @@
-"""How fast episodes are gathered: simulated seconds per wall second and core."""
+"""Speed of gathering episodes: simulated seconds for each wall second and core."""
 
 from __future__ import annotations
 
@@ -9,13 +9,18 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive import domains
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import modelled_actions
 
 
 def run(console: Console, quick: bool) -> None:
-    """Print one row an action."""
-    table = Table("action", "episodes", "mean duration", "times real time per core", title="gathering, one process")
+    """Print one row for each action.
+
+    Raises:
+      NoMeasurement: An action has gathered no episode.
+    """
+    table = Table("action", "episodes", "mean duration", "speed (× real time)", title="gathering, one process")
     for name in domains.DOMAINS:
         robot = domains.load(name).robot
         for action in modelled_actions(name):
@@ -24,5 +29,7 @@ def run(console: Console, quick: bool) -> None:
                 gathering.prepare(spec, resume=False)
                 parts = [gathering.run_part(spec, first) for first in gathering.missing_parts(spec)]
             count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))
+            if not count:
+                raise NoMeasurement(f"{robot}/{action} gathered no episode")
             table.add_row(f"{robot}/{action}", str(count), f"{simulated / count:.1f} s", f"{simulated / wall:.0f}")
     console.print(table)

@@ -1,4 +1,4 @@
-"""Microseconds of a prediction, features included, and seconds of a fit."""
+"""Time of a prediction, features included, in microseconds, and of a fit in seconds."""
 
 from __future__ import annotations
 
@@ -14,50 +14,52 @@ from tailor.models.cards.card import Card
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.features import SPACES
 from tailor.models.rules.model_queries import random_arguments
-from tailor.models.runtime import OnnxDuration, load_robot, open_session
+from tailor.models.runtime import load_robot, open_session
 from tailor.models.training import learners
 from tailor.models.trees.model_tree import BaggedModelTrees
 
-ROWS = (1, 50, 250, 1000)
-ALONE: Mapping[str, Callable[[], Any]] = {
+Predict = Callable[[Any], Any]  # arguments, shape (n, k), to predictions
+BATCHES = (1, 50, 250, 1000)
+LEARNERS: Mapping[str, Callable[[], Any]] = {
     "one tree": lambda: learners.make_learner("duration", "linear", 1),
     "bag of 16": lambda: BaggedModelTrees(trees=16, random_state=1),
 }
-EPISODES, TICKS = 3000, 20  # the fit that learning.md sets a limit for: 5 s
+EPISODES, TICKS = 3000, 20  # docs/learning.md limits this fit to 5 s
 
 
 def run(console: Console, quick: bool) -> None:
     """Print both tables."""
     durations, successes = load_robot("agilo")
-    table = Table("model", *(f"{rows} rows" for rows in ROWS), title="prediction with features, µs")
-    for name, model in {**durations, **successes}.items():
-        ask = model.predict if isinstance(model, OnnxDuration) else model.probability
-        table.add_row(f"agilo/{name} ({model.card['learner']['name']})", *_times(ask, model.card, quick))
+    table = Table("model", *(f"n = {count}" for count in BATCHES), title="prediction of n inputs with features, µs")
+    loaded: dict[str, tuple[Predict, Card]] = {name: (model.predict, model.card) for name, model in durations.items()}
+    loaded |= {name: (model.probability, model.card) for name, model in successes.items()}
+    for name, (predict, card) in loaded.items():
+        table.add_row(f"agilo/{name} ({card['learner']['name']})", *_times(predict, card, quick))
     card = durations["goToPose/duration"].card
-    for name, learner in ALONE.items():
-        ask, leaves = _alone(learner)
-        table.add_row(f"{name} ({leaves} leaves), runtime alone", *_times(ask, card, quick))
+    for name, make in LEARNERS.items():
+        predict, leaves = _runtime_alone(make)
+        table.add_row(f"{name} ({leaves} leaves), ONNX runtime alone", *_times(predict, card, quick))
     console.print(table)
-    console.print(f"fit of one tree, {EPISODES} episodes x {TICKS} rows: {_fit_seconds():.1f} s")
+    console.print(f"fit of one tree, {EPISODES} episodes x {TICKS} ticks: {_fit_seconds():.1f} s")
 
 
-def _times(ask: Callable[[Any], Any], card: Card, quick: bool) -> list[str]:
-    """Best of many short repetitions: each fits between two interruptions by other processes."""
-    arguments = random_arguments(card, max(ROWS), np.random.default_rng(0))
-    shown = []
-    for rows in ROWS:
-        part, best = np.ascontiguousarray(arguments[:rows]), np.inf
+def _times(predict: Predict, card: Card, quick: bool) -> list[str]:
+    """Minimum over many short repetitions: each fits between two interruptions by other processes."""
+    arguments = random_arguments(card, max(BATCHES), np.random.default_rng(0))
+    cells = []
+    for count in BATCHES:
+        batch, best = np.ascontiguousarray(arguments[:count]), np.inf
         for _ in range(100 if quick else 1000):
             started = time.perf_counter()
-            ask(part)
-            ask(part)
+            predict(batch)
+            predict(batch)
             best = min(best, (time.perf_counter() - started) / 2)
-        shown.append(f"{1e6 * best:.1f}")
-    return shown
+        cells.append(f"{1e6 * best:.1f}")
+    return cells
 
 
 def _examples(count: int) -> tuple[Any, Any, Any]:
-    """Features, seconds and episodes of a task made up for timing: waves and a fold, which need many leaves."""
+    """Features, seconds and episode numbers of a synthetic task: waves and a fold, which need many leaves."""
     rng = np.random.default_rng(0)
     features = rng.uniform([0, 0, 0, 0, -3], [0.6, 0.6, 6, 3, 3], (count, 5)).astype(np.float32)
     v, _, dist, to, at = features.T
@@ -65,8 +67,8 @@ def _examples(count: int) -> tuple[Any, Any, Any]:
     return features, seconds + rng.normal(0, 0.3, count), np.arange(count) // TICKS
 
 
-def _alone(make: Callable[[], Any]) -> tuple[Callable[[Any], Any], int]:
-    """A learner's graph without what `tailor.models.runtime` adds to a call, and how many leaves it has."""
+def _runtime_alone(make: Callable[[], Any]) -> tuple[Predict, int]:
+    """Call of a learner's graph without the checks of `tailor.models.runtime`, and its number of leaves."""
     features, seconds, groups = _examples(20_000)
     learner = make().fit(features, seconds, groups=groups)
     session = open_session(export_duration(learner, SPACES["projective"], {}).SerializeToString())
@@ -75,6 +77,7 @@ def _alone(make: Callable[[], Any]) -> tuple[Callable[[Any], Any], int]:
 
 
 def _fit_seconds() -> float:
+    """CPU seconds of the fit of one tree."""
     features, seconds, groups = _examples(EPISODES * TICKS)
     started = time.process_time()
     learners.make_learner("duration", "linear", 1).fit(features, seconds, groups=groups)

@@ -18,6 +18,7 @@ from rich.table import Table
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "pddl"
 UNLIMITED = 10**9  # checks
@@ -100,12 +101,19 @@ def bytes_per_plan(name: str = "kitchen-s3", limit: int = 20_000) -> float:
 
 
 def run(console: Console, quick: bool) -> None:
-    """Print the table."""
+    """Print the table.
+
+    Raises:
+      NoMeasurement: The problems are not installed: they are test data.
+    """
     table = Table(title="planning: CPU time with parsing and grounding; counts beside VHPOP 2.2.1's", box=None)
     table.add_column("problem", no_wrap=True, min_width=19)
     for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "its gen.", "its vis."):
         table.add_column(column, justify="right", no_wrap=True)
-    for row in rows(quick):
+    measured = rows(quick)
+    if not measured:
+        raise NoMeasurement(f"no problems in {DATA / 'own'}, expected a checkout of the repository")
+    for row in measured:
         keys = ("problem", "steps", "generated", "visited", "cpu_ms", "plans_per_s", "original_generated",
                 "original_visited")  # fmt: skip
         table.add_row(*(str(row[key]) for key in keys))

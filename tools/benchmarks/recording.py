@@ -1,4 +1,4 @@
-"""What recording costs and what it keeps: CPU and memory, loss after kill -9, replay's lateness, verify's speed."""
+"""Cost and loss of recording: CPU share, memory, loss after kill -9, lateness of a replay, speed of verify."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import subprocess
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,9 @@ from rich.table import Table
 
 from tailor.runtime.bus.session import Session, open_router
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
-from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.errors import UsageError
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.traffic import traffic
 from tailor.tools.launch.system import free_endpoint
 
@@ -26,8 +28,12 @@ CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 
 def run(console: Console, quick: bool) -> None:
-    """Print one row a figure."""
-    table = Table("figure", "value", title="recording")
+    """Print one row for each quantity.
+
+    Raises:
+      NoMeasurement: The recorder has not started, or a run was not recorded.
+    """
+    table = Table("quantity", "value", title="recording")
     with tempfile.TemporaryDirectory() as folder:
         place, endpoint = Path(folder), free_endpoint()
         with open_router(endpoint) as session:
@@ -40,12 +46,12 @@ def run(console: Console, quick: bool) -> None:
 
 
 def _recorder(session: Session, endpoint: str, path: Path) -> Child:
-    """A recorder that listens already."""
+    """A recorder that is already subscribed."""
     child = Child("record", tailor("record", "--quiet", "-o", str(path), "--connect", endpoint))
     probe, deadline = session.player("bench/probe", ""), time.monotonic() + START_S
     while not probe.matched():
         if time.monotonic() > deadline:
-            raise RuntimeError("the recorder did not start")
+            raise NoMeasurement(f"no recorder after {START_S:.0f} s")
         time.sleep(0.02)
     return child
 
@@ -59,14 +65,19 @@ def _cost(table: Table, session: Session, endpoint: str, place: Path, seconds: f
         share = (_cpu_s(child.pid) - cpu_s) / (time.monotonic() - began)
         memory = _memory_mb(child.pid)
     kept = list(open_recording(path).messages())
+    if not kept:
+        raise NoMeasurement("the recorder has recorded no message")
     table.add_row(f"recorder at {RATE_HZ:.0f} msg/s: CPU share of one core", f"{share:.1%}")
     table.add_row("  memory", f"{memory:.0f} MB")
-    table.add_row("  file", f"{path.stat().st_size / len(kept):.0f} bytes a message of {len(kept[0].data)}")
+    table.add_row(
+        "  file", f"{path.stat().st_size / len(kept):.0f} bytes for each message of {len(kept[0].data)} bytes"
+    )
     missing = sum(_missing(kept, key) for key in {message.key for message in kept})
     table.add_row("  lost", f"{missing} of {len(kept) + missing}")
 
 
-def _missing(kept: list, key: str) -> int:
+def _missing(kept: Sequence[Recorded], key: str) -> int:
+    """Number of messages of one topic that are missing, from the gaps in its sequence numbers."""
     numbers = [message.sequence for message in kept if message.key == key]
     return max(numbers) - min(numbers) + 1 - len(numbers)
 
@@ -88,8 +99,8 @@ def _loss(table: Table, session: Session, endpoint: str, place: Path, tries: int
 
 def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int) -> None:
     command = tailor("replay", str(path), "--rate", str(rate), "--duration", str(10 * rate), "--wait", "0", "--json")
-    said = subprocess.run([*command, "--connect", endpoint], capture_output=True, text=True, check=True).stdout
-    late = json.loads(said)["lateness"]
+    output = subprocess.run([*command, "--connect", endpoint], capture_output=True, text=True, check=True).stdout
+    late = json.loads(output)["lateness"]
     table.add_row(
         f"replay at rate {rate}, {RATE_HZ * rate:.0f} msg/s: late",
         f"p50 {late['p50_ms']:.2f} ms, p99 {late['p99_ms']:.2f} ms, max {late['max_ms']:.2f} ms",
@@ -97,25 +108,24 @@ def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int
 
 
 def _soccer(table: Table, path: Path) -> None:
-    """One recorded run of the real system: its size, and how fast it is verified."""
+    """One recorded run of the whole system: its size, and the speed of its verification."""
     command = tailor("up", "soccer", "--connect", free_endpoint(), "--record", str(path), "--once")
     with tempfile.TemporaryFile("w") as log:
         Child("up", command, log).wait(120.0)
     try:
         messages = list(open_recording(path).messages())
     except UsageError as error:
-        table.add_row("soccer run", f"did not happen: {error}")
-        return
+        raise NoMeasurement(f"no soccer run was recorded: {error}") from error
     seconds = (messages[-1].log_ns - messages[0].log_ns) / 1e9
     table.add_row("size of a soccer run", f"{path.stat().st_size / 1e6 / seconds * 60:.2f} MB a minute")
     for name, options in (("verify", ()), ("verify without proofs", ("--without-proofs",))):
         began = time.monotonic()
         command = tailor("verify", str(path), "--json", *options)
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        with_start_s, verdict = time.monotonic() - began, json.loads(done.stdout)[0]
+        completed = subprocess.run(command, capture_output=True, text=True, check=False)
+        with_start_s, verdict = time.monotonic() - began, json.loads(completed.stdout)[0]
         run_s = verdict["ticks"] / 10
         speeds = f"{run_s / verdict['took_s']:.0f} times real time, {run_s / with_start_s:.0f} with start-up"
-        table.add_row(f"{name}, a run of {run_s:.0f} s", f"{speeds} (exit {done.returncode})")
+        table.add_row(f"{name}, a run of {run_s:.0f} s", f"{speeds} (exit {completed.returncode})")
 
 
 def _cpu_s(pid: int) -> float:

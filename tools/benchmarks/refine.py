@@ -1,7 +1,7 @@
-"""How fast the solvers come close to the optimum: gap to the best known against milliseconds of CPU time, one core.
+"""Convergence of the solvers: gap to the best known value over CPU time on one core; then the time of proofs.
 
-Chain solver, the paper's genetic algorithm and our differential evolution beside scipy's and, where installed, CMA-ES;
-all call the same objective: sequences of AGILO with its learned models. Then how long proofs of the optimum take.
+Compares the chain solver, the paper's genetic algorithm and our differential evolution with scipy's and, if installed,
+CMA-ES. All minimise the same objective: sequences of AGILO with its learned models.
 """
 
 from __future__ import annotations
@@ -15,15 +15,16 @@ from rich.table import Column, Table
 from tailor.executive.interfaces.models import Models
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks import certificates
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.refine_cases import Case, cases
-from tailor.tools.benchmarks.refine_runners import Found, ours, runners
+from tailor.tools.benchmarks.refine_runners import Progress, ours, runners
 
 MOMENTS_MS = (5, 20, 60, 80)
 LONG_MS = 1500  # the search for the best known value
 
 
 def rows(quick: bool = False) -> list[dict[str, object]]:
-    """One row for each case and solver: mean gap in percent at each moment, and the worst of all tasks."""
+    """One row for each case and solver: mean and worst gap over the tasks in percent at each moment."""
     models = Models(*load_robot("agilo"))
     table = []
     for name, tasks in cases(models, 2 if quick else 5).items():
@@ -35,10 +36,12 @@ def rows(quick: bool = False) -> list[dict[str, object]]:
 def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
     """By solver, the gap to the best known value at each moment, in percent."""
     limit_ms = MOMENTS_MS[-1]
-    found = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
-    long = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in ("chain", "differential")]
-    best = min(_at(one, LONG_MS) for one in [*long, *found.values()])
-    return {name: [100 * (_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in found.items()}
+    progress = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
+    references = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in ("chain", "differential")]
+    best = min(_at(one, LONG_MS) for one in [*references, *progress.values()])
+    if not np.isfinite(best):
+        raise NoMeasurement(f"no solver has found a valid choice for {task.name}")
+    return {name: [100 * (_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in progress.items()}
 
 
 def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
@@ -53,12 +56,17 @@ def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
     }
 
 
-def _at(found: Found, moment_ms: float) -> float:
-    return min((value for at, value in found if at <= moment_ms), default=float("inf"))
+def _at(progress: Progress, moment_ms: float) -> float:
+    """Best value up to a moment; inf if there is none."""
+    return min((value for at, value in progress if at <= moment_ms), default=float("inf"))
 
 
 def run(console: Console, quick: bool) -> None:
-    """Print the table."""
+    """Print the tables of the solvers and of the proofs.
+
+    Raises:
+      NoMeasurement: No solver has found a valid choice for a task.
+    """
     table = Table(
         *(Column(name, no_wrap=True) for name in ("case", "solver")),
         title="refinement: mean gap to the best known value after CPU time",
@@ -71,6 +79,6 @@ def run(console: Console, quick: bool) -> None:
         table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
     console.print(table)
     if importlib.util.find_spec("cma") is None:
-        console.print("CMA-ES is left out: the package cma is not installed (it comes with the extra `test`)")
+        console.print("CMA-ES is omitted: package cma is not installed (extra `test`)")
     models = Models(*load_robot("agilo"))
     certificates.show(console, models, cases(models, 3 if quick else 9))

@@ -16,12 +16,17 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
-LEGS = {"2 free": 2, "4 free": 3, "8 free": 5, "12 free": 7}  # case -> legs of goToPose, two free parameters between
+LEGS = {
+    "2 free": 2,
+    "4 free": 3,
+    "8 free": 5,
+    "12 free": 7,
+}  # case -> legs of goToPose, two free parameters at each waypoint
 
 
 @dataclass(frozen=True)
 class Case:
-    """One sequence to refine, with the starts that assertion hands on."""
+    """One sequence to refine, with the initial candidates from assertion."""
 
     name: str
     actions: tuple[InstantiatedAction, ...]
@@ -29,19 +34,19 @@ class Case:
     starts: tuple[Mapping[int, float], ...] = ()
 
     def objective(self, models: Models, settings: RefinementSettings | None = None) -> SequenceObjective:
-        """The sequence's predicted cost, with the default settings if none are given."""
+        """Predicted cost of the sequence, with the default settings if none are given."""
         return SequenceObjective(self.actions, self.variables, models, settings or RefinementSettings())
 
 
 def cases(models: Models, count: int) -> dict[str, list[Case]]:
-    """`count` drawn tasks for each case."""
+    """`count` random tasks for each case."""
     library = domains.load("soccer").actions
-    made = {
+    tasks = {
         name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
         for name, legs in LEGS.items()
     }
-    made["5 free, subgoal"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
-    return made
+    tasks["5 free, subgoal"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
+    return tasks
 
 
 def _waypoints(action: Action, legs: int, rng: np.random.Generator) -> Case:
@@ -52,11 +57,11 @@ def _waypoints(action: Action, legs: int, rng: np.random.Generator) -> Case:
 
 
 def _needs_subgoal(library: Mapping[str, Action], models: Models, rng: np.random.Generator) -> Case:
-    """An approach of the ball for which assertion finds that it must go round, then the dribble."""
+    """An approach of the ball before which assertion asserts a subgoal, then the dribble."""
     actions = [library["approachBall"], library["dribbleBall"]]
     while True:
-        turned = {"phi": rng.uniform(-3, 3), "v": 0.0}
-        drawn = _chain("subgoal", actions, [_place(rng, turned), _place(rng, turned), _place(rng, turned)])
+        pose = {"phi": rng.uniform(-3, 3), "v": 0.0}
+        drawn = _chain("subgoal", actions, [_place(rng, pose), _place(rng, pose), _place(rng, pose)])
         free = [replace(v, value=None, lower=0.0, upper=0.3) if v.id == 7 else v for v in drawn.variables]
         given = ActionSequence(drawn.actions, tuple(free), library)
         asserted = Assertion(given, models, RefinementSettings(), rng).advance(CheckBudget(1000))
@@ -64,12 +69,12 @@ def _needs_subgoal(library: Mapping[str, Action], models: Models, rng: np.random
             return Case("subgoal", asserted.actions, asserted.variables, asserted.starts)
 
 
-def _place(rng: np.random.Generator, known: dict[str, float]) -> dict[str, float]:
-    return {"x": float(rng.uniform(-2.5, 2.5)), "y": float(rng.uniform(-1.7, 1.7)), **known}
+def _place(rng: np.random.Generator, values: dict[str, float]) -> dict[str, float]:
+    return {"x": float(rng.uniform(-2.5, 2.5)), "y": float(rng.uniform(-1.7, 1.7)), **values}
 
 
 def _chain(name: str, actions: list[Action], places: list[dict[str, float]]) -> Case:
-    """Actions from place to place; what a place does not say is free in the parameter's range."""
+    """Actions from place to place; quantities missing in a place are free in the parameter's range."""
     variables: list[Variable] = []
     ids = []
     for at, place in enumerate(places):
@@ -81,5 +86,5 @@ def _chain(name: str, actions: list[Action], places: list[dict[str, float]]) -> 
             variable = Variable(len(variables), f"pos{at}", parameter.quantity, parameter.unit, parameter.lower,
                                 parameter.upper, parameter.periodic, None)  # fmt: skip
             variables.append(variable if free else variable.bound_to(place[parameter.quantity]))
-    made = tuple(InstantiatedAction(action, i + 1, ids[i] + ids[i + 1]) for i, action in enumerate(actions))
-    return Case(name, made, tuple(variables))
+    instances = tuple(InstantiatedAction(action, i + 1, ids[i] + ids[i + 1]) for i, action in enumerate(actions))
+    return Case(name, instances, tuple(variables))

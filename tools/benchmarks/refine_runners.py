@@ -1,4 +1,4 @@
-"""The optimisers of the refinement benchmark behind one call: (objective, seed, limit) -> best value over time."""
+"""Optimisers of the refinement benchmark behind one call: (objective, starts, seed, limit) -> best value over time."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from tailor.executive.refinement.solvers.selection import solver_for
 
 OURS = ("chain", "genetic", "differential")
 
-Found = list[tuple[float, float]]  # (milliseconds of this process's CPU time, best value so far), in order of time
-Starts = Sequence[Mapping[int, float]]  # known beforehand; foreign optimisers cannot take them
-Runner = Callable[[SequenceObjective, Starts, int, float], Found]
+Progress = list[tuple[float, float]]  # (CPU milliseconds of this process, best value so far), in order of time
+Starts = Sequence[Mapping[int, float]]  # initial candidates; external optimisers do not use them
+Runner = Callable[[SequenceObjective, Starts, int, float], Progress]
 
 
 def runners() -> Iterator[tuple[str, Runner]]:
-    """Every optimiser by name; CMA-ES where it is installed."""
+    """Every optimiser by name; CMA-ES if it is installed."""
     for name in OURS:
         yield name, ours(name)
     yield "scipy DE", _scipy
@@ -36,43 +36,43 @@ def runners() -> Iterator[tuple[str, Runner]]:
 def ours(name: str) -> Runner:
     """One of the executive's own solvers."""
 
-    def run(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
+    def run(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
         settings = RefinementSettings(solver=name, patience=10**6, checks_max=10**6)  # type: ignore[arg-type]
         rng = np.random.default_rng(seed)
-        began, found = time.process_time(), []
+        began, progress = time.process_time(), []
         solver = solver_for(objective, settings, rng, objective.vectors(starts))
         while (elapsed := 1e3 * (time.process_time() - began)) < limit_ms and not solver.finished:
             solver.advance(CheckBudget(1))
-            found.append((1e3 * (time.process_time() - began), solver.value))
-        return found or [(elapsed, float("inf"))]
+            progress.append((1e3 * (time.process_time() - began), solver.value))
+        return progress or [(elapsed, float("inf"))]
 
     return run
 
 
 class _OverError(Exception):
-    """The time is over."""
+    """The time limit is reached."""
 
 
 class _Timed:
-    """The objective as foreign optimisers call it, with the time at which each best value was known."""
+    """Objective for external optimisers; records the time of each best value and ends the search at the limit."""
 
     def __init__(self, objective: SequenceObjective, limit_ms: float) -> None:
-        self.found: Found = []
+        self.progress: Progress = []
         self._objective = objective
         self._limit_ms = limit_ms
         self._began = time.process_time()
 
     def __call__(self, candidates: Array) -> Array:
-        """Cost of candidates, shape (n, d); INVALID as a number that foreign code can order."""
+        """Cost, shape (n,), of candidates, shape (n, d); INVALID as a finite number, which external code can sort."""
         costs = self._objective(self._objective.ranges.confine(candidates))
         now = 1e3 * (time.process_time() - self._began)
-        self.found.append((now, min(float(costs.min()), self.found[-1][1] if self.found else float("inf"))))
+        self.progress.append((now, min(float(costs.min()), self.progress[-1][1] if self.progress else float("inf"))))
         if now > self._limit_ms:
             raise _OverError
         return np.where(np.isfinite(costs), costs, 1e6)
 
 
-def _scipy(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
+def _scipy(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
     from scipy.optimize import differential_evolution
 
     timed = _Timed(objective, limit_ms)
@@ -80,10 +80,10 @@ def _scipy(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: fl
     options = {"vectorized": True, "updating": "deferred", "polish": False, "maxiter": 10**6, "tol": 0.0}
     with contextlib.suppress(_OverError):
         differential_evolution(lambda x: timed(x.T), bounds, rng=seed, **options)
-    return timed.found
+    return timed.progress
 
 
-def _cma(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Found:
+def _cma(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
     import cma
 
     timed, ranges = _Timed(objective, limit_ms), objective.ranges
@@ -91,7 +91,7 @@ def _cma(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: floa
     search = cma.CMAEvolutionStrategy(np.full(ranges.count, 0.5), 0.3, options)
     try:
         while True:
-            asked = search.ask()
-            search.tell(asked, list(timed(ranges.lower + ranges.width * np.array(asked))))
+            samples = search.ask()
+            search.tell(samples, list(timed(ranges.lower + ranges.width * np.array(samples))))
     except _OverError:
-        return timed.found
+        return timed.progress

@@ -1,4 +1,4 @@
-"""How punctual a live system is: executive, simulator and recorder as processes, idle and beside CPU burners."""
+"""Timing of a live system: executive, simulator and recorder as processes, idle and beside CPU burners."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.launch.system import free_endpoint
 
 BURNERS = 4
@@ -26,7 +27,11 @@ START_S = 30.0
 
 
 def run(console: Console, quick: bool) -> None:
-    """Print one row a case."""
+    """Print one row for each case.
+
+    Raises:
+      NoMeasurement: The system has not started, or its recording has no tick or no command.
+    """
     seconds = 15 if quick else 60
     table = Table(title=f"{seconds} s of soccer at 10 Hz, ms", caption="p50 / p99 / max")
     for column in ("case", "ticks", "missed", "work", "lateness", "percept to command"):
@@ -40,7 +45,7 @@ def run(console: Console, quick: bool) -> None:
 
 
 def _drive(recording: Path, seconds: float, burners: int) -> None:
-    """Let a system play one episode after another for so long."""
+    """Run a system for `seconds`, one episode after another."""
     endpoint = free_endpoint()
     up = tailor("up", "soccer", "--connect", endpoint, "--record", str(recording))
     with tempfile.TemporaryFile("w") as log, stopped_in_order([Child("up", up, log)]) as children:
@@ -58,11 +63,11 @@ def _wait_for_router(endpoint: str) -> None:
             if probe.connect_ex((host, int(port))) == 0:
                 return
         time.sleep(0.05)
-    raise RuntimeError(f"no router at {endpoint} after {START_S} s")
+    raise NoMeasurement(f"no router at {endpoint} after {START_S} s")
 
 
 def _play(session: Session, until_s: float) -> None:
-    """Whenever the goal is reached, put the world back and ask for it again."""
+    """Reset the world and set the goal again after each episode."""
     inbox, arm = session.inbox(("status",), ""), session.publisher("arm_request", "agilo")
     seed = 0
     while time.monotonic() < until_s:
@@ -70,7 +75,7 @@ def _play(session: Session, until_s: float) -> None:
             if isinstance(sample.message, ExecStatus) and sample.message.result:
                 seed += 1
                 session.call("agilo/sim/reset", f'{{"seed": {seed}}}')
-                time.sleep(1.5)  # the belief finds itself again
+                time.sleep(1.5)  # the belief converges again
                 arm.publish(ArmRequest(arm=True, reset=False, sender=sample.sender, epoch=0))
                 session.call("exec/goal", "")
                 time.sleep(0.5)
@@ -79,6 +84,7 @@ def _play(session: Session, until_s: float) -> None:
 
 
 def _row(recording: Path) -> list[str]:
+    """Cells of one case: ticks, missed ticks, work, lateness, delay from percept to command."""
     reports, delays = [], []
     sent: dict[int, int] = {}
     percepts: dict[tuple[str, int], int] = {}
@@ -97,13 +103,13 @@ def _row(recording: Path) -> list[str]:
             ]
             if message.stamp_ns in sent and newest:
                 delays.append((sent[message.stamp_ns] - max(newest)) / 1e6)
+    if not reports or not delays:
+        raise NoMeasurement(f"the recording has {len(reports)} tick reports and {len(delays)} commands after a percept")
     work = np.array([report.work_ns for report in reports]) / 1e6
     late = np.array([report.lateness_ns for report in reports]) / 1e6
     missed = sum(report.skipped for report in reports)
-    return [str(len(reports)), str(missed), _spread(work), _spread(late), _spread(np.array(delays))]
+    return [str(len(reports)), str(missed), _percentiles(work), _percentiles(late), _percentiles(np.array(delays))]
 
 
-def _spread(values: NDArray[np.float64]) -> str:
-    if not len(values):
-        return "none"
+def _percentiles(values: NDArray[np.float64]) -> str:
     return f"{np.percentile(values, 50):.2f} / {np.percentile(values, 99):.2f} / {values.max():.2f}"

@@ -101,7 +101,7 @@ def test_of_the_lot_only_those_of_the_domain_run(capsys):
 
 def test_an_evaluation_of_another_domain_is_a_usage_error(capsys):
     assert main(["evaluate", "first", "--domain", "arm"]) == 2
-    assert "first is of: soccer" in capsys.readouterr().err
+    assert "first has: soccer" in capsys.readouterr().err
 
 
 def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, capsys):

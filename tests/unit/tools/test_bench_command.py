@@ -1,0 +1,101 @@
+"""`tailor bench` fails if a benchmark has measured nothing, and still runs the others."""
+
+from __future__ import annotations
+
+import sys
+import types
+
+import pytest
+from rich.console import Console
+
+from tailor.runtime.recordings.recording import open_recording
+from tailor.tools.benchmarks import planning, recording, refine, ticks
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
+from tailor.tools.commands.measure import bench
+from tailor.tools.main import main
+
+GOLDEN = "tests/data/golden/soccer-approach.mcap"
+
+
+@pytest.fixture
+def stand_ins(monkeypatch):
+    """Benchmarks "empty", which measures nothing, and "full"."""
+
+    def nothing(console, quick):
+        raise NoMeasurement("no problems here")
+
+    runs = {"empty": nothing, "full": lambda console, quick: console.print("a table")}
+    monkeypatch.setattr(bench, "BENCHMARKS", dict.fromkeys(runs, "for this test"))
+    for name, run in runs.items():
+        module = types.ModuleType(name)
+        module.run = run
+        monkeypatch.setitem(sys.modules, f"tailor.tools.benchmarks.{name}", module)
+
+
+def test_benchmark_that_measured_nothing_fails_after_the_others_have_run(stand_ins, capsys):
+    assert main(["bench"]) == 1
+    printed = capsys.readouterr()
+    assert printed.err == "tailor bench empty: nothing measured: no problems here\n"
+    assert "a table" in printed.out
+
+
+def test_benchmarks_that_measured_something_succeed(stand_ins, capsys):
+    assert main(["bench", "full"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_unknown_benchmark_is_a_usage_error(capsys):
+    assert main(["bench", "speed"]) == 2
+    assert "no benchmark speed, expected some of: ticks" in capsys.readouterr().err
+
+
+def test_planning_without_problems_has_measured_nothing(monkeypatch, tmp_path):
+    monkeypatch.setattr(planning, "DATA", tmp_path)
+    with pytest.raises(NoMeasurement, match="no problems in"):
+        planning.run(Console(), True)
+
+
+def test_ticks_of_a_recording_without_ticks_have_measured_nothing(monkeypatch):
+    class Empty:
+        def decoded(self):
+            return iter(())
+
+    monkeypatch.setattr(ticks, "open_recording", lambda path: Empty())
+    with pytest.raises(NoMeasurement, match="0 tick reports and 0 commands"):
+        ticks._row("nowhere.mcap")
+
+
+def test_ticks_of_a_run_without_commands_have_measured_nothing(monkeypatch):
+    messages = [pair for pair in open_recording(GOLDEN).decoded() if type(pair[1]).__name__ != "VelocityCommand"]
+
+    class Silent:
+        def decoded(self):
+            return iter(messages)
+
+    monkeypatch.setattr(ticks, "open_recording", lambda path: Silent())
+    with pytest.raises(NoMeasurement, match="0 commands"):
+        ticks._row("nowhere.mcap")
+
+
+def test_run_that_was_not_recorded_is_no_measurement(monkeypatch, tmp_path):
+    class Nothing:
+        def __init__(self, *arguments):
+            pass
+
+        def wait(self, timeout_s):
+            return 2
+
+    monkeypatch.setattr(recording, "Child", Nothing)
+    with pytest.raises(NoMeasurement, match="no soccer run was recorded"):
+        recording._soccer(None, tmp_path / "missing.mcap")
+
+
+def test_solvers_without_a_valid_choice_have_measured_nothing(monkeypatch):
+    def never(objective, starts, seed, limit_ms):
+        return [(0.0, float("inf"))]
+
+    monkeypatch.setattr(refine, "runners", lambda: [("chain", never)])
+    monkeypatch.setattr(refine, "ours", lambda name: never)
+    task = types.SimpleNamespace(name="waypoints", starts=(), objective=lambda models: None)
+    with pytest.raises(NoMeasurement, match="no solver has found a valid choice for waypoints"):
+        refine._race(task, None, 0)
