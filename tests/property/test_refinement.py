@@ -148,8 +148,8 @@ def test_gain_that_is_too_small_leaves_the_greedy_choice():
 
 
 def test_sequence_without_free_parameters_is_finished_after_one_check():
-    known = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}
-    fixed = sequence([approach_dribble().actions[1].action], [known, known | {"x": 1.0}])
+    place = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+    fixed = sequence([approach_dribble().actions[1].action], [place, place | {"x": 1.0}])
     search = Refinement(fixed, MODELS, RefinementSettings(), np.random.default_rng(0))
     search.advance(CheckBudget(3))
     assert search.finished

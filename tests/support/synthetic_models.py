@@ -77,15 +77,15 @@ def idle(state: object, now_ns: int, belief: object, arguments: Array) -> Contro
 
 
 def pose_parameters() -> tuple[Parameter, ...]:
-    made = []
+    parameters = []
     for argument, suffix in enumerate(("", "g")):
-        made += [
+        parameters += [
             Parameter(f"x{suffix}", argument, "x", "m", -3.5, 3.5),
             Parameter(f"y{suffix}", argument, "y", "m", -2.25, 2.25),
             Parameter(f"phi{suffix}", argument, "phi", "rad", -PI, PI, periodic=True),
             Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, 0.75),
         ]
-    return tuple(made)
+    return tuple(parameters)
 
 
 GO = Action("goToPose", pose_parameters(), idle, "goToPose/duration")

@@ -1,4 +1,4 @@
-"""Energy: what the drives work in an episode, the models that learn it, and the executive that pays for it."""
+"""Energy: the work of the drives in an episode, the models trained on it, and its weight in refinement."""
 
 import math
 
@@ -27,7 +27,7 @@ def joints(at_s: float, efforts: tuple[float, ...], velocities: tuple[float, ...
     return JointState(round(at_s * 1e9), ("a", "b"), (0.0, 0.0), velocities, efforts)
 
 
-def test_wheels_work_to_gain_speed_and_get_nothing_back_when_they_brake() -> None:
+def test_wheels_work_to_accelerate_and_recover_nothing_when_braking() -> None:
     assert wheel_work_j(truth(0.0, 0.0), truth(0.1, 0.5)) == pytest.approx(0.5 * MASS_KG * 0.25)
     assert wheel_work_j(truth(0.0, 0.5), truth(0.1, 0.0)) == 0.0
     assert wheel_work_j(truth(0.0, 0.0), truth(0.1, 0.0, 1.0)) > 0.1
@@ -40,14 +40,14 @@ def test_motors_work_where_torque_and_motion_agree() -> None:
     assert joint_work_j(*lowering) == 0.0
 
 
-def test_states_that_tell_nothing_give_no_work() -> None:
+def test_states_without_speed_or_effort_give_no_work() -> None:
     assert math.isnan(wheel_work_j(truth(0.0, 0.0), joints(0.1, (1.0, 1.0), (1.0, 1.0))))
     assert math.isnan(joint_work_j(joints(0.0, (), (0.1, 0.1)), joints(0.1, (), (0.1, 0.1))))
     odom = [Odometry(k * 100_000_000, 0.0, 0.0, 0.0, 0.1 * k, 0.0) for k in range(2)]
     assert wheel_work_j(*odom) == pytest.approx(0.5 * MASS_KG * 0.01)
 
 
-def test_an_episode_tells_its_work_tick_by_tick() -> None:
+def test_an_episode_has_its_work_for_each_tick() -> None:
     domain = domains.load("soccer")
     arguments = np.array([0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
     run = action_run.run_action(action_run.new_body(domain), domain, "goToPose", arguments, np.random.default_rng(3))
@@ -58,16 +58,16 @@ def test_an_episode_tells_its_work_tick_by_tick() -> None:
 
 def test_work_survives_the_file_and_its_absence_is_kept(tmp_path) -> None:
     ticks = np.zeros((3, 2))
-    told = Episode(0, ticks[0], ticks, 0.3, True, "", work_j=np.array([1.0, 2.0, 0.0]))
-    untold = Episode(1, ticks[0], ticks, 0.3, True, "")
+    measured = Episode(0, ticks[0], ticks, 0.3, True, "", work_j=np.array([1.0, 2.0, 0.0]))
+    unmeasured = Episode(1, ticks[0], ticks, 0.3, True, "")
     arguments = [{"name": name, "unit": "m", "lower": -1.0, "upper": 1.0} for name in ("x", "y")]
     write_manifest(tmp_path, {"robot": "r", "action": "a", "arguments": arguments})
-    write_part(tmp_path / "part-0.parquet", [told, untold], ["x", "y"])
+    write_part(tmp_path / "part-0.parquet", [measured, unmeasured], ["x", "y"])
     first, second = read_data_set(tmp_path).episodes
     assert first.work_j is not None
     assert first.work_j.tolist() == [1.0, 2.0, 0.0]
     assert second.work_j is None
-    assert energy_examples([first, second], 2).targets.tolist() == [3.0, 2.0]  # what remains; the untold left out
+    assert energy_examples([first, second], 2).targets.tolist() == [3.0, 2.0]  # remaining work
 
 
 def test_every_action_that_ships_with_durations_ships_with_energies() -> None:
@@ -77,7 +77,7 @@ def test_every_action_that_ships_with_durations_ships_with_energies() -> None:
         assert {f"{action}/{kind}" for action in actions for kind in ("duration", "energy")} == set(durations)
 
 
-def test_what_a_joule_is_worth_changes_how_the_arm_passes_its_waypoints() -> None:
+def test_weight_of_energy_changes_how_the_arm_passes_its_waypoints() -> None:
     chosen = {}
     for weight in (0.0, 0.1):
         variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
