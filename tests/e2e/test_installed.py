@@ -77,17 +77,27 @@ def hostile_folder(tmp_path):
 
 
 @pytest.fixture
-def run(installed, hostile_folder):
-    """Runs an installed command in the hostile folder and returns what it printed."""
+def call(installed, hostile_folder):
+    """Calls an installed command in the hostile folder and returns the completed process."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
-    def run_command(*arguments):
+    def completed(*arguments):
         command = [installed, *map(str, arguments)]
-        done = subprocess.run(command, cwd=hostile_folder, capture_output=True, text=True, timeout=120, env=environment)
+        return subprocess.run(command, cwd=hostile_folder, capture_output=True, text=True, timeout=120, env=environment)
+
+    return completed
+
+
+@pytest.fixture
+def run(call):
+    """Calls an installed command that must succeed and returns its output."""
+
+    def output(*arguments):
+        done = call(*arguments)
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 
-    return run_command
+    return output
 
 
 def test_the_wheel_has_one_top_level_name(wheel):
@@ -140,3 +150,14 @@ def test_a_system_starts_records_verifies_and_is_drawn(run, hostile_folder):
     run("verify", "run.mcap")
     run("view", "run.mcap", "-o", "run.html")
     assert "<html" in (hostile_folder / "run.html").read_text()
+
+
+@pytest.mark.parametrize("command", ["train", "train-gate"])
+def test_training_never_writes_into_the_installation(call, installed, command):
+    files = sorted((p, p.stat().st_mtime_ns) for p in installed.parents[1].rglob("zoo/**/*"))
+    done = call(command, "agilo")
+    assert done.returncode == 2
+    assert "--zoo" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert files
+    assert files == sorted((p, p.stat().st_mtime_ns) for p in installed.parents[1].rglob("zoo/**/*"))

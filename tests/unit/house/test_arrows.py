@@ -11,7 +11,6 @@ from tests.unit.house.arrows import (
     MODULES,
     ONE_PLACE,
     OURS,
-    PENDING,
     ROOMS,
     ROOT,
     Arrow,
@@ -46,13 +45,7 @@ def forbidden(importer: str, imported: str) -> Arrow | None:
 
 @pytest.mark.parametrize("path", PROJECT_FILES)
 def test_every_import_follows_an_arrow_of_the_table(path: str) -> None:
-    arrows = {(str(arrow), other) for other in imported_modules(path) if (arrow := forbidden(path, other))}
-    assert {(arrow, other) for arrow, other in arrows if arrow not in PENDING["arrows"]} == set()
-
-
-def test_every_pending_arrow_still_occurs() -> None:
-    arrows = {str(arrow) for pair in all_imports() if (arrow := forbidden(*pair))}
-    assert set(PENDING["arrows"]) <= arrows, "mended: remove it from [pending] in rooms.toml"
+    assert {(str(arrow), other) for other in imported_modules(path) if (arrow := forbidden(path, other))} == set()
 
 
 @pytest.mark.parametrize("folder", ROOMS)
@@ -80,18 +73,18 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
     graph: dict[str, set[str]] = defaultdict(set)
     for importer, imported in all_imports():
         graph[importer].add(imported)
-    assert circles(graph) == set(PENDING["circles"])
+    assert circles(graph) == set()
 
 
 def test_no_folder_holds_more_files_than_one_can_overlook() -> None:
     files = [p for p in ROOT.glob("*/**/*.py") if p.relative_to(ROOT).parts[0] in {*OURS, "tests"}]
     counts = Counter(p.parent.relative_to(ROOT).as_posix() for p in files if p.name != "__init__.py")
-    assert {folder for folder, count in counts.items() if count > MAX_FILES} == set(PENDING["crowded"])
+    assert {folder: count for folder, count in counts.items() if count > MAX_FILES} == {}
 
 
 def test_only_main_imports_commands() -> None:
-    pairs = [(importer, imported) for importer, imported in all_imports() if imported.startswith("tools/commands/")]
-    assert {a for a, b in pairs if str(forbidden(a, b)) not in PENDING["arrows"]} <= {"tools/main.py"}
+    importers = {importer for importer, imported in all_imports() if imported.startswith("tools/commands/")}
+    assert importers <= {"tools/main.py"}
 
 
 def test_every_folder_of_unit_tests_is_named_after_a_room() -> None:
