@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tailor.schemas import messages as m
-from tailor.tools.viewer import timeline as story_module
+from tailor.tools.viewer import timeline as timeline_module
 from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
@@ -78,13 +78,13 @@ def soccer(tmp_path_factory) -> str:
         "domain": "soccer",
     }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(story_module, "about", lambda provenance: facts)
+        patch.setattr(timeline_module, "run_facts", lambda provenance: facts)
         rows = rows_of(synthetic_run.soccer_run(), RunTimeline(Explainer(lambda recorded: Context)))
     return written(tmp_path_factory.mktemp("view") / "soccer.html", rows)
 
 
-def rows_of(run, story: RunTimeline) -> list[Event]:
-    return [row for t in run for row in story.tell(t.time_ns / 1e9, t.key, t.message)]
+def rows_of(run, timeline: RunTimeline) -> list[Event]:
+    return [row for t in run for row in timeline.events_of(t.time_ns / 1e9, t.key, t.message)]
 
 
 def written(path: Path, rows: list[Event]) -> str:
@@ -117,7 +117,7 @@ def test_the_path_is_drawn_with_lines_across_the_heading_up_to_the_moment(browse
     until_now = browser.value(LINES.format(":not(.ahead)"))
     assert whole == pytest.approx(110, abs=5), "one line for each of the executive's ticks"
     assert until_now == pytest.approx(38, abs=2)
-    assert count(browser, "#scene .ball") == 1
+    assert count(browser, "#scene .object") == 1
     assert browser.errors == []
 
 
@@ -227,13 +227,13 @@ def test_both_colour_schemes_have_readable_ink(browser: Browser, soccer: str) ->
 def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) -> None:
     rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
     half = len(rows) // 2
-    feed = EventBroadcast()
-    with serving(page("live", [], live=True), feed, 0) as port:
-        feed.publish(rows[:half])
+    broadcast = EventBroadcast()
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        broadcast.publish(rows[:half])
         opened(browser, f"http://127.0.0.1:{port}/")
         browser.wait(f"Math.abs({AT} - {rows[half - 1].at_s}) < 0.01")
         browser.press("Home")
-        feed.publish(rows[half:])
+        broadcast.publish(rows[half:])
         browser.wait(f"Number(document.documentElement.dataset.rows) >= {len(rows)}")
         assert at(browser) == 0, "whoever looks at the past is left there"
         browser.press("l")
@@ -247,13 +247,13 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
 
 def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> None:
     rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
-    feed = EventBroadcast()
-    with serving(page("live", [], live=True), feed, 0) as port:
+    broadcast = EventBroadcast()
+    with serving(page("live", [], live=True), broadcast, 0) as port:
         opened(browser, f"http://127.0.0.1:{port}/")
 
         def feeding() -> None:
             for k in range(0, 150, 5):
-                feed.publish(rows[k : k + 5])
+                broadcast.publish(rows[k : k + 5])
                 time.sleep(0.1)
 
         thread = threading.Thread(target=feeding)

@@ -1,1 +1,1 @@
-"""The page that shows a run: what it is told (rows), how it is put together, and how it is served while a run lasts."""
+"""The page that shows a run: its events, its assembly into one file, and the server of the live page."""

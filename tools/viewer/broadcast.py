@@ -1,4 +1,7 @@
-"""Rows from one writer to any number of pages: newcomers get what is kept, the slow ones are let go and come again."""
+"""Broadcasts events to any number of pages.
+
+A new page receives the kept events first. A page that falls behind is disconnected and connects again.
+"""
 
 from __future__ import annotations
 
@@ -10,33 +13,33 @@ from threading import Lock
 
 from tailor.tools.viewer.timeline import Event
 
-KEEP_S = 600.0  # of what comes at a rate; events are kept from the start
-WAITING = 64  # batches, six seconds, that a page may lag behind
-AT_A_RATE = {"tick", "belief", "truth", "believed", "seen", "odom"}
+KEEP_S = 600.0  # of samples; all other events are kept from the start
+MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
+SAMPLED = {"tick", "belief", "truth", "believed", "seen", "odom"}
 
 
 class Subscription:
-    """What one page has still to be told."""
+    """Queue of batches for one page."""
 
     def __init__(self, kept: str) -> None:
         self.lost = False
-        self._waiting: Queue[str] = Queue(WAITING)
+        self._waiting: Queue[str] = Queue(MAX_WAITING)
         self._waiting.put(kept)
 
     def put(self, batch: str) -> None:
-        """Add a batch, unless the page has fallen too far behind."""
+        """Add a batch; a full queue marks the page as lost."""
         try:
             self._waiting.put_nowait(batch)
         except Full:
             self.lost = True
 
-    def let_go(self) -> None:
-        """Wake whoever waits for a batch, to find that there will be no more."""
+    def close(self) -> None:
+        """Mark the page as lost and wake its reader."""
         self.lost = True
         self.put("[]")
 
     def next(self, timeout_s: float) -> str | None:
-        """The next batch, a JSON array of rows; None when there is none in time."""
+        """The next batch, a JSON array of events; None after the timeout."""
         try:
             return self._waiting.get(timeout=timeout_s)
         except Empty:
@@ -44,43 +47,43 @@ class Subscription:
 
 
 class EventBroadcast:
-    """Keeps the run so far and hands on what comes."""
+    """Keeps the events of a run and passes new ones to all pages. Thread-safe."""
 
     def __init__(self, keep_s: float = KEEP_S) -> None:
         self._keep_s = keep_s
-        self._rows: list[Event] = []
+        self._events: list[Event] = []
         self._pages: set[Subscription] = set()
         self._lock = Lock()
         self.closed = False
 
     @property
     def pages(self) -> int:
-        """How many pages listen."""
+        """Number of connected pages."""
         return len(self._pages)
 
-    def publish(self, rows: Sequence[Event]) -> None:
-        """Hand rows to every page; never waits for one."""
-        if not rows:
+    def publish(self, events: Sequence[Event]) -> None:
+        """Pass events to every page without waiting for one."""
+        if not events:
             return
-        batch = encoded(rows)
+        batch = encoded(events)
         with self._lock:
-            self._rows.extend(rows)
-            self._forget(rows[-1].at_s)
+            self._events.extend(events)
+            self._forget(events[-1].at_s)
             for page in self._pages:
                 page.put(batch)
 
     def close(self) -> None:
-        """Let every page go, and take no more."""
+        """Disconnect all pages and accept no more."""
         with self._lock:
             self.closed = True
             for page in self._pages:
-                page.let_go()
+                page.close()
 
     @contextmanager
     def subscribe(self) -> Iterator[Subscription]:
-        """A page that listens as long as this lasts, beginning with all that is kept."""
+        """Connect a page for the duration of the context; its first batch holds all kept events."""
         with self._lock:
-            page = Subscription(encoded(self._rows))
+            page = Subscription(encoded(self._events))
             self._pages.add(page)
         try:
             yield page
@@ -89,18 +92,17 @@ class EventBroadcast:
                 self._pages.discard(page)
 
     def _forget(self, now_s: float) -> None:
-        """Drop what came at a rate and is old, a minute at a time."""
-        if self._rows[0].at_s >= now_s - self._keep_s - 60:
+        """Drop old samples, a minute at a time."""
+        if self._events[0].at_s >= now_s - self._keep_s - 60:
             return
         oldest = now_s - self._keep_s
-        kept = [row for row in self._rows if row.at_s >= oldest or not _at_a_rate(row)]
-        self._rows = kept
+        self._events = [e for e in self._events if e.at_s >= oldest or not _is_sample(e)]
 
 
-def encoded(rows: Sequence[Event]) -> str:
-    """Rows as one line of JSON."""
-    return json.dumps([row.json_value() for row in rows], allow_nan=False, separators=(",", ":"))
+def encoded(events: Sequence[Event]) -> str:
+    """Events as one line of JSON."""
+    return json.dumps([event.json_value() for event in events], allow_nan=False, separators=(",", ":"))
 
 
-def _at_a_rate(row: Event) -> bool:
-    return row.kind in AT_A_RATE or row.kind.startswith("series ")
+def _is_sample(event: Event) -> bool:
+    return event.kind in SAMPLED or event.kind.startswith("series ")

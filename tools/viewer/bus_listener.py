@@ -1,4 +1,7 @@
-"""A running system into rows: a plain subscriber with its own queue, that publishes nothing and delays nobody."""
+"""Converts the messages of a running system into events.
+
+The listener is a plain subscriber with its own queue. It publishes nothing and delays no other node.
+"""
 
 from __future__ import annotations
 
@@ -17,45 +20,45 @@ from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
-LOOK_NS = 50_000_000  # so often the page moves
+POLL_NS = 50_000_000  # 20 updates of the page a second
 ENCODING = "application/cdr;"
 
 
 class BusListener:
-    """Turns what has arrived into rows.
+    """Converts received messages into events.
 
     Args:
       intake: Filled by the bus's thread.
-      story: Keeps what has been told.
-      feed: Where the rows go.
+      timeline: State of the conversion.
+      broadcast: Receives the events.
       sender: Leave out executives whose id does not begin with this.
     """
 
-    def __init__(self, intake: IngestQueue, story: RunTimeline, feed: EventBroadcast, sender: str = "") -> None:
+    def __init__(self, intake: IngestQueue, timeline: RunTimeline, broadcast: EventBroadcast, sender: str = "") -> None:
         self._intake = intake
-        self._story = story
-        self._feed = feed
+        self._timeline = timeline
+        self._broadcast = broadcast
         self._sender = sender
         self._began_ns: int | None = None
 
-    def look(self) -> None:
-        """Take what has arrived and hand it on."""
-        rows: list[Event] = []
+    def poll(self) -> None:
+        """Convert and broadcast the messages received since the last call."""
+        events: list[Event] = []
         for raw in self._intake.drain():
             message = _read(raw)
             if message is not None and self._wanted(raw):
-                rows += self._story.tell(self._at_s(raw), raw.key, message)
-        self._feed.publish(rows)
+                events += self._timeline.events_of(self._at_s(raw), raw.key, message)
+        self._broadcast.publish(events)
 
     def run(self, clock: Clock, stopped: Callable[[], bool]) -> None:
-        """Look until told to stop."""
-        loop = Loop(LOOK_NS, clock)
+        """Poll periodically until `stopped` returns True."""
+        loop = Loop(POLL_NS, clock)
         while not stopped():
             loop.wait_for_next_period()
-            self.look()
+            self.poll()
 
     def _at_s(self, raw: Raw) -> float:
-        """Seconds since the first message was received, by the wall clock that recordings have too."""
+        """Seconds since the reception of the first message, by the wall clock as in recordings."""
         received_ns = raw.received_wall_ns or wall_ns()
         self._began_ns = received_ns if self._began_ns is None else self._began_ns
         return max(0.0, (received_ns - self._began_ns) / 1e9)
@@ -68,7 +71,7 @@ class BusListener:
 
 
 def _read(raw: Raw) -> Message | None:
-    """The value of a publication of our types; None for others, and for what is damaged."""
+    """The message of a publication; None for foreign and damaged ones."""
     kind = type_of(raw.encoding.removeprefix(ENCODING))
     if kind is None or not raw.is_put:
         return None

@@ -1,4 +1,4 @@
-"""The decisions of a run: which subgoals were in force when an action started, and what it took to find them."""
+"""Decisions of a run: the subgoals in force when an action started, and the search that found them."""
 
 from __future__ import annotations
 
@@ -12,88 +12,103 @@ from tailor.tools.viewer.recorded_messages import Timed
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """Subgoals, when they came into force, the search behind them, and the action that was started with them."""
+    """Subgoals, the search that found them, and the action that was started with them.
 
-    at_s: float  # when the action started; when the subgoals were told, for those that started none
+    Attributes:
+      at_s: Start of the action; publication of the subgoals if they started none.
+      subgoals: The choice.
+      report: Last report of the search.
+      deliberation_s: Deliberation time over all ticks of the search.
+      ticks: Number of ticks of the search.
+      started: Whether an action was started with these subgoals.
+      finished: End of that action.
+    """
+
+    at_s: float
     subgoals: Subgoals
     report: RefinementReport | None
-    work_s: float  # spent thinking, over all ticks of the search
-    ticks: int  # of the search
+    deliberation_s: float
+    ticks: int
     started: bool = False
     finished: ActionFinished | None = None
 
 
 @dataclass(slots=True)
-class Run:
-    """What `why` needs of a run."""
+class DecisionLog:
+    """Provenance and decisions of a run."""
 
     provenance: str = ""
     decisions: list[Decision] = field(default_factory=list)
 
 
-def decisions_of(messages: Iterable[Timed]) -> Run:
-    """The decisions in order: one for every started action, and those that were replaced before or while it ran."""
-    told = list(messages)
-    work_s = {t.message.tick: _thinking_s(t.message) for t in told if isinstance(t.message, TickReport)}
-    run, action = Run(), (-1, "")
+def decisions_of(messages: Iterable[Timed]) -> DecisionLog:
+    """Decisions in order: one for each started action, and those that were replaced before or during it."""
+    received = list(messages)
+    deliberation_s = {t.message.tick: _deliberation_s(t.message) for t in received if isinstance(t.message, TickReport)}
+    log, action = DecisionLog(), (-1, "")
     search: list[RefinementReport] = []
-    for t in told:
+    for t in received:
         message = t.message
         if isinstance(message, Provenance):
-            run.provenance = run.provenance or message.json
-        elif isinstance(message, RefinementReport) and search and _proves(message, search[-1]):
-            proven = [*search[:-1], replace(message, tick=search[-1].tick)]  # its ticks are not the search's
-            if run.decisions and run.decisions[-1].report is search[-1]:
-                run.decisions[-1] = replace(run.decisions[-1], report=proven[-1])
-            search = proven
+            log.provenance = log.provenance or message.json
+        elif isinstance(message, RefinementReport) and search and _certifies(message, search[-1]):
+            certified = [
+                *search[:-1],
+                replace(message, tick=search[-1].tick),
+            ]  # the search's last tick
+            if log.decisions and log.decisions[-1].report is search[-1]:
+                log.decisions[-1] = replace(log.decisions[-1], report=certified[-1])
+            search = certified
         elif isinstance(message, RefinementReport):
-            goes_on = bool(search) and message.checks > search[-1].checks
-            search = [*search, message] if goes_on else [message]
-            if goes_on and run.decisions and run.decisions[-1].report is search[-2]:
-                run.decisions[-1] = replace(run.decisions[-1], **_effort(search, work_s))
+            continues = bool(search) and message.checks > search[-1].checks
+            search = [*search, message] if continues else [message]
+            if continues and log.decisions and log.decisions[-1].report is search[-2]:
+                log.decisions[-1] = replace(log.decisions[-1], **_effort(search, deliberation_s))
         elif isinstance(message, Subgoals):
-            run.decisions.append(_decided(t.at_s, message, search, work_s))
+            log.decisions.append(_decision(t.at_s, message, search, deliberation_s))
         elif isinstance(message, ExecStatus):
             now = (message.action_index if message.action else -1, message.action)
-            if now != action and message.action and run.decisions:
-                run.decisions[-1] = replace(run.decisions[-1], at_s=t.at_s, started=True)
+            if now != action and message.action and log.decisions:
+                log.decisions[-1] = replace(log.decisions[-1], at_s=t.at_s, started=True)
             action = now
-        elif isinstance(message, ActionFinished) and run.decisions:
-            run.decisions[-1] = replace(run.decisions[-1], finished=message)
-    return run
+        elif isinstance(message, ActionFinished) and log.decisions:
+            log.decisions[-1] = replace(log.decisions[-1], finished=message)
+    return log
 
 
-def _proves(message: RefinementReport, last: RefinementReport) -> bool:
-    """Whether a report tells no more of the search than the last one did, but how near it is to the optimum."""
+def _certifies(message: RefinementReport, last: RefinementReport) -> bool:
+    """Whether a report adds only a certificate to the last one of the same search."""
     same = (message.evaluations, message.checks, message.best_s) == (last.evaluations, last.checks, last.best_s)
     return same and message.gap_pct >= 0
 
 
 def in_force(decisions: Iterable[Decision], at_s: float) -> Decision | None:
-    """The decision that was in force at a moment; None before the first."""
-    found = None
+    """The decision in force at a time; None before the first."""
+    newest = None
     for decision in decisions:
         if decision.at_s <= at_s:
-            found = decision
-    return found
+            newest = decision
+    return newest
 
 
-def acted_on(decisions: Iterable[Decision]) -> Iterator[Decision]:
-    """The decisions with which actions were started or brought to their end."""
+def executed(decisions: Iterable[Decision]) -> Iterator[Decision]:
+    """Decisions with which actions were started or finished."""
     return (decision for decision in decisions if decision.started or decision.finished is not None)
 
 
-def _decided(at_s: float, subgoals: Subgoals, search: list[RefinementReport], work_s: dict[int, float]) -> Decision:
-    """A decision of the search that reported last, if it did so in the tick before or in the same one."""
+def _decision(
+    at_s: float, subgoals: Subgoals, search: list[RefinementReport], deliberation_s: dict[int, float]
+) -> Decision:
+    """A decision with the last search, if that reported in the same tick or the one before."""
     fresh = bool(search) and search[-1].tick >= subgoals.tick - 1
-    return Decision(at_s, subgoals, **_effort(search if fresh else [], work_s))
+    return Decision(at_s, subgoals, **_effort(search if fresh else [], deliberation_s))
 
 
-def _effort(search: list[RefinementReport], work_s: dict[int, float]) -> dict[str, Any]:
+def _effort(search: list[RefinementReport], deliberation_s: dict[int, float]) -> dict[str, Any]:
     ticks = {report.tick for report in search}
-    spent_s = sum(work_s.get(tick, 0.0) for tick in ticks)
-    return {"report": search[-1] if search else None, "work_s": spent_s, "ticks": len(ticks)}
+    total_s = sum(deliberation_s.get(tick, 0.0) for tick in ticks)
+    return {"report": search[-1] if search else None, "deliberation_s": total_s, "ticks": len(ticks)}
 
 
-def _thinking_s(report: TickReport) -> float:
+def _deliberation_s(report: TickReport) -> float:
     return max(0, report.work_ns - report.control_ns) / 1e9

@@ -1,4 +1,4 @@
-"""Explanations in words: what `tailor why` prints."""
+"""Explanations as text, for `tailor why`."""
 
 from __future__ import annotations
 
@@ -11,85 +11,85 @@ from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
 
-NEAR = 1.02  # values within 2 % of the best are as good, given what the models know
+GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
-def durations(said: Explanation) -> Table:
-    """Predicted durations, chosen against greedy, and the objective."""
+def duration_table(explanation: Explanation) -> Table:
+    """Predicted durations and objective of the chosen and the greedy values."""
     table = Table("predicted", "chosen", "greedy", "difference", box=None, pad_edge=True)
     for column in table.columns[1:]:
         column.justify = "right"
-    for name, chosen, greedy in zip(said.actions, said.chosen_s, said.greedy_s, strict=True):
+    for name, chosen, greedy in zip(explanation.actions, explanation.chosen_s, explanation.greedy_s, strict=True):
         table.add_row(name, *_compared(chosen, greedy))
-    table.add_row("sum", *_compared(sum(said.chosen_s), sum(said.greedy_s)), style="bold")
-    if said.chosen_j:
-        chosen_j, greedy_j = sum(said.chosen_j), sum(said.greedy_j)
+    table.add_row("sum", *_compared(sum(explanation.chosen_s), sum(explanation.greedy_s)), style="bold")
+    if explanation.chosen_j:
+        chosen_j, greedy_j = sum(explanation.chosen_j), sum(explanation.greedy_j)
         table.add_row("energy", f"{chosen_j:.2f} J", f"{greedy_j:.2f} J", f"{chosen_j - greedy_j:+.2f} J")
-    table.add_row("objective", *_compared(said.chosen_cost, said.greedy_cost))
+    table.add_row("objective", *_compared(explanation.chosen_cost, explanation.greedy_cost))
     return table
 
 
-def in_words(of: FreeParameter) -> str:
-    """One free parameter: chosen, greedy's, its range, the best value, and what is about as good."""
-    variable, cost = of.variable, of.alternatives.total_s
+def parameter_text(free: FreeParameter) -> str:
+    """One free parameter: chosen value, greedy value, range, and share of equally good values."""
+    variable, cost = free.variable, free.alternatives.total_s
     best = cost.min()
-    said = f"{variable.quantity} at {variable.label}: {_value(of.chosen, variable.unit)}"
-    said += f", greedy {_value(of.greedy, variable.unit)}"
-    said += f", free in {_value(variable.lower, variable.unit)} to {_value(variable.upper, variable.unit)}"
+    text = f"{variable.quantity} at {variable.label}: {_value(free.chosen, variable.unit)}"
+    text += f", greedy {_value(free.greedy, variable.unit)}"
+    text += f", free in {_value(variable.lower, variable.unit)} to {_value(variable.upper, variable.unit)}"
     if not math.isfinite(best):
-        return f"{said}; every other value that was tried is predicted to fail"
-    share = f"{100 * (cost <= best * NEAR).mean():.0f} % of the range is within 2 % of the best"
+        return f"{text}; every other sampled value is predicted to fail"
+    share = f"{100 * (cost <= best * GOOD_RATIO).mean():.0f} % of the range is within 2 % of the best"
     worst = cost[cost < math.inf].max()
-    return f"{said}; {share}, the worst valid value costs {worst - best:+.2f} s"
+    return f"{text}; {share}, the worst valid value costs {worst - best:+.2f} s"
 
 
-def nearness(chosen_cost: float, best_cost: float) -> str:
-    """How near the choice is to the best that a long search knows of."""
+def long_search_text(chosen_cost: float, best_cost: float) -> str:
+    """Gap between the choice and the result of a long search."""
     if not math.isfinite(best_cost):
-        return "a long search finds nothing valid either"
-    missed = chosen_cost - best_cost
-    if missed < 0.005:
-        return "a long search finds nothing better"
-    return f"a long search finds {missed:.2f} s ({100 * missed / best_cost:.1f} %) better"
+        return "a long search finds no valid choice either"
+    gap_s = chosen_cost - best_cost
+    if gap_s < 0.005:
+        return "a long search finds no better choice"
+    return f"a long search finds a choice that is {gap_s:.2f} s ({100 * gap_s / best_cost:.1f} %) better"
 
 
-def seen(situation: Situation) -> str:
-    """What the model of an action sees, chosen and greedy."""
+def features_text(situation: Situation) -> str:
+    """Features of an action model for the chosen and the greedy values."""
     columns = zip(situation.features, situation.chosen, situation.greedy, strict=True)
-    said = [f"{q.name} {_value(a, q.unit)} ({_value(b, q.unit)})" for q, a, b in columns]
-    return f"{situation.action} sees (greedy): {', '.join(said)}"
+    values = [f"{q.name} {_value(a, q.unit)} ({_value(b, q.unit)})" for q, a, b in columns]
+    return f"{situation.action} features (greedy): {', '.join(values)}"
 
 
-def advice(report: RefinementReport) -> str:
-    """Decision of the refinement gate (paper 6.3.2); empty if it made none."""
+def gate_text(report: RefinementReport) -> str:
+    """Decision of the refinement gate (paper 6.3.2); empty without a gate."""
     if report.p_slowdown < 0:
         return ""
-    said = "greedy kept" if report.kept_greedy else "refined"
-    return f"{said}: the refinement gate predicts a slowdown with probability {100 * report.p_slowdown:.0f} %"
+    decision = "greedy kept" if report.kept_greedy else "refined"
+    return f"{decision}: the refinement gate predicts a slowdown with probability {100 * report.p_slowdown:.0f} %"
 
 
-def proven(report: RefinementReport | None) -> str:
-    """How near the refined choice is to the optimum of the models, where that was proven live."""
+def certificate_text(report: RefinementReport | None) -> str:
+    """Certified gap between the refined choice and the optimum of the models."""
     if report is None or report.gap_pct < 0:
-        return "not certified: nothing was proven of the models' optimum"
+        return "not certified: no bound on the models' optimum"
     return f"certified: within {report.gap_pct:.1f} % of the models' optimum"
 
 
-def effort(decision: Decision) -> str:
-    """What the search took, and what came of it."""
-    said = []
+def search_text(decision: Decision) -> str:
+    """Effort of the search, and outcome of the action."""
+    parts = []
     report = decision.report
     if report is not None:
-        state = "finished" if report.finished else "cut short"
-        said.append(
+        state = "finished" if report.finished else "interrupted"
+        parts.append(
             f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks, "
-            f"{1000 * decision.work_s:.0f} ms of thinking in {decision.ticks} ticks, {state}; "
+            f"{1000 * decision.deliberation_s:.0f} ms of deliberation in {decision.ticks} ticks, {state}; "
             f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
         )
     if decision.finished is not None:
         end = decision.finished
-        said.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")
-    return "; ".join(said) or "nothing is known of the search"
+        parts.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")
+    return "; ".join(parts) or "no report of the search"
 
 
 def _compared(chosen: float, greedy: float) -> tuple[str, str, str]:

@@ -1,4 +1,4 @@
-"""Puts the page together: template, style and scripts in one file that fetches nothing, with the run inside it."""
+"""Assembles the page: template, styles, scripts and the events of a run in one file without external references."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from importlib import resources
 from tailor.tools.viewer.timeline import Event
 
 STYLES = ("page.css", "controls.css", "drawing.css")
-# In the order in which they build on each other; together they are one module.
+# In the order of their dependencies; together they form one module.
 SCRIPTS = (
     "elements.js",
     "scales.js",
@@ -32,20 +32,22 @@ SCRIPTS = (
 )
 
 
-def page(title: str, rows: Iterable[Event], live: bool = False) -> str:
+def page(title: str, events: Iterable[Event], live: bool = False) -> str:
     """The whole page.
 
     Args:
       title: Shown at the top, e.g. the recording's name.
-      rows: The run; a live page gets its rows from the server that it came from.
-      live: Whether to listen for rows.
+      events: Events of the run; a live page receives its events from the server.
+      live: Whether the page connects to the server.
     """
-    embedded = json.dumps({"title": title, "live": live, "rows": [row.json_value() for row in rows]}, allow_nan=False)
+    embedded = json.dumps(
+        {"title": title, "live": live, "rows": [event.json_value() for event in events]}, allow_nan=False
+    )
     parts = {
         "TITLE": html.escape(title),
         "STYLE": "\n".join(_asset(name) for name in STYLES),
         "SCRIPT": "\n".join(_asset(name) for name in SCRIPTS),
-        # "<" must not end the script element, whatever a recording's strings say.
+        # no string of a recording may end the script element
         "DATA": embedded.replace("<", "\\u003c"),
     }
     text = _asset("page.html")

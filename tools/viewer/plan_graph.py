@@ -1,4 +1,4 @@
-"""A reported plan as a graph to draw: steps by level, causal links and bare orderings told apart."""
+"""Converts a reported plan into a graph: steps, causal links, and orderings without a link."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from tailor.tools.viewer.event_fields import Fields
 
 
 def plan_graph(message: PlanReport) -> Fields:
-    """The page's fields of a plan; without steps where there is none, or where its text cannot be read."""
-    told: Fields = {
+    """Fields of the page for a plan; without steps if there is no plan or its text is invalid."""
+    fields: Fields = {
         "status": message.status,
         "way": message.way,
         "reason": message.reason,
@@ -18,12 +18,12 @@ def plan_graph(message: PlanReport) -> Fields:
         "text": message.plan,
     }
     if not message.plan:
-        return told
+        return fields
     try:
         plan = planning.parse_plan(message.plan)
     except planning.PlanTextError as error:
-        return told | {"reason": str(error)}
-    return told | _graph(plan)
+        return fields | {"reason": str(error)}
+    return fields | _graph(plan)
 
 
 def _graph(plan: planning.Plan) -> Fields:
@@ -43,7 +43,7 @@ def _node(consumer: int) -> int | str:
 
 
 def _reduced(orderings: tuple[tuple[int, int], ...]) -> list[tuple[int, int]]:
-    """The orderings that do not follow from others: i < j with no k between."""
-    known = set(orderings)
-    between = {(i, j) for i, k in known for k2, j in known if k == k2}
-    return sorted(known - between)
+    """Transitive reduction of the orderings: i < j without a k between them."""
+    declared = set(orderings)
+    implied = {(i, j) for i, k in declared for k2, j in declared if k == k2}
+    return sorted(declared - implied)

@@ -1,4 +1,4 @@
-"""A recording into rows, and into the messages that `tailor why` asks for."""
+"""Reads the messages of a recording with their times, and converts them into events."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EXECUTIVE = "exec/"
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """A message, and when it was received: seconds since the recording's first."""
+    """A message with its key and its time of reception, seconds since the recording's first message."""
 
     at_s: float
     key: str
@@ -24,14 +24,14 @@ class Timed:
 
 
 def timed(path: Path, sender: str = "") -> Iterator[Timed]:
-    """The messages of a recording in the order of their reception; damaged ones are left out.
+    """Messages of a recording in the order of their reception, without damaged ones.
 
     Args:
       path: MCAP file.
-      sender: Leave out executives whose id does not begin with this.
+      sender: Skip executives whose id does not begin with this.
 
     Raises:
-      UsageError: No recording, or nothing in it that can be shown.
+      UsageError: The file is no recording, or has no readable message.
     """
     began_ns: int | None = None
     for recorded, message in open_recording(path).decoded():
@@ -42,9 +42,9 @@ def timed(path: Path, sender: str = "") -> Iterator[Timed]:
         began_ns = recorded.log_ns if began_ns is None else began_ns
         yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
     if began_ns is None:
-        raise UsageError(f"{path}: no message that can be shown, expected a recording of a run")
+        raise UsageError(f"{path}: no readable message, expected a recording of a run")
 
 
-def recorded_events(path: Path, story: RunTimeline, sender: str = "") -> list[Event]:
-    """All rows of a recording."""
-    return [row for t in timed(path, sender) for row in story.tell(max(0.0, t.at_s), t.key, t.message)]
+def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:
+    """All events of a recording."""
+    return [event for t in timed(path, sender) for event in timeline.events_of(max(0.0, t.at_s), t.key, t.message)]

@@ -1,4 +1,4 @@
-"""What a run's provenance says of it: domain, robot, scenario, names of the belief's values, limits of the command."""
+"""Facts of a run from its provenance: domain, robot, scenario, names of belief values, command limits."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
 from tailor.tools.viewer.event_fields import Fields
 
-# What the page draws as lines; the executive's shell keeps to them (architecture.md, "One tick").
+# Limits that the page draws; the executive's shell keeps them (architecture.md, "One tick").
 TIMES_MS = {"period": 100, "budget": 60, "end": 80}
 
 
-def about(provenance: str) -> Fields:
-    """The page's facts from a `Provenance` message's JSON; what it does not say is left out."""
+def run_facts(provenance: str) -> Fields:
+    """Facts of the page from the JSON of a `Provenance` message; missing ones are left out."""
     order = _table(_loads(provenance).get("order"))
     settings = _table(order.get("settings"))
-    said = {
+    facts = {
         "domain": order.get("domain"),
         "scenario": order.get("scenario"),
         "seed": settings.get("seed"),
         "horizon": _table(settings.get("refinement")).get("horizon"),
     }
-    return {"times": TIMES_MS} | {k: v for k, v in said.items() if v not in (None, "")} | _domain(said["domain"])
+    return {"times": TIMES_MS} | {k: v for k, v in facts.items() if v not in (None, "")} | _domain(facts["domain"])
 
 
 def _domain(name: Any) -> Fields:
-    """What only the domain's own folder knows; nothing of it when this installation has no such domain."""
+    """Facts of the domain; none if it is not installed."""
     from tailor.executive import domains
 
     if not isinstance(name, str):

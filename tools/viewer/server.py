@@ -1,4 +1,4 @@
-"""Serves the live page on this machine alone: the page, and its rows as server-sent events. It takes no input."""
+"""Serves the live page and its events (server-sent events) on the loopback interface. It accepts no input."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.broadcast import EventBroadcast
 
 ADDRESS = "127.0.0.1"
-OWN_NAMES = {"127.0.0.1", "localhost"}  # another name in Host: a page elsewhere that had its name point here
+OWN_NAMES = {"127.0.0.1", "localhost"}  # another Host header means DNS rebinding
 MAX_PAGES = 8
-RETRY_MS = 1000  # after which a page whose connection broke comes again
-BEAT_S = 2.0  # a comment so often tells a page that has gone
+RETRY_MS = 1000  # until a page reconnects
+BEAT_S = 2.0  # between comments that reveal a closed connection
 
 
 @contextmanager
-def serving(document: str, feed: EventBroadcast, port: int) -> Iterator[int]:
-    """Serve while this lasts; yields the port (a free one for port 0).
+def serving(document: str, broadcast: EventBroadcast, port: int) -> Iterator[int]:
+    """Serve for the duration of the context; yields the port (a free one for port 0).
 
     Raises:
       UsageError: The port is in use.
     """
-    handler = type("Handler", (_Handler,), {"document": document.encode(), "feed": feed})
+    handler = type("Handler", (_Handler,), {"document": document.encode(), "broadcast": broadcast})
     try:
         server = ThreadingHTTPServer((ADDRESS, port), handler)
     except OSError as error:
@@ -35,33 +35,33 @@ def serving(document: str, feed: EventBroadcast, port: int) -> Iterator[int]:
     try:
         yield server.server_address[1]
     finally:
-        feed.close()
+        broadcast.close()
         server.shutdown()
         server.server_close()
 
 
 class _Handler(BaseHTTPRequestHandler):
     document: bytes
-    feed: EventBroadcast
-    timeout = 10  # of a socket that neither takes nor gives
+    broadcast: EventBroadcast
+    timeout = 10  # seconds, of an idle socket
 
     def do_GET(self) -> None:
         host = self.headers.get("Host", "").rpartition(":")[0] or self.headers.get("Host", "")
-        if self.feed.closed:
-            self.close_connection = True  # a socket that the browser had opened ahead; an error code would be for ever
+        if self.broadcast.closed:
+            self.close_connection = True  # a preconnected socket; the browser would keep an error code
         elif host not in OWN_NAMES:
             self.send_error(403)
         elif self.path == "/":
             self._send_document()
         elif self.path != "/events":
             self.send_error(404)
-        elif self.feed.pages >= MAX_PAGES:
+        elif self.broadcast.pages >= MAX_PAGES:
             self.send_error(503, "too many pages")
         else:
             self._send_events()
 
     def log_message(self, *_: object) -> None:
-        """Nothing: requests are no news."""
+        """Log no requests."""
 
     def _send_document(self) -> None:
         self.send_response(200)
@@ -78,14 +78,14 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
         self.close_connection = True
         try:
-            self._say(f"retry: {RETRY_MS}\nevent: reset\ndata: all\n\n")
-            with self.feed.subscribe() as page:
+            self._send(f"retry: {RETRY_MS}\nevent: reset\ndata: all\n\n")
+            with self.broadcast.subscribe() as page:
                 while not page.lost:
                     batch = page.next(BEAT_S)
-                    self._say(":\n\n" if batch is None else f"event: rows\ndata: {batch}\n\n")
+                    self._send(":\n\n" if batch is None else f"event: rows\ndata: {batch}\n\n")
         except OSError:
-            return  # the page has gone
+            return  # the page closed the connection
 
-    def _say(self, text: str) -> None:
+    def _send(self, text: str) -> None:
         self.wfile.write(text.encode())
         self.wfile.flush()

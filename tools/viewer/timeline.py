@@ -1,4 +1,7 @@
-"""A run as the rows that the page is told: each thing once, when it changes, and states not too often."""
+"""Converts the messages of a run into the events that the page shows.
+
+States are sent on change, samples at a limited rate.
+"""
 
 from __future__ import annotations
 
@@ -6,66 +9,72 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
-from tailor.schemas.messages.soccer import BallPercept, SoccerGroundTruth
 from tailor.tools.viewer import event_fields
 from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.plan_graph import plan_graph
-from tailor.tools.viewer.run_facts import about
+from tailor.tools.viewer.planar_scene import TRUTH_KEYS, PlanarScene, scene_of_belief, scene_of_message
+from tailor.tools.viewer.run_facts import run_facts
 
-STATE_GAP_S = 0.06  # lets 10 Hz through whatever its jitter, and thins out what comes more often
-# Messages that everything is known of; what is not among them goes out as plain series of numbers.
-SILENT = (m.ArmRequest, BallPercept, m.PlanRequest, m.PlanAnswer)
+STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
+# Other messages that have no event of their own become plain series of numbers.
+NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer)
+
+Rows = list[tuple[str, Fields]]  # kind and fields of events
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One thing that the page is told: when (seconds on its time axis), what kind of thing, and its fields."""
+    """One event of the page: seconds on its time axis, kind, and fields."""
 
     at_s: float
     kind: str
     fields: Fields
 
     def json_value(self) -> list[Any]:
-        """As the page takes it: [at, kind, fields]."""
+        """The event as the page reads it: [at, kind, fields]."""
         return [round(self.at_s, 3), self.kind, self.fields]
 
 
 class RunTimeline:
-    """Turns messages, in order, into rows.
+    """Converts messages, in order, into events.
 
     Args:
       explainer: Computes the alternatives of subgoals from the action models; None: they are not shown.
-      robot: The only robot to tell of; empty: the one that the executive names, and any until it does.
+      robot: The only robot to show; empty: the one that the executive names, and any until then.
     """
 
     def __init__(self, explainer: Explainer | None = None, robot: str = "") -> None:
         self._robot = robot
         self._explainer = explainer
-        self._names: tuple[str, ...] = ()
+        self._belief_names: tuple[str, ...] = ()
         self._action = (-1, "")
-        self._last: dict[str, Any] = {}  # by kind: what was told last, of things told on change
-        self._told_s: dict[str, float] = {}  # by kind: when, of things told at a rate
+        self._last: dict[str, Any] = {}  # by kind: last fields of states
+        self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
 
-    def tell(self, at_s: float, key: str, message: m.Message) -> list[Event]:
-        """The rows that follow from one message."""
-        owner, _, rest = key.partition("/")
-        if rest and self._robot and owner not in ("exec", self._robot):
+    def events_of(self, at_s: float, key: str, message: m.Message) -> list[Event]:
+        """Convert one message.
+
+        Args:
+          at_s: Time of its reception, seconds since the start of the run.
+          key: Its zenoh key.
+          message: Its value.
+        """
+        owner, _, topic = key.partition("/")
+        if topic and self._robot and owner not in ("exec", self._robot):
             return []
         return [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
 
-    def _rows(self, at_s: float, key: str, message: m.Message) -> list[tuple[str, Fields]]:
+    def _rows(self, at_s: float, key: str, message: m.Message) -> Rows:
         match message:
             case m.Provenance():
                 return self._provenance(message)
             case m.ExecStatus():
                 return self._status(at_s, message)
-            case SoccerGroundTruth():
-                return self._path(at_s, "truth", event_fields.truth(message))
             case m.Odometry():
-                return self._path(at_s, "odom", event_fields.odometry(message))
+                return self._path(at_s, "odom", scene_of_message(message))
             case m.PoseEstimate():
-                return self._path(at_s, "seen", event_fields.seen(message))
+                return self._path(at_s, "seen", scene_of_message(message))
             case m.TickReport():
                 return [("tick", event_fields.tick(message))]
             case m.ActionFinished():
@@ -80,56 +89,62 @@ class RunTimeline:
                 return self._changed("driver", event_fields.driver(message))
             case m.EStop():
                 return [("estop", {"stop": message.stop})]
-        if isinstance(message, SILENT):
-            return []
-        topic = key.rpartition("/")[2]
-        return self._paced(at_s, f"series {topic}", event_fields.numbers(message))
+        return self._other(at_s, key, message)
 
-    def _provenance(self, message: m.Provenance) -> list[tuple[str, Fields]]:
+    def _other(self, at_s: float, key: str, message: m.Message) -> Rows:
+        """Ground truth on the plane, else a series of numbers."""
+        if isinstance(message, NOT_SHOWN):
+            return []
+        if key.partition("/")[2] in TRUTH_KEYS and (scene := scene_of_message(message)):
+            return self._path(at_s, "truth", scene)
+        return self._sampled(at_s, f"series {key.rpartition('/')[2]}", event_fields.numbers(message))
+
+    def _provenance(self, message: m.Provenance) -> Rows:
         if self._last.get("provenance") == message.json:
             return []
         self._last["provenance"] = message.json
-        facts = about(message.json)
-        self._names = tuple(facts.get("beliefNames", ()))
+        facts = run_facts(message.json)
+        self._belief_names = tuple(facts.get("beliefNames", ()))
         self._robot = self._robot or facts.get("robot", "")
         if self._explainer is not None:
-            self._explainer.learn(message.json)
+            self._explainer.load(message.json)
         return [("about", facts)]
 
-    def _status(self, at_s: float, message: m.ExecStatus) -> list[tuple[str, Fields]]:
+    def _status(self, at_s: float, message: m.ExecStatus) -> Rows:
         state = {name: getattr(message, name) for name in ("mode", "reason", "scenario", "goal", "result")}
-        told = self._changed("state", state)
+        rows = self._changed("state", state)
         action = (message.action_index if message.action else -1, message.action)
         self._action = action
         if self._last.get("action") != action:
             self._last["action"] = action
-            told.append(("action", {"index": action[0], "action": action[1]}))
+            rows.append(("action", {"index": action[0], "action": action[1]}))
         belief = {
             "elapsed": event_fields.number(message.action_elapsed_s),
             "predicted": event_fields.number(message.action_predicted_s),
             "values": [event_fields.number(value) for value in message.belief],
         }
-        told += self._paced(at_s, "belief", belief)
-        robot = event_fields.believed(self._names, message.belief)
-        return told + (self._path(at_s, "believed", robot) if robot else [])
+        rows += self._sampled(at_s, "belief", belief)
+        return rows + self._path(at_s, "believed", scene_of_belief(self._belief_names, message.belief))
 
-    def _path(self, at_s: float, source: str, robot: Fields) -> list[tuple[str, Fields]]:
-        """Where the robot was, and in which action."""
-        return self._paced(at_s, source, {**robot, "index": self._action[0]})
+    def _path(self, at_s: float, source: str, scene: PlanarScene | None) -> Rows:
+        """Scene of a source, with the action in execution."""
+        if scene is None:
+            return []
+        return self._sampled(at_s, source, {**event_fields.scene(scene), "index": self._action[0]})
 
-    def _subgoals(self, message: m.Subgoals) -> list[tuple[str, Fields]]:
-        told = [("subgoals", event_fields.subgoals(message))]
-        explained = self._explainer.fields(message) if self._explainer is not None else None
-        return told + ([("why", explained)] if explained else [])
+    def _subgoals(self, message: m.Subgoals) -> Rows:
+        rows: Rows = [("subgoals", event_fields.subgoals(message))]
+        explanation = self._explainer.fields(message) if self._explainer is not None else None
+        return rows + ([("why", explanation)] if explanation else [])
 
-    def _changed(self, kind: str, fields: Fields) -> list[tuple[str, Fields]]:
+    def _changed(self, kind: str, fields: Fields) -> Rows:
         if self._last.get(kind) == fields:
             return []
         self._last[kind] = fields
         return [(kind, fields)]
 
-    def _paced(self, at_s: float, kind: str, fields: Fields) -> list[tuple[str, Fields]]:
-        if not fields or at_s - self._told_s.get(kind, -1.0) < STATE_GAP_S:
+    def _sampled(self, at_s: float, kind: str, fields: Fields) -> Rows:
+        if not fields or at_s - self._sampled_s.get(kind, -1.0) < STATE_GAP_S:
             return []
-        self._told_s[kind] = at_s
+        self._sampled_s[kind] = at_s
         return [(kind, fields)]

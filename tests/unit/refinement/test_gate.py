@@ -10,11 +10,11 @@ from tailor.executive.refinement.gate import SITUATION, situation
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import RefinementReport
-from tailor.tools.evaluations.gate_pairs import pairs_of
+from tailor.tools.commands.learn.train_gate import pairs_of
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.refinement import gate as judging
 from tailor.tools.evaluations.refinement import gate_ceiling
-from tailor.tools.viewer.explanation_text import advice
+from tailor.tools.viewer.explanation_text import gate_text
 from tests.support.synthetic_models import MODELS, approach_dribble
 
 KIND = ("approachBall", "dribbleBall")
@@ -109,9 +109,9 @@ def test_explanation_contains_the_decision_of_the_gate() -> None:
     report = RefinementReport(
         0, 1, 2, "DifferentialEvolution", True, 10, 2, 9.0, 8.9, p_slowdown=0.62, kept_greedy=True
     )
-    assert advice(report) == "greedy kept: the refinement gate predicts a slowdown with probability 62 %"
-    assert advice(dataclasses.replace(report, p_slowdown=0.1, kept_greedy=False)).startswith("refined: ")
-    assert advice(dataclasses.replace(report, p_slowdown=-1.0)) == ""
+    assert gate_text(report) == "greedy kept: the refinement gate predicts a slowdown with probability 62 %"
+    assert gate_text(dataclasses.replace(report, p_slowdown=0.1, kept_greedy=False)).startswith("refined: ")
+    assert gate_text(dataclasses.replace(report, p_slowdown=-1.0)) == ""
 
 
 DONE = Outcome(1, "h2", True, 10.0, "achieved", (), (), (), (), False, 0.0, (), ())

@@ -1,4 +1,4 @@
-"""`tailor view` and `tailor why` on recordings: what they write, say, and refuse."""
+"""`tailor view` and `tailor why` on recordings: their output and their errors."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ BEGIN_NS = 1_700_000_000_000_000_000
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory) -> Path:
-    """The soccer run on tape; its provenance names no scenario that could be composed."""
-    path = tmp_path_factory.mktemp("tape") / "run.mcap"
-    tape = McapWriter(path, {})
+    """A recording of the soccer run; its provenance names models that do not exist."""
+    path = tmp_path_factory.mktemp("recordings") / "run.mcap"
+    writer = McapWriter(path, {})
     for number, t in enumerate(synthetic_run.soccer_run()):
         kind = f"application/cdr;{ros_type(type(t.message))}"
         origin = pack(Origin(number, BEGIN_NS, synthetic_run.SENDER))
-        tape.write(Raw(t.key, encode(t.message), origin, kind, True, None), BEGIN_NS + t.time_ns)
-    tape.close()
+        writer.write(Raw(t.key, encode(t.message), origin, kind, True, None), BEGIN_NS + t.time_ns)
+    writer.close()
     return path
 
 
@@ -41,7 +41,7 @@ def run(command, *words) -> int:
     return command.run(parser.parse_args([str(word) for word in words]))
 
 
-def rows_in(html: Path) -> list:
+def events_in(html: Path) -> list:
     return json.loads(re.search(r'id="data">(.*?)</script>', html.read_text(), re.DOTALL)[1])["rows"]
 
 
@@ -49,10 +49,10 @@ def test_view_writes_the_whole_run_into_one_page(recording, tmp_path, capsys) ->
     output = tmp_path / "folder" / "page.html"
     assert run(view, recording, "--output", output, "--no-models") == 0
     assert capsys.readouterr().out.strip() == str(output)
-    rows = rows_in(output)
-    told = list(synthetic_run.soccer_run())
-    assert rows[-1][0] == pytest.approx(told[-1].time_ns / 1e9)
-    assert sum(kind == "tick" for _, kind, _ in rows) == sum("tick" in t.key for t in told)
+    events = events_in(output)
+    published = list(synthetic_run.soccer_run())
+    assert events[-1][0] == pytest.approx(published[-1].time_ns / 1e9)
+    assert sum(kind == "tick" for _, kind, _ in events) == sum("tick" in t.key for t in published)
 
 
 def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -> None:
@@ -61,10 +61,10 @@ def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -
     capsys.readouterr()
 
 
-def test_view_shows_only_the_executive_that_is_asked_for(recording, tmp_path, capsys) -> None:
+def test_view_shows_only_the_requested_executive(recording, tmp_path, capsys) -> None:
     output = tmp_path / "page.html"
     run(view, recording, "-o", output, "--no-models", "--sender", "cd")
-    kinds = {kind for _, kind, _ in rows_in(output)}
+    kinds = {kind for _, kind, _ in events_in(output)}
     assert "tick" not in kinds
     assert "truth" in kinds
     capsys.readouterr()
@@ -79,13 +79,13 @@ def test_view_is_the_same_page_every_time(recording, tmp_path, capsys) -> None:
 
 
 @pytest.mark.parametrize("words", [[], ["x.mcap", "--live"], ["--live", "--port", "70000"]])
-def test_view_refuses_what_makes_no_sense(words) -> None:
+def test_view_refuses_contradictory_arguments(words) -> None:
     with pytest.raises(UsageError, match="expected"):
         run(view, *words)
 
 
 @pytest.mark.parametrize("command", [view, why])
-def test_what_is_no_recording_is_refused_by_name(command, tmp_path) -> None:
+def test_a_file_that_is_no_recording_is_refused_by_name(command, tmp_path) -> None:
     nothing = tmp_path / "nothing.mcap"
     with pytest.raises(UsageError, match=r"nothing\.mcap"):
         run(command, nothing)
@@ -94,13 +94,13 @@ def test_what_is_no_recording_is_refused_by_name(command, tmp_path) -> None:
         run(command, nothing)
 
 
-def test_why_refuses_a_moment_before_any_decision(recording) -> None:
+def test_why_refuses_a_time_before_any_decision(recording) -> None:
     with pytest.raises(UsageError, match=r"no decision before 0\.1 s"):
         run(why, recording, "--at", 0.1)
 
 
-def test_why_says_which_part_cannot_be_loaded(recording) -> None:
-    with pytest.raises(UsageError, match="cannot load what it was made with"):
+def test_why_names_the_part_that_cannot_be_loaded(recording) -> None:
+    with pytest.raises(UsageError, match="cannot load its domain and models"):
         run(why, recording)
 
 

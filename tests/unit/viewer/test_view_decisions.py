@@ -1,4 +1,4 @@
-"""`why` finds the decisions that were acted on, and what each search took."""
+"""`tailor why` finds the executed decisions and the effort of each search."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import dataclasses
 import pytest
 
 from tailor.schemas import messages as m
-from tailor.tools.viewer.decisions import acted_on, decisions_of, in_force
-from tailor.tools.viewer.explanation_text import proven
+from tailor.tools.viewer.decisions import decisions_of, executed, in_force
+from tailor.tools.viewer.explanation_text import certificate_text
 from tailor.tools.viewer.recorded_messages import Timed
 from tests.support import synthetic_run
 
@@ -23,7 +23,7 @@ def tick(number: int, work_ms: int) -> m.TickReport:
     return m.TickReport(0, number, 0, 0, 1_000_000, work_ms * 1_000_000, 0, 9, "", False)
 
 
-def run_of(*messages: m.Message):
+def log_of(*messages: m.Message):
     return decisions_of(Timed(k / 10, "exec/x", message) for k, message in enumerate(messages))
 
 
@@ -32,7 +32,7 @@ def soccer():
 
 
 def test_each_action_has_the_decision_that_it_was_started_with() -> None:
-    decisions = list(acted_on(soccer().decisions))
+    decisions = list(executed(soccer().decisions))
     assert [d.subgoals.actions[0].action for d in decisions] == ["approachBall", "dribbleBall"]
     assert [d.finished.outcome for d in decisions] == ["done", "done"]
     assert decisions[0].at_s == pytest.approx(0.3)
@@ -45,28 +45,28 @@ def test_a_moment_has_the_decision_in_force() -> None:
     assert in_force(decisions, 99.0).subgoals.actions[0].action == "dribbleBall"
 
 
-def test_thinking_counts_all_ticks_of_the_search_and_no_others() -> None:
-    run = run_of(tick(4, 60), report(5, 10), BEGIN, tick(5, 61), report(6, 20, 8.5), tick(6, 31), tick(7, 50))
-    (decision,) = run.decisions
+def test_deliberation_time_counts_all_ticks_of_the_search_and_no_others() -> None:
+    log = log_of(tick(4, 60), report(5, 10), BEGIN, tick(5, 61), report(6, 20, 8.5), tick(6, 31), tick(7, 50))
+    (decision,) = log.decisions
     assert (decision.ticks, decision.report.checks, decision.report.best_s) == (2, 20, 8.5)
-    assert decision.work_s == pytest.approx(0.060 + 0.030)
+    assert decision.deliberation_s == pytest.approx(0.060 + 0.030)
 
 
-def test_a_proof_told_later_belongs_to_the_decision_and_costs_it_no_thinking() -> None:
-    proof = dataclasses.replace(report(5, 20, 8.5), tick=7, gap_pct=0.8)
-    run = run_of(tick(4, 60), report(5, 20, 8.5), BEGIN, tick(5, 61), tick(7, 50), proof)
-    (decision,) = run.decisions
+def test_a_later_certificate_belongs_to_the_decision_and_adds_no_deliberation_time() -> None:
+    certificate = dataclasses.replace(report(5, 20, 8.5), tick=7, gap_pct=0.8)
+    log = log_of(tick(4, 60), report(5, 20, 8.5), BEGIN, tick(5, 61), tick(7, 50), certificate)
+    (decision,) = log.decisions
     assert decision.report.gap_pct == 0.8
     assert decision.ticks == 1
-    assert proven(decision.report) == "certified: within 0.8 % of the models' optimum"
-    assert "not certified" in proven(report(5, 20))
+    assert certificate_text(decision.report) == "certified: within 0.8 % of the models' optimum"
+    assert "not certified" in certificate_text(report(5, 20))
 
 
 def test_a_new_search_does_not_count_for_the_old_decision() -> None:
-    run = run_of(report(5, 40), BEGIN, report(9, 10))
-    assert run.decisions[0].report.checks == 40
+    log = log_of(report(5, 40), BEGIN, report(9, 10))
+    assert log.decisions[0].report.checks == 40
 
 
 def test_an_old_search_does_not_count_for_a_new_decision() -> None:
-    run = run_of(report(5, 40), BEGIN, m.Subgoals(0, 30, 2, ()))
-    assert run.decisions[1].report is None
+    log = log_of(report(5, 40), BEGIN, m.Subgoals(0, 30, 2, ()))
+    assert log.decisions[1].report is None

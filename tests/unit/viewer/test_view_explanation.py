@@ -1,4 +1,4 @@
-"""An explanation made from a message says what the refinement that made the message said."""
+"""An explanation computed from a message agrees with the refinement that published the message."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Subgoals
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import durations, nearness
+from tailor.tools.viewer.explanation_text import duration_table, long_search_text
 from tailor.tools.viewer.explanations.explanation import explain, sequence_of
 from tailor.tools.viewer.explanations.longer_search import best_cost
 from tests.support import synthetic_run
@@ -30,7 +30,7 @@ def refined():
     return sequence, search.choice
 
 
-def told(sequence, choice) -> Subgoals:
+def message_of(sequence, choice) -> Subgoals:
     return synthetic_run.subgoals(2, sequence, choice, 0)
 
 
@@ -39,62 +39,62 @@ def explained(message: Subgoals):
 
 
 def test_the_sequence_is_rebuilt_from_its_message(refined) -> None:
-    rebuilt = sequence_of(told(*refined), LIBRARY)
+    rebuilt = sequence_of(message_of(*refined), LIBRARY)
     for old, new in zip(refined[0].variables, rebuilt.variables, strict=True):
         assert (new.lower, new.upper, new.periodic, new.value) == (old.lower, old.upper, old.periodic, old.value)
     assert [a.variables for a in rebuilt.actions] == [a.variables for a in refined[0].actions]
 
 
 def test_the_explained_choice_is_the_choice(refined) -> None:
-    said = explained(told(*refined))
-    assert said.chosen_s == pytest.approx(refined[1].predicted_s)
-    assert said.chosen_cost == pytest.approx(refined[1].total_s)
-    assert said.greedy_cost >= said.chosen_cost
+    explanation = explained(message_of(*refined))
+    assert explanation.chosen_s == pytest.approx(refined[1].predicted_s)
+    assert explanation.chosen_cost == pytest.approx(refined[1].total_s)
+    assert explanation.greedy_cost >= explanation.chosen_cost
 
 
 def test_greedy_makes_the_first_action_shorter_and_the_whole_longer(refined) -> None:
-    said = explained(told(*refined))
-    assert said.greedy_s[0] < said.chosen_s[0]
-    assert sum(said.greedy_s) > sum(said.chosen_s)
+    explanation = explained(message_of(*refined))
+    assert explanation.greedy_s[0] < explanation.chosen_s[0]
+    assert sum(explanation.greedy_s) > sum(explanation.chosen_s)
 
 
 def test_alternatives_cover_the_range_and_name_the_actions_that_they_touch(refined) -> None:
-    angle = next(p for p in explained(told(*refined)).parameters if p.variable.quantity == "phi")
+    angle = next(p for p in explained(message_of(*refined)).parameters if p.variable.quantity == "phi")
     assert angle.touched == (0, 1)
     assert angle.alternatives.values[[0, -1]] == pytest.approx([-np.pi, np.pi])
     assert np.nanmin(angle.alternatives.total_s) >= 0.98 * refined[1].total_s, "the choice is (almost) the best of them"
 
 
 def test_nothing_free_and_unknown_actions_have_no_explanation(refined) -> None:
-    message = told(*refined)
+    message = message_of(*refined)
     bound = tuple(replace(a, parameters=tuple(replace(p, bound=True) for p in a.parameters)) for a in message.actions)
     assert explained(replace(message, actions=bound)) is None
     assert explained(replace(message, actions=())) is None
     assert explain(message, {}, MODELS, SETTINGS, np.random.default_rng(0)) is None
 
 
-def test_a_risk_that_was_accepted_is_explained_and_not_called_invalid(refined) -> None:
+def test_a_risk_that_was_accepted_is_explained_and_not_invalid(refined) -> None:
     strict = replace(SETTINGS, p_fail_max=0.0)
-    said = explain(told(*refined), LIBRARY, MODELS, strict, np.random.default_rng(0))
-    assert np.isfinite(said.chosen_cost)
+    explanation = explain(message_of(*refined), LIBRARY, MODELS, strict, np.random.default_rng(0))
+    assert np.isfinite(explanation.chosen_cost)
 
 
-def test_where_energy_is_weighed_its_part_of_the_cost_is_told(refined) -> None:
+def test_where_energy_is_weighed_its_part_of_the_cost_is_message_of(refined) -> None:
     energies = {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()}
     models, weighed = replace(MODELS, durations=MODELS.durations | energies), replace(SETTINGS, energy_weight=0.5)
-    said = explain(told(*refined), LIBRARY, models, weighed, np.random.default_rng(0))
-    assert len(said.chosen_j) == len(said.chosen_s)
-    plain = explained(told(*refined))
-    assert said.chosen_cost == pytest.approx(plain.chosen_cost + 0.5 * sum(said.chosen_j))
-    assert fields_of(said)["energy"][0] == pytest.approx(list(said.chosen_j), abs=1e-3)
-    assert "energy" in [str(cell) for cell in durations(said).columns[0].cells]
+    explanation = explain(message_of(*refined), LIBRARY, models, weighed, np.random.default_rng(0))
+    assert len(explanation.chosen_j) == len(explanation.chosen_s)
+    plain = explained(message_of(*refined))
+    assert explanation.chosen_cost == pytest.approx(plain.chosen_cost + 0.5 * sum(explanation.chosen_j))
+    assert fields_of(explanation)["energy"][0] == pytest.approx(list(explanation.chosen_j), abs=1e-3)
+    assert "energy" in [str(cell) for cell in duration_table(explanation).columns[0].cells]
     assert plain.chosen_j == ()
     assert "energy" not in fields_of(plain)
 
 
 def test_fields_are_json_even_where_everything_is_invalid(refined) -> None:
-    said = explained(told(*refined))
-    assert json.dumps(fields_of(replace(said, greedy_cost=float("inf"))), allow_nan=False)
+    explanation = explained(message_of(*refined))
+    assert json.dumps(fields_of(replace(explanation, greedy_cost=float("inf"))), allow_nan=False)
 
 
 def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -> None:
@@ -102,43 +102,45 @@ def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -
         raise UsageError("no model agilo/goToPose/duration")
 
     explainer = Explainer(missing)
-    explainer.learn("{}")
-    assert explainer.fields(told(*refined)) is None
+    explainer.load("{}")
+    assert explainer.fields(message_of(*refined)) is None
     assert explainer.missing == "no model agilo/goToPose/duration"
 
 
 def test_a_long_search_is_never_worse_than_the_choice_and_finds_what_a_poor_choice_missed(refined) -> None:
     sequence, choice = refined
     rng = np.random.default_rng(1)
-    known = best_cost(told(sequence, choice), LIBRARY, MODELS, SETTINGS, rng, checks=100)
-    assert known <= choice.total_s + 1e-9
+    least = best_cost(message_of(sequence, choice), LIBRARY, MODELS, SETTINGS, rng, checks=100)
+    assert least <= choice.total_s + 1e-9
     angle = next(v.id for v in sequence.free() if v.quantity == "phi")
     poor = replace(choice, values={**choice.values, angle: choice.values[angle] - 0.3})
-    cost = explained(told(sequence, poor)).chosen_cost
-    assert cost > known + 0.01
-    assert best_cost(told(sequence, poor), LIBRARY, MODELS, SETTINGS, rng, checks=100) == pytest.approx(known, abs=0.02)
+    cost = explained(message_of(sequence, poor)).chosen_cost
+    assert cost > least + 0.01
+    assert best_cost(message_of(sequence, poor), LIBRARY, MODELS, SETTINGS, rng, checks=100) == pytest.approx(
+        least, abs=0.02
+    )
 
 
-def test_the_situation_is_what_the_duration_model_sees_of_the_choice(refined) -> None:
+def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None:
     @dataclass
     class Carded(PoseDuration):
         card = {"features": "projective"}
 
     models = replace(MODELS, durations={**MODELS.durations, "goToPose/duration": Carded()})
-    said = explain(told(*refined), LIBRARY, models, SETTINGS, np.random.default_rng(0))
-    (seen,) = said.situations
-    assert (seen.action, [q.name for q in seen.features]) == (
+    explanation = explain(message_of(*refined), LIBRARY, models, SETTINGS, np.random.default_rng(0))
+    (situation,) = explanation.situations
+    assert (situation.action, [q.name for q in situation.features]) == (
         "approachBall",
         ["v", "v_g", "dist", "angle_to", "angle_at"],
     )
-    speed = next(p for p in said.parameters if p.variable.quantity == "v")
-    assert (seen.chosen[1], seen.greedy[1]) == pytest.approx((speed.chosen, speed.greedy))
-    assert seen.chosen[2] == pytest.approx(np.hypot(2.2, 0.6), rel=1e-5)
+    speed = next(p for p in explanation.parameters if p.variable.quantity == "v")
+    assert (situation.chosen[1], situation.greedy[1]) == pytest.approx((speed.chosen, speed.greedy))
+    assert situation.chosen[2] == pytest.approx(np.hypot(2.2, 0.6), rel=1e-5)
 
 
 @pytest.mark.parametrize(
     ("chosen", "best", "words"),
-    [(10.0, 10.0, "finds nothing better"), (11.0, 10.0, "1.00 s (10.0 %) better"), (9.0, np.inf, "nothing valid")],
+    [(10.0, 10.0, "finds no better choice"), (11.0, 10.0, "1.00 s (10.0 %) better"), (9.0, np.inf, "no valid choice")],
 )
-def test_nearness_is_told_in_seconds_and_per_cent(chosen, best, words) -> None:
-    assert words in nearness(chosen, best)
+def test_the_gap_to_a_long_search_is_given_in_seconds_and_per_cent(chosen, best, words) -> None:
+    assert words in long_search_text(chosen, best)

@@ -1,4 +1,4 @@
-"""The live page's server: newcomers get everything, slow ones are let go, and only this machine is served."""
+"""The live page's server: new pages receive all events, slow ones are disconnected, only this machine is served."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.viewer import server
-from tailor.tools.viewer.broadcast import WAITING, EventBroadcast
+from tailor.tools.viewer.broadcast import MAX_WAITING, EventBroadcast
 from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -49,7 +49,7 @@ def events(port: int):
     connection.close()
 
 
-def next_rows(lines) -> list:
+def next_events(lines) -> list:
     for line in lines:
         if line.startswith(b"data: ["):
             return json.loads(line[6:])
@@ -62,51 +62,51 @@ def get(port: int, path: str, host: str = "127.0.0.1") -> int:
     return connection.getresponse().status
 
 
-def test_a_newcomer_gets_what_was_and_what_comes() -> None:
-    feed = EventBroadcast()
-    feed.publish([tick(0.0)])
-    with feed.subscribe() as page:
-        feed.publish([tick(0.1)])
+def test_a_new_page_receives_past_and_future_events() -> None:
+    broadcast = EventBroadcast()
+    broadcast.publish([tick(0.0)])
+    with broadcast.subscribe() as page:
+        broadcast.publish([tick(0.1)])
         assert json.loads(page.next(0)) == [[0.0, "tick", {"work": 1.0}]]
         assert json.loads(page.next(0)) == [[0.1, "tick", {"work": 1.0}]]
         assert page.next(0) is None
-    assert feed.pages == 0
+    assert broadcast.pages == 0
 
 
-def test_old_ticks_are_forgotten_and_old_events_are_not() -> None:
-    feed = EventBroadcast(keep_s=10)
-    feed.publish([Event(0.0, "plan", {}), tick(0.0)])
+def test_old_ticks_are_dropped_and_old_events_are_not() -> None:
+    broadcast = EventBroadcast(keep_s=10)
+    broadcast.publish([Event(0.0, "plan", {}), tick(0.0)])
     for k in range(200):
-        feed.publish([tick(k)])
-    with feed.subscribe() as page:
+        broadcast.publish([tick(k)])
+    with broadcast.subscribe() as page:
         kept = json.loads(page.next(0))
     assert kept[0][1] == "plan"
     assert 10 <= len(kept) <= 80
     assert kept[-1][0] == 199
 
 
-def test_a_page_that_does_not_read_is_let_go_and_holds_up_nobody() -> None:
-    feed = EventBroadcast()
-    with feed.subscribe() as page:
-        for k in range(2 * WAITING):
-            feed.publish([tick(k)])
+def test_a_page_that_does_not_read_is_disconnected_and_blocks_no_other() -> None:
+    broadcast = EventBroadcast()
+    with broadcast.subscribe() as page:
+        for k in range(2 * MAX_WAITING):
+            broadcast.publish([tick(k)])
         assert page.lost
 
 
 def test_the_server_serves_the_page_and_its_events_and_nothing_else() -> None:
-    feed = EventBroadcast()
-    with serving("<p>page</p>", feed, 0) as port:
+    broadcast = EventBroadcast()
+    with serving("<p>page</p>", broadcast, 0) as port:
         assert get(port, "/") == 200
         assert get(port, "/etc/passwd") == 404
-        feed.publish([tick(0.0)])
+        broadcast.publish([tick(0.0)])
         with events(port) as lines:
             assert (next(lines), next(lines)) == (b"retry: 1000\n", b"event: reset\n")
-            assert next_rows(lines) == [[0.0, "tick", {"work": 1.0}]]
-            feed.publish([tick(0.5)])
-            assert next_rows(lines) == [[0.5, "tick", {"work": 1.0}]]
+            assert next_events(lines) == [[0.0, "tick", {"work": 1.0}]]
+            broadcast.publish([tick(0.5)])
+            assert next_events(lines) == [[0.5, "tick", {"work": 1.0}]]
 
 
-def test_a_page_elsewhere_that_had_its_name_point_here_gets_nothing() -> None:
+def test_a_host_name_that_resolves_here_is_refused() -> None:
     with serving("page", EventBroadcast(), 0) as port:
         assert get(port, "/", host="evil.example:80") == 403
         assert get(port, "/events", host="evil.example") == 403
@@ -115,18 +115,18 @@ def test_a_page_elsewhere_that_had_its_name_point_here_gets_nothing() -> None:
 
 def test_the_server_listens_on_this_machine_alone() -> None:
     with serving("page", EventBroadcast(), 0) as port, socket.socket() as other:
-        other.bind(("127.0.0.2", port))  # free: nobody listens at every address
+        other.bind(("127.0.0.2", port))  # free: the server does not listen at every address
 
 
 def test_too_many_pages_are_refused(monkeypatch) -> None:
     monkeypatch.setattr(server, "MAX_PAGES", 1)
     with serving("page", EventBroadcast(), 0) as port, events(port) as lines:
         next(lines)
-        next_rows(lines)
+        next_events(lines)
         assert get(port, "/events") == 503
 
 
-def test_a_port_in_use_is_told_in_one_line() -> None:
+def test_a_port_in_use_is_an_error_of_one_line() -> None:
     with (
         serving("page", EventBroadcast(), 0) as port,
         pytest.raises(UsageError, match=f"--port {port}"),
@@ -136,25 +136,25 @@ def test_a_port_in_use_is_told_in_one_line() -> None:
 
 
 def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
-    intake, feed = IngestQueue(), EventBroadcast()
-    listener = BusListener(intake, RunTimeline(), feed)
+    intake, broadcast = IngestQueue(), EventBroadcast()
+    listener = BusListener(intake, RunTimeline(), broadcast)
     intake.put(raw(status()))
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
-    listener.look()
-    with feed.subscribe() as page:
-        told = json.loads(page.next(0))
-    assert [kind for _, kind, _ in told] == ["state", "action", "belief", "odom"]
-    assert told[-1][0] == 0.25
-    assert told[-1][2]["x"] == 1.5
+    listener.poll()
+    with broadcast.subscribe() as page:
+        events = json.loads(page.next(0))
+    assert [kind for _, kind, _ in events] == ["state", "action", "belief", "odom"]
+    assert events[-1][0] == 0.25
+    assert events[-1][2]["x"] == 1.5
 
 
 def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
-    intake, feed = IngestQueue(), EventBroadcast()
+    intake, broadcast = IngestQueue(), EventBroadcast()
     good = raw(status())
     intake.put(Raw(good.key, good.payload[:-9], good.attachment, good.encoding, True, 1))
     intake.put(Raw("exec/status", b"hello", None, "text/plain", True, 1))
     intake.put(Raw(good.key, good.payload, good.attachment, good.encoding, False, 1))
     intake.put(raw(status(), sender="cd" * 16))
-    BusListener(intake, RunTimeline(), feed, sender="ab").look()
-    with feed.subscribe() as page:
+    BusListener(intake, RunTimeline(), broadcast, sender="ab").poll()
+    with broadcast.subscribe() as page:
         assert json.loads(page.next(0)) == []

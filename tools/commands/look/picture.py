@@ -1,4 +1,4 @@
-"""Draw recorded runs in the manner of the paper's Figure 1: lines across the heading whose length is the speed."""
+"""Draw recorded runs like the paper's Figure 1: lines across the heading whose length is the speed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Draw and say where."""
+    """Draw the runs and print the path of the picture."""
     draw_paths([recorded_track(path.stem, path) for path in arguments.recording], arguments.output)
     print(arguments.output)
     return 0

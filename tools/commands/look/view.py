@@ -1,4 +1,4 @@
-"""Show a run as a page: field, subgoals and their alternatives, plan, actions and ticks; of a recording, or live."""
+"""Show a run as an HTML page: field, subgoals with alternatives, plan, actions and ticks; recorded or live."""
 
 from __future__ import annotations
 
@@ -23,27 +23,25 @@ from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.timeline import RunTimeline
 
 PORT = 7450
-NICENESS = 10  # whoever watches gives way to whoever acts
+NICENESS = 10  # the executive has priority over the viewer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor view`."""
-    parser.add_argument(
-        "recording", type=Path, nargs="?", help="MCAP file; its page is written once and needs no server"
-    )
+    parser.add_argument("recording", type=Path, nargs="?", help="MCAP file; the page is one file and needs no server")
     parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="the page (default: beside the recording)")
     parser.add_argument("--live", action="store_true", help="serve the page of a running system on this machine")
     parser.add_argument(
-        "--port", type=int, default=PORT, help="of the live page; 0 finds a free one (default %(default)s)"
+        "--port", type=int, default=PORT, help="port of the live page; 0 finds a free one (default %(default)s)"
     )
-    parser.add_argument("--robot", default="", help="show only this robot (default: the one that the executive names)")
-    parser.add_argument("--sender", default="", metavar="ID", help="show only executives whose id begins so")
-    parser.add_argument("--no-models", action="store_true", help="do not load models to predict the alternatives")
+    parser.add_argument("--robot", default="", help="show only this robot (default: the executive's)")
+    parser.add_argument("--sender", default="", metavar="ID", help="show only executives whose id begins with ID")
+    parser.add_argument("--no-models", action="store_true", help="do not load models; alternatives are not shown")
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page of a recording, or serve the live one until told to stop."""
+    """Write the page of a recording, or serve the live page until interrupted."""
     if arguments.live == (arguments.recording is not None):
         raise UsageError("expected either a recording or --live")
     if not 0 <= arguments.port < 65536:
@@ -57,12 +55,12 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     output: Path = arguments.output or recording.with_suffix(".html")
     console = Console(stderr=True)
     with console.status(f"reading {recording}"):
-        rows = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
+        events = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(page(recording.name, rows), encoding="utf-8")
+        output.write_text(page(recording.name, events), encoding="utf-8")
     except OSError as error:
         raise UsageError(f"{output}: {error.strerror}, expected a file that can be written") from error
     print(output)
@@ -73,12 +71,12 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     endpoint = endpoint_of(arguments)
     os.nice(NICENESS)
     stop = stop_on_signals()
-    feed = EventBroadcast()
-    with open_client(endpoint) as session, serving(page("live", (), live=True), feed, arguments.port) as port:
+    broadcast = EventBroadcast()
+    with open_client(endpoint) as session, serving(page("live", (), live=True), broadcast, arguments.port) as port:
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
-        listener = BusListener(intake, RunTimeline(explainer, arguments.robot), feed, arguments.sender)
-        print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C ends it", flush=True)
+        listener = BusListener(intake, RunTimeline(explainer, arguments.robot), broadcast, arguments.sender)
+        print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C stops it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
         subscribe_all.undeclare()
     return 0

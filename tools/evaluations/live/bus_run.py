@@ -14,7 +14,7 @@ TRUTH_KEYS = tuple(topic.key.partition("/")[2] for topic in TOPICS.values() if t
 class NullScreen:
     """Discards all output; see tailor.tools.cli.live_status.Screen."""
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         """Discard a line."""
 
     def show(self, message: Message) -> None:

@@ -2,7 +2,7 @@
 
 const LINE_S = 0.32; // metres of line for each metre a second: 0.9 m/s draws 0.29 m
 const ROBOT = [0.41, 0.32]; // length and breadth of the drawn robot, metres
-const BALL_M = 0.11;
+const OBJECT_M = 0.11; // radius of a drawn object
 
 class Field {
   constructor(run, target) {
@@ -52,18 +52,21 @@ class Field {
     this.still.replaceChildren(
       ...this.segments.map((s) => s.element),
       svg("path", { class: "ghost", d: through(ghost) }),
-      ...this.ballParts(),
+      ...this.objectPaths(),
     );
   }
 
-  ballParts() {
-    const balls = this.path.map((p) => (p.ball ? this.map(...p.ball) : null));
-    const first = balls.find((b) => b !== null);
-    if (!first) return [];
-    return [
-      svg("path", { class: "ballpath", d: through(balls) }),
-      svg("circle", { class: "ballstart", cx: first[0], cy: first[1], r: BALL_M * this.map.perMetre }),
-    ];
+  /** Path and start of every object. */
+  objectPaths() {
+    const names = new Set(this.path.flatMap((p) => Object.keys(p.objects ?? {})));
+    return [...names].flatMap((name) => {
+      const places = this.path.map((p) => (p.objects?.[name] ? this.map(...p.objects[name]) : null));
+      const first = places.find((place) => place !== null);
+      return [
+        svg("path", { class: "objectpath", d: through(places) }),
+        svg("circle", { class: "objectstart", cx: first[0], cy: first[1], r: OBJECT_M * this.map.perMetre }),
+      ];
+    });
   }
 
   colourStrokes(at) {
@@ -78,9 +81,9 @@ class Field {
   frame() {
     const path = this.run.all(this.run.source());
     const places = this.run.all("subgoals").flatMap(placesOf);
-    const balls = path.filter((p) => p.ball).map((p) => p.ball);
-    const xs = [...path.map((p) => p.x), ...places.map((p) => p.x), ...balls.map((b) => b[0])];
-    const ys = [...path.map((p) => p.y), ...places.map((p) => p.y), ...balls.map((b) => b[1])];
+    const objects = path.flatMap((p) => Object.values(p.objects ?? {}));
+    const xs = [...path.map((p) => p.x), ...places.map((p) => p.x), ...objects.map((o) => o[0])];
+    const ys = [...path.map((p) => p.y), ...places.map((p) => p.y), ...objects.map((o) => o[1])];
     let [left, right] = extent(xs, 0);
     let [bottom, top] = extent(ys, 0);
     [left, right, bottom, top] = [left - 0.55, right + 0.55, bottom - 0.55, top + 0.55];
@@ -131,9 +134,9 @@ class Field {
       );
     const robot = this.run.last(this.run.source(), at);
     if (robot) parts.push(...this.robot(robot));
-    if (robot?.ball) {
-      const [x, y] = this.map(...robot.ball);
-      parts.push(svg("circle", { class: "ball", cx: x, cy: y, r: BALL_M * this.map.perMetre }));
+    for (const place of Object.values(robot?.objects ?? {})) {
+      const [x, y] = this.map(...place);
+      parts.push(svg("circle", { class: "object", cx: x, cy: y, r: OBJECT_M * this.map.perMetre }));
     }
     return [...parts, ...new SubgoalMarks(this.run, this.map).at(at)];
   }

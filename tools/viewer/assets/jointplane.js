@@ -75,7 +75,7 @@ class JointPlane {
         d: this.way(s.points.filter((p) => p.at <= at)),
       }),
     );
-    if (now) parts.push(svg("circle", { class: "ball", cx: this.x(now.x), cy: this.y(now.y), r: 5 }));
+    if (now) parts.push(svg("circle", { class: "object", cx: this.x(now.x), cy: this.y(now.y), r: 5 }));
     this.moving.replaceChildren(...parts);
   }
 }

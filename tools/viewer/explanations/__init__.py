@@ -1,1 +1,1 @@
-"""Why a subgoal was chosen, as values."""
+"""Explanations of subgoals: predictions for the chosen values and their alternatives."""
