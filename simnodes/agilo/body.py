@@ -25,7 +25,7 @@ class AgiloBody:
     """See `Body`. Start values: x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy (SI, field frame)."""
 
     robot = "agilo"
-    names = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
+    names: tuple[str, ...] = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
 
     def __init__(self, physical_parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
         self._p = physical_parameters or PhysicalParameters()

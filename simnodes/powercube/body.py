@@ -23,7 +23,7 @@ class PowerCubeBody:
     """See `Body`. Start values: a, b (rad), wa, wb (rad/s): pan and lift, as in the paper's Table 6."""
 
     robot = "powercube"
-    names = LEGAL
+    names: tuple[str, ...] = LEGAL
 
     def __init__(self, physical_parameters: PhysicalParameters | None = None) -> None:
         self._p = physical_parameters or PhysicalParameters()

@@ -43,10 +43,10 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
             pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model, region)}
         if "learning_curve" in card["test"]:
             pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
-        amount = REGRESSION_TARGETS[card["kind"]]
-        told = [episode for episode in episodes if episode.finished and amount.told(episode)]
-        if told:
-            rows = amount.examples(told, 1)
+        target = REGRESSION_TARGETS[card["kind"]]
+        observed = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
+        if observed:
+            rows = target.examples(observed, 1)
             pictures |= {"predicted-observed": lambda figure: _predicted_observed(figure, model, rows)}
             if region is not None:
                 pictures |= {"error-by-region": lambda f: learned_regions.error_by_region(f, model, rows, region)}

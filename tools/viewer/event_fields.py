@@ -101,8 +101,8 @@ def driver(message: m.DriverState) -> Fields:
 
 def numbers(message: m.Message) -> dict[str, float | None]:
     """Every number of any message by name; elements of a tuple are named by a tuple of strings of equal length."""
-    names = [f.name for f in fields(cast(Any, message))]
-    values = {name: getattr(message, name) for name in names if name != "stamp_ns"}
+    declared = [f.name for f in fields(cast(Any, message))]
+    values = {name: getattr(message, name) for name in declared if name != "stamp_ns"}
     labels = [v for v in values.values() if isinstance(v, tuple) and v and all(isinstance(i, str) for i in v)]
     series: dict[str, float | None] = {}
     for name, value in values.items():

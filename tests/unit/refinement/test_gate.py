@@ -10,7 +10,7 @@ from tailor.executive.refinement.gate import SITUATION, situation
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import RefinementReport
-from tailor.tools.commands.learn.train_gate import pairs_of
+from tailor.tools.evaluations.gate_pairs import pairs_of
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.refinement import gate as judging
 from tailor.tools.evaluations.refinement import gate_ceiling
