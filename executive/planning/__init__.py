@@ -1,6 +1,6 @@
-"""Planning: PDDL in, a partial-order plan with causal links out; a VHPOP of our own (Younes & Simmons, JAIR 20, 2003).
+"""Partial-order planning with PDDL and causal links, VHPOP-style (Younes & Simmons, JAIR 20, 2003).
 
-Everything that other parts of the executive use is named here.
+This is the public interface; other folders import from here only.
 """
 
 from tailor.executive.planning.pddl.domain_reader import parse_domain

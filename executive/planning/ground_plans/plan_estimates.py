@@ -31,14 +31,14 @@ class GroundEstimates:
         """See `PlanEstimates`; without calls, as it is the planner's hottest loop."""
         costs, works = self._costs, self._works
         late, effects = plan.orderings.late, plan.effects
-        known, bits, node = effects.known, effects.bits, effects.node
+        base, bits, node = effects.base, effects.bits, effects.node
         cost: float = 0
         work: float = 0
         cell = plan.open
         while cell is not None:
             condition, first, _, cell = cell
             if condition.__class__ is int:  # faster than isinstance
-                mask = known[condition]
+                mask = base[condition]
                 if bits is not None and condition in bits:
                     mask |= bits[condition] << node
                 if mask & ~late[first]:

@@ -13,12 +13,12 @@ class StepEffects:
 
     __slots__ = ("_masks", "bits", "known", "node")
 
-    def __init__(self, known: list[int], bits: dict[int, int] | None = None, node: int = 0) -> None:
-        """A table and, on top of it, the bits of one more step whose first node is `node`."""
-        self.known = known
+    def __init__(self, base: list[int], bits: dict[int, int] | None = None, node: int = 0) -> None:
+        """A base table and, on top of it, the bits of one more step whose first node is `node`."""
+        self.base = base
         self.bits = bits
         self.node = node
-        self._masks = known if bits is None else None
+        self._masks = base if bits is None else None
 
     def with_step(self, action: GroundAction, node: int) -> StepEffects:
         """The table with one more step."""
@@ -28,8 +28,8 @@ class StepEffects:
         """Bit mask of the nodes that make each literal true, by literal; read only."""
         if self._masks is None:
             assert self.bits is not None
-            masks = self.known.copy()
+            masks = self.base.copy()
             for literal, bits in self.bits.items():
                 masks[literal] |= bits << self.node
-            self.known, self.bits, self._masks = masks, None, masks
+            self.base, self.bits, self._masks = masks, None, masks
         return self._masks

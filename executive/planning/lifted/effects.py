@@ -48,10 +48,10 @@ def lifted_effects(
     """The effects of an action, in order, without no-ops; "forall" is expanded over the objects.
 
     Args:
-      action: The action.
-      names: Its parameters' names in the schema.
-      conditions: The schema's own.
-      lowering: The schema's.
+      action: Action schema as read.
+      names: Names of its parameters in the lifted schema.
+      conditions: Conditions of the lifted schema.
+      lifter: Converter of this schema's formulas.
       durative: Whether actions of the domain take time.
     """
     written: dict[LiftedEffect, None] = {}

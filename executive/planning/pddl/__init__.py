@@ -1,1 +1,1 @@
-"""PDDL text to values and back."""
+"""PDDL: readers, the language as values, writers."""

@@ -30,7 +30,7 @@ from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 NUMERIC_EFFECTS = frozenset({"assign", "increase", "decrease", "scale-up", "scale-down"})
-MAX_NUMBERS = 100  # of a duration, which is worked out anew for every ground action; those at hand have 3 at most
+MAX_NUMBERS = 100  # of a duration, which is evaluated for every ground action; the domains at hand have 3 at most
 MAX_PARAMETERS = 100  # binding them is recursive; the competition problems at hand have 9 at most
 _PARTS = {
     ":action": (":parameters", ":precondition", ":effect"),
@@ -39,7 +39,11 @@ _PARTS = {
 
 
 def read_action(form: Form, domain: Domain) -> Action:
-    """An action schema of a domain whose types, constants, predicates and functions are known.
+    """An action schema.
+
+    Args:
+      form: (:action ...) or (:durative-action ...).
+      domain: Domain with its types, constants, predicates and functions already read.
 
     Raises:
       PddlError: Malformed, or `Unsupported`: numeric effects, continuous change.
@@ -82,7 +86,7 @@ def _parts(form: Form) -> dict[str, Node]:
 
 # --- effects -------------------------------------------------------------------------------------
 def _effects(node: Node, scope: Scope, durative: bool) -> tuple[Effect, ...]:
-    """The effects as single literals; in a durative action each stands under (at start ..) or (at end ..)."""
+    """The effects as single literals; in a durative action each is inside (at start ..) or (at end ..)."""
     form = form_of(node, "an effect")
     if not form.items:
         return ()
@@ -130,7 +134,7 @@ def _literal(form: Form, scope: Scope) -> Effect:
 def _bounds(action: Form, node: Node, scope: Scope) -> tuple[DurationBound, ...]:
     bounds = _duration(node, scope)
     if sum(_size(bound.value) for bound in bounds) > MAX_NUMBERS:
-        raise action.place.error(f"the action's duration is made of more than {MAX_NUMBERS} numbers")
+        raise action.place.error(f"the action's duration has more than {MAX_NUMBERS} numbers")
     return bounds
 
 
@@ -173,12 +177,12 @@ def _operation(form: Form, scope: Scope) -> Numeric:
 
 
 def _size(number: Numeric) -> int:
-    """How many numbers are needed to work it out."""
+    """Number of operands in an arithmetic expression."""
     return sum(map(_size, number.operands)) if isinstance(number, Operation) else 1
 
 
 def number_of(node: Node) -> float:
-    """The finite number that a word stands for."""
+    """The number in a word, between -1e9 and 1e9."""
     word = word_of(node, "a number")
     try:
         value = float(word)

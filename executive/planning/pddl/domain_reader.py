@@ -29,18 +29,21 @@ _OTHER_PARTS = {
     ":event": "an event",
     ":safety": "a safety constraint",
 }
-_REPEATED = _ACTIONS | {":requirements", *_OTHER_PARTS}  # the last are refused by name
+_REPEATED = _ACTIONS | {":requirements", *_OTHER_PARTS}  # the last are rejected by name
 
 
 def parse_domain(text: str, source: str = "domain") -> Domain:
     """Reads a domain.
 
     Args:
-      text: PDDL.
-      source: What errors call the text, e.g. its file's name.
+      text: PDDL 2.1; lower and upper case are equal.
+      source: Name of the text in errors, e.g. its file name.
+
+    Returns:
+      The domain, names in lower case.
 
     Raises:
-      PddlError: "source:line:column: what"; `Unsupported` when it is PDDL outside this planner's language.
+      PddlError: Malformed text, as "source:line:column: reason"; `Unsupported` for PDDL outside the language.
     """
     form = read_form(text, source)
     name = define_name(form, "domain")
@@ -49,7 +52,7 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     for part in parts:
         domain = _declare(part, domain)
     actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
-    _refuse_twins(form, [action.name for action in actions])
+    _reject_duplicates(form, [action.name for action in actions])
     return replace(domain, actions=actions)
 
 
@@ -64,7 +67,7 @@ def define_name(form: Form, kind: str) -> str:
 
 
 def _declare(form: Form, domain: Domain) -> Domain:
-    """The domain with one more declaration; actions are read when all declarations are known."""
+    """The domain with one more declaration; actions are read after all declarations."""
     rest = form.items[1:]
     match form.head:
         case ":requirements":
@@ -88,7 +91,7 @@ def _declare(form: Form, domain: Domain) -> Domain:
 
 
 def check_requirements(nodes: list[Node]) -> None:
-    """Refuses, by name, what this planner does not speak."""
+    """Raises `Unsupported` for a requirement outside the planner's language."""
     for node in nodes:
         word = word_of(node, "a requirement")
         if word not in SUPPORTED:
@@ -101,7 +104,7 @@ def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
         if typed.name != "object":
             types[typed.name] = typed.types
     for parents in list(types.values()):
-        for parent in parents:  # a parent that is only ever named behind a dash is a type as well
+        for parent in parents:  # a parent that is named only behind a dash is a type as well
             types.setdefault(parent, ("object",))
     if len(types) > MAX_TYPES:
         raise form.place.error(f"more than {MAX_TYPES} types")
@@ -109,15 +112,15 @@ def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
 
 
 def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[str]]:
-    """By type, itself and all types above it; types may go round in a circle and are then the same."""
+    """By type, itself and all types above it; types in a cycle are equivalent."""
     ancestors = {}
     for kind in types:
-        found, pending = {kind, "object"}, [kind]
+        reached, pending = {kind, "object"}, [kind]
         while pending:
-            more = [parent for parent in types[pending.pop()] if parent not in found]
-            found.update(more)
+            more = [parent for parent in types[pending.pop()] if parent not in reached]
+            reached.update(more)
             pending += more
-        ancestors[kind] = frozenset(found)
+        ancestors[kind] = frozenset(reached)
     return ancestors
 
 
@@ -146,7 +149,7 @@ def _without_types(nodes: list[Node]) -> list[Node]:
     return kept
 
 
-def _refuse_twins(form: Form, names: list[str]) -> None:
+def _reject_duplicates(form: Form, names: list[str]) -> None:
     seen: set[str] = set()
     for name in names:
         if name in seen:

@@ -1,4 +1,4 @@
-"""Reads conditions and goals; every predicate, term and type is checked where it stands."""
+"""Reads conditions and goals; checks every predicate, term and type at its place."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The words that a formula may use: the domain's, and the terms in sight with their types."""
+    """The names that a formula may use: those of the domain, and the visible terms with their types."""
 
     domain: Domain
     terms: Mapping[str, tuple[str, ...]]
@@ -38,20 +38,20 @@ class Scope:
         return cls(domain, {}).extended((*domain.constants, *objects))
 
     def extended(self, names: Iterable[Typed]) -> Scope:
-        """This scope with more terms, which hide those of the same name."""
+        """This scope with more terms, which hide earlier ones of the same name."""
         return replace(self, terms={**self.terms, **{t.name: t.types for t in names}})
 
-    def fits(self, term: str, wanted: tuple[str, ...]) -> bool:
-        """Whether the term can be of one of the wanted types."""
+    def may_be(self, term: str, types: tuple[str, ...]) -> bool:
+        """Whether the term may be of one of the types."""
         is_a = self.domain.is_a
-        return any(is_a(a, b) or is_a(b, a) for a in self.terms[term] for b in wanted)
+        return any(is_a(a, b) or is_a(b, a) for a in self.terms[term] for b in types)
 
 
 def read_formula(node: Node, scope: Scope) -> Formula:
     """The formula of a condition or goal; () is true.
 
     Raises:
-      PddlError: Not a formula of this scope; `Unsupported` for numeric conditions and preferences.
+      PddlError: Not a formula over this scope; `Unsupported` for numeric conditions and preferences.
     """
     form = form_of(node, "a condition")
     if not form.items:
@@ -104,7 +104,7 @@ def _term(node: Node, scope: Scope) -> str:
 
 
 def read_atom(form: Form, scope: Scope) -> Atom:
-    """An atom over declared predicates and terms of fitting types."""
+    """An atom over a declared predicate and terms of its parameter types."""
     name = word_of(form.items[0], "a predicate") if form.items else ""
     parameters = scope.domain.predicates.get(name)
     if parameters is None:
@@ -113,18 +113,18 @@ def read_atom(form: Form, scope: Scope) -> Atom:
 
 
 def read_terms(form: Form, parameters: tuple[Typed, ...], scope: Scope) -> tuple[str, ...]:
-    """The terms after the head, as many as there are parameters and of their types."""
+    """The terms after the head; number and types match the parameters."""
     expect(form, len(parameters))
     terms = tuple(_term(item, scope) for item in form.items[1:])
     for item, term, parameter in zip(form.items[1:], terms, parameters, strict=True):
-        if not scope.fits(term, parameter.types):
-            have, want = " or ".join(scope.terms[term]), " or ".join(parameter.types)
-            raise item.place.error(f"'{term}' is of type {have}; '{form.head}' expects {want}")
+        if not scope.may_be(term, parameter.types):
+            actual, expected = " or ".join(scope.terms[term]), " or ".join(parameter.types)
+            raise item.place.error(f"'{term}' is of type {actual}; '{form.head}' expects {expected}")
     return terms
 
 
 def expect(form: Form, count: int) -> None:
-    """Checks the number of items after the head."""
+    """Raises PddlError unless `count` items follow the head."""
     if len(form.items) != count + 1:
         plural = "" if count == 1 else "s"
         raise form.place.error(f"'{form.head}' expects {count} argument{plural}, found {len(form.items) - 1}")

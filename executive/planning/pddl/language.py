@@ -1,6 +1,6 @@
-"""The values that a PDDL domain is read into: types, formulas, actions.
+"""The PDDL language as values: types, formulas, actions, domains.
 
-Owns no reading and no planning. Names are in lower case; a term that begins with "?" is a variable.
+Neither reads nor plans. Names are in lower case; a term that begins with "?" is a variable.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ When = OneOf["start", "over", "end"]  # an action's moments: at start, over all,
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A ground atom or its negation: ("robot", "pos1") holds, or does not."""
+    """A ground atom or its negation, e.g. of ("robot", "pos1")."""
 
     fact: Fact
     positive: bool = True
@@ -74,7 +74,7 @@ class Or:
 
 @dataclass(frozen=True, slots=True)
 class Quantified:
-    """The part holds for every, or for some, choice of the variables."""
+    """The part holds for every choice of the variables, or (`every` false) for some choice."""
 
     every: bool
     variables: tuple[Typed, ...]

@@ -1,4 +1,4 @@
-"""A planning problem: objects, initial state, goal; and the same problem from another state or with another goal."""
+"""A planning problem: objects, initial state, timed literals, goal, metric."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class TimedLiteral:
 class Problem:
     """A planning problem of one domain.
 
-    `objects` are the problem's own, without the domain's constants; `initial` keeps the order of the text.
+    `objects` excludes the domain's constants; `initial` keeps the order of the text.
     """
 
     name: str
@@ -38,7 +38,14 @@ class Problem:
     metric: OneOf["", "makespan"] = ""
 
     def with_initial(self, facts: Iterable[Fact]) -> Problem:
-        """The same problem from another initial state; timed literals stay as they are."""
+        """The same problem from another initial state.
+
+        Args:
+          facts: All facts that hold, static ones included, in the order that the search uses; duplicates are dropped.
+
+        Returns:
+          The problem; goal, values and timed literals are unchanged.
+        """
         return replace(self, initial=tuple(dict.fromkeys(facts)))
 
     def with_goal(self, goal: str) -> Problem:
@@ -48,7 +55,7 @@ class Problem:
           goal: PDDL text, e.g. "(and (final pos3) (atball pos3))".
 
         Raises:
-          PddlError: The text is no goal over this domain and these objects.
+          PddlError: The text is not a goal over this domain and these objects.
         """
         scope = Scope.of(self.domain, self.objects)
         formula = read_formula(read_form(goal, "goal"), scope)

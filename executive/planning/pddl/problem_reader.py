@@ -20,7 +20,7 @@ _METRICS = {"total-time", "makespan"}
 
 @dataclass(slots=True)
 class _Draft:
-    """What has been read of the problem so far."""
+    """The parts of a problem read so far."""
 
     objects: tuple[Typed, ...] = ()
     initial: dict[Fact, None] = field(default_factory=dict)
@@ -34,8 +34,16 @@ class _Draft:
 def parse_problem(text: str, domain: Domain, source: str = "problem") -> Problem:
     """Reads a problem of `domain`.
 
+    Args:
+      text: PDDL 2.1; lower and upper case are equal.
+      domain: The domain that the problem names.
+      source: Name of the text in errors, e.g. its file name.
+
+    Returns:
+      The problem, names in lower case.
+
     Raises:
-      PddlError: "source:line:column: what"; `Unsupported` when it is PDDL outside this planner's language.
+      PddlError: Malformed text, as "source:line:column: reason"; `Unsupported` for PDDL outside the language.
     """
     form = read_form(text, source)
     name = define_name(form, "problem")
@@ -61,7 +69,7 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
             draft.objects = read_typed(rest, domain.types)
             if len(draft.objects) > MAX_OBJECTS:
                 raise form.place.error(f"more than {MAX_OBJECTS} objects")
-            _refuse_constants(form, draft.objects, domain)
+            _reject_constants(form, draft.objects, domain)
         case ":init":
             scope = Scope.of(domain, draft.objects)
             for item in rest:
@@ -73,7 +81,7 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
         case ":metric":
             _read_metric(form, draft)
         case ":length":
-            pass  # a hint of the first competition; planners ignore it
+            pass  # a hint from the first planning competition; ignored
         case ":constraints":
             raise form.place.unsupported("a trajectory constraint")
         case head:
@@ -84,10 +92,10 @@ def _check_domain(form: Form, domain: Domain) -> None:
     expect(form, 1)
     name = word_of(form.items[1], "the domain's name")
     if name != domain.name:
-        raise form.items[1].place.error(f"the problem is of domain '{name}', not '{domain.name}'")
+        raise form.items[1].place.error(f"the problem belongs to domain '{name}', not '{domain.name}'")
 
 
-def _refuse_constants(form: Form, objects: tuple[Typed, ...], domain: Domain) -> None:
+def _reject_constants(form: Form, objects: tuple[Typed, ...], domain: Domain) -> None:
     constants = {constant.name for constant in domain.constants}
     for item in objects:
         if item.name in constants:

@@ -1,4 +1,4 @@
-"""Writes a problem as PDDL 2.1, for a planner that is a program of its own."""
+"""Writes a problem as PDDL 2.1, for an external planner."""
 
 from __future__ import annotations
 
@@ -10,7 +10,14 @@ from tailor.executive.planning.pddl.problem import Problem
 
 
 def format_problem(problem: Problem) -> str:
-    """PDDL that reads back as the same problem; one object, fact or value a line."""
+    """The problem as PDDL.
+
+    Args:
+      problem: Any problem.
+
+    Returns:
+      Text that `parse_problem` reads back as an equal problem; one object, fact or value per line.
+    """
     typed = any(item.types != ("object",) for item in problem.objects)
     lines = [
         f"(define (problem {problem.name}) (:domain {problem.domain.name})",
@@ -28,7 +35,7 @@ def format_problem(problem: Problem) -> str:
 
 
 def _object(item: Typed, typed: bool) -> str:
-    """An object with its type; where nothing is typed, `object` stays unsaid for a reader that knows no types."""
+    """An object with its type; without types if all objects are untyped, for planners without :typing."""
     if not typed:
         return item.name
     types = item.types[0] if len(item.types) == 1 else f"(either {' '.join(item.types)})"

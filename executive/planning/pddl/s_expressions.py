@@ -1,6 +1,6 @@
-"""Reads Lisp text into a tree of words and lists, each with its line and column.
+"""Reads s-expressions into a tree of words and lists, each with its line and column.
 
-Owns the limits on size and nesting. Knows nothing of PDDL beyond its comments and its blindness to case.
+Owns the limits on size and nesting. Of PDDL it implements only the comments and case insensitivity.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
 
 
 class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of a text
-    """Where something stands in a text; line and column count from 1."""
+    """A place in a text; line and column count from 1."""
 
     source: str
     line: int
     column: int
 
     def error(self, what: str) -> PddlError:
-        """An error that points here."""
+        """An error at this place."""
         return error_at(self.source, self.line, self.column, what)
 
     def unsupported(self, feature: str) -> Unsupported:
-        """An error that names a feature of PDDL which this planner does not speak."""
+        """An error for a PDDL feature outside the planner's language."""
         return Unsupported(f"{self.source}:{self.line}:{self.column}: {feature} is not supported")
 
 
@@ -60,7 +60,7 @@ Node = Word | Form
 
 
 def read_form(text: str, source: str) -> Form:
-    """The one form that `text` holds.
+    """The single form in a text.
 
     Raises:
       PddlError: Unbalanced parentheses, words outside the form, or a text beyond the limits.
@@ -117,30 +117,30 @@ def _only(top: Form) -> Form:
 
 
 def word_of(node: Node, what: str) -> str:
-    """The node's text, or an error that says which word was expected."""
+    """The node's text; raises PddlError if it is a list."""
     if isinstance(node, Word):
         return node.text
     raise node.place.error(f"expected {what}, found a list")
 
 
 def form_of(node: Node, what: str) -> Form:
-    """The node as a list, or an error that says which list was expected."""
+    """The node as a list; raises PddlError if it is a word."""
     if isinstance(node, Form):
         return node
     raise node.place.error(f"expected {what}, found '{node.text}'")
 
 
 def parts_in_order(form: Form, what: str, order: tuple[str, ...], repeated: frozenset[str]) -> list[Form]:
-    """The parts behind a definition's name: first those whose words are read by the others, wherever they stand.
+    """The parts of a definition, sorted so that declarations come before their uses.
 
     Args:
       form: (define (kind name) part ...).
-      what: Such a part, for whoever wrote something else.
+      what: Description of a part, for errors.
       order: Heads of the parts that come first.
-      repeated: Heads of the parts that may stand there more than once.
+      repeated: Heads of the parts that may occur more than once.
 
     Raises:
-      PddlError: Another part stands there twice.
+      PddlError: Another part occurs twice.
     """
     parts = [form_of(part, what) for part in form.items[2:]]
     seen: set[str] = set()

@@ -1,4 +1,4 @@
-"""What an action changes: for an executive that keeps count of facts that nobody can observe."""
+"""Effects of an executed action, for an executive that tracks facts without sensors."""
 
 from __future__ import annotations
 
@@ -10,9 +10,16 @@ from tailor.executive.planning.plans.validator import affected
 
 
 def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
-    """The facts after a ground action of the domain, e.g. ("dribbleball", "pos2", "pos3"), with all its effects.
+    """The facts after a ground action, with all its effects; its conditions are not checked, as it has been executed.
 
-    Its conditions are not asked for: it has been executed, whatever was remembered of the world before.
+    Args:
+      domain: Domain with the action's schema.
+      problem: Problem with the objects.
+      facts: Facts before the action.
+      action: Name and arguments, e.g. ("dribbleball", "pos2", "pos3"); must be an action of the domain.
+
+    Returns:
+      The facts after the action; add effects win over delete effects.
     """
     name, *arguments = action
     schema = next(schema for schema in domain.actions if schema.name == name)

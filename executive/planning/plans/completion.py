@@ -1,4 +1,4 @@
-"""Makes a plan from elsewhere fit for execution: the facts of now, and the causal links that its text leaves out."""
+"""Completes a plan from another planner: the current facts, and the causal links that its text omits."""
 
 from __future__ import annotations
 
@@ -13,23 +13,30 @@ from tailor.executive.planning.plans.validator import validate
 
 
 def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
-    """The plan with a causal link for every condition, or why it is unsound.
+    """The plan with a causal link for every condition.
 
-    The plan's own links stand. VHPOP leaves out those from static facts when it plans with ground actions: they are
-    added, each step's newest. A plan that lacks others, such as the plain form, is linked anew in the order of its
-    steps.
+    Existing links are kept. VHPOP omits links from static facts when it plans with ground actions: they are added,
+    each step's newest. A plan that lacks others, such as the plain form, is linked anew in the order of its steps.
+
+    Args:
+      plan: A parsed plan of any planner.
+      domain: The problem's domain.
+      problem: Problem with the current facts.
+
+    Returns:
+      The completed plan, or the reason why it is unsound.
     """
-    known = replace(plan, problem=problem.name, initial=problem.initial)
-    fault = validate(known, domain, problem)
+    located = replace(plan, problem=problem.name, initial=problem.initial)
+    fault = validate(located, domain, problem)
     if fault:
         return fault
     supported = {(link.literal, link.consumer) for link in plan.links}
-    absent = [link for link in links_of(known, domain, problem) if (link.literal, link.consumer) not in supported]
+    absent = [link for link in links_of(located, domain, problem) if (link.literal, link.consumer) not in supported]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
     if any(link.literal.fact[0] in changing for link in absent):
-        return relink(known, domain, problem) or "its steps cannot be linked"
-    return replace(known, links=_by_consumer(known, (*absent, *plan.links)))
+        return relink(located, domain, problem) or "its steps cannot be linked"
+    return replace(located, links=_by_consumer(located, (*absent, *plan.links)))
 
 
 def _by_consumer(plan: Plan, links: tuple[Link, ...]) -> tuple[Link, ...]:

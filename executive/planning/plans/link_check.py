@@ -8,30 +8,30 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan
 from tailor.executive.planning.plans.state import Binding, Objects, fact_of
 
-Bound = dict[int, tuple[Action, Binding]]  # by step
+Bound = dict[int, tuple[Action, Binding]]  # schema and binding of each step
 
 
 def faulty_link(plan: Plan, problem: Problem, bound: Bound) -> str:
-    """The first causal link that supports nothing, and why; "" when all are sound."""
+    """The first unsound causal link with the reason; "" if all are sound."""
     starts = {0: -1.0, **{step.id: step.start for step in plan.steps}}
-    needed = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
+    deadlines = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
     for link in plan.links:
-        fault = _fault(link, starts, needed, problem, bound)
+        fault = _fault(link, starts, deadlines, problem, bound)
         if fault:
             return f"the causal link {link.producer} -> {link.literal} {fault}"
     return ""
 
 
-def _fault(link: Link, starts: dict[int, float], needed: dict[int, float], problem: Problem, bound: Bound) -> str:
-    """What is wrong with a link; `needed` is the last moment at which each step may need a condition."""
+def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], problem: Problem, bound: Bound) -> str:
+    """The fault of a link or ""; `deadlines` is the last time at which each step may require a condition."""
     if link.producer not in starts or (link.consumer != GOAL and link.consumer not in starts):
         return "names a step that is not in the plan"
-    if link.consumer != GOAL and starts[link.producer] >= needed[link.consumer]:
+    if link.consumer != GOAL and starts[link.producer] >= deadlines[link.consumer]:
         return "runs backward in time"
     if link.producer == 0:
         timed = any(t.literal == link.literal for t in problem.timed)
         holds = (link.literal.fact in problem.initial) == link.literal.positive
-        return "" if timed or holds else "supports nothing: the literal does not hold at first"
+        return "" if timed or holds else "supports nothing: the literal does not hold initially"
     action, binding = bound[link.producer]
     effects = [effect for effect in action.effects if effect.positive == link.literal.positive]
     if any(_touches(effect, binding, link.literal.fact, Objects(problem)) for effect in effects):

@@ -1,4 +1,4 @@
-"""Builds causal links, and the orderings that they need, for a plan whose steps stand in a sound order."""
+"""Builds causal links, and the orderings that they require, for a plan whose steps are in a sound order."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ from collections.abc import Iterator
 from tailor.executive.planning.pddl.language import Domain, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
-from tailor.executive.planning.plans.simulation import Need, simulate
+from tailor.executive.planning.plans.simulation import Requirement, simulate
 from tailor.executive.planning.plans.state import Objects, fact_of
 
 
 def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:
-    """Each condition's literals linked to whoever made them true last; of a consumer the last condition first.
+    """Links from the last achiever of each condition's literals; of a consumer the last condition first.
 
-    Behind these, what conditional effects need: the conditions of those that a link comes from, and the opposite of
-    the conditions of those that would break a link.
+    Links for conditional effects follow: for the conditions of those that achieve a link's literal, and for the
+    negated conditions of those that would undo it.
     """
     events = simulate(plan, domain, problem)
-    pending: deque[tuple[Need, int]] = deque()
+    pending: deque[tuple[Requirement, int]] = deque()
     for position, event in enumerate(events):
-        pending.extend((need, position) for need in reversed(event.needs))
+        pending.extend((requirement, position) for requirement in reversed(event.requirements))
     seen: set[tuple[Link, int]] = set()
-    made: set[Link] = set()
+    listed: set[Link] = set()
     while pending:
-        need, position = pending.popleft()
-        source, consumer = need.source, events[position].step
-        link = Link(source.step, need.literal, consumer)
+        requirement, position = pending.popleft()
+        source, consumer = requirement.source, events[position].step
+        link = Link(source.step, requirement.literal, consumer)
         if (link, position) in seen:
             continue
         seen.add((link, position))
-        if link not in made and source.step != consumer:
-            made.add(link)
+        if link not in listed and source.step != consumer:
+            listed.add(link)
             yield link
-        pending.extend((condition, source.position) for condition in source.why)
-        opposite = Literal(need.literal.fact, not need.literal.positive)
+        pending.extend((condition, source.position) for condition in source.conditions)
+        opposite = Literal(requirement.literal.fact, not requirement.literal.positive)
         for between in range(source.position + 1, position):
-            pending.extend((kept, between) for kept in events[between].spared.get(opposite, ()))
+            pending.extend((kept, between) for kept in events[between].prevented.get(opposite, ()))
 
 
 # --- orderings -----------------------------------------------------------------------------------
 def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, problem: Problem) -> Iterator[tuple[int, int]]:
-    """Pairs that the links need: producer before consumer, and who undoes a link on its side of it."""
+    """Pairs that the links require: producer before consumer, and steps that undo a link outside of it."""
     if plan.durative:  # the schedule as it stands
         yield from ((a.id, b.id) for a in plan.steps for b in plan.steps if a.start + a.duration <= b.start)
         return

@@ -8,23 +8,23 @@ Pair = tuple[int, int]
 
 
 def levels(steps: Iterable[int], orderings: Iterable[Pair]) -> dict[int, float] | None:
-    """The longest chain that ends in each step, counted from 1; None when the orderings go round in a circle."""
+    """The longest chain that ends in each step, counted from 1; None if the orderings have a cycle."""
     before: dict[int, set[int]] = {step: set() for step in steps}
     for i, j in orderings:
         if i in before and j in before:
             before[j].add(i)
-    found: dict[int, float] = {}
-    while len(found) < len(before):
-        ready = [step for step, earlier in before.items() if step not in found and earlier <= found.keys()]
+    level: dict[int, float] = {}
+    while len(level) < len(before):
+        ready = [step for step, earlier in before.items() if step not in level and earlier <= level.keys()]
         if not ready:
             return None
         for step in ready:
-            found[step] = 1.0 + max((found[earlier] for earlier in before[step]), default=0.0)
-    return found
+            level[step] = 1.0 + max((level[earlier] for earlier in before[step]), default=0.0)
+    return level
 
 
 def closure(orderings: Iterable[Pair]) -> tuple[Pair, ...]:
-    """All pairs that follow from the given ones, sorted."""
+    """The transitive closure, sorted."""
     after: dict[int, set[int]] = {}
     for i, j in orderings:
         after.setdefault(i, set()).add(j)

@@ -1,6 +1,6 @@
-"""Goes through a plan's events in order: what each needs, what it makes true and why, what it leaves alone and why.
+"""Simulates a sound plan and records, for each event, its requirements and their sources.
 
-The plan is sound (the validator has said so); nothing is checked here.
+Checks nothing: the plan has passed the validator.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from tailor.executive.planning.plans.state import Binding, Objects, State, fact_
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Who made a literal true last: a step (0: the initial state, or a timed literal), and what it took."""
+    """The last event that made a literal true: its step (0: initial state or timed literal) and position."""
 
     step: int
-    position: int  # of the event
-    why: tuple[Need, ...] = ()  # the conditions of the conditional effect
+    position: int  # index of the event
+    conditions: tuple[Requirement, ...] = ()  # of the conditional effect
 
 
 @dataclass(frozen=True, slots=True)
-class Need:
-    """A literal that holds when it is needed, and its source."""
+class Requirement:
+    """A literal that an event requires, and its source."""
 
     literal: Literal
     source: Source
@@ -33,49 +33,49 @@ class Need:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A step's start or end, or both at once when actions take no time; the last event is the goal's.
+    """A step's start or end, or both if the action takes no time; the last event is the goal's.
 
-    `spared` are the literals that conditional effects would have made true, with what kept these from it.
+    `prevented` maps literals of conditional effects that did not happen to the requirements of that.
     """
 
     step: int
-    needs: tuple[Need, ...]
-    spared: Mapping[Literal, tuple[Need, ...]]
+    requirements: tuple[Requirement, ...]
+    prevented: Mapping[Literal, tuple[Requirement, ...]]
 
 
-START = Source(0, -1)  # of every literal that holds at first, true or by closed world
+START = Source(0, -1)  # of every literal of the initial state, true or false by closed world
 
 
 @dataclass(slots=True)
 class _World:
-    """The state on the way, and the source of each literal that has changed."""
+    """The state at one point of the simulation, and the source of each literal that has changed."""
 
     objects: Objects
     state: State
     sources: dict[Literal, Source] = field(default_factory=dict)
 
-    def needs(self, formulas: Iterable[Formula], binding: Binding) -> tuple[Need, ...]:
-        """What makes the (true) formulas hold, each literal once."""
+    def requirements(self, formulas: Iterable[Formula], binding: Binding) -> tuple[Requirement, ...]:
+        """The literals that make the (true) formulas hold, each once."""
         literals = (x for formula in formulas for x in support(formula, binding, self.state, self.objects))
-        return tuple(Need(literal, self.sources.get(literal, START)) for literal in dict.fromkeys(literals))
+        return tuple(Requirement(literal, self.sources.get(literal, START)) for literal in dict.fromkeys(literals))
 
     def holds(self, formula: Formula, binding: Binding) -> bool:
-        """Whether a formula holds now."""
+        """Whether a formula holds in this state."""
         return holds(formula, binding, self.state, self.objects)
 
-    def changed(self, made: Mapping[Literal, Source]) -> _World:
+    def changed(self, achieved: Mapping[Literal, Source]) -> _World:
         """The world after an event."""
-        gone = {literal.fact for literal in made if not literal.positive}
-        come = {literal.fact for literal in made if literal.positive}
-        return _World(self.objects, (self.state - gone) | come, {**self.sources, **made})
+        removed = {literal.fact for literal in achieved if not literal.positive}
+        added = {literal.fact for literal in achieved if literal.positive}
+        return _World(self.objects, (self.state - removed) | added, {**self.sources, **achieved})
 
 
 @dataclass(frozen=True, slots=True)
 class _Moment:
-    """When something happens."""
+    """Time and place of an event in the schedule."""
 
     time: float
-    rank: int  # at one time ends come before starts, but for the end of a step without length
+    rank: int  # at one time ends come before starts, except the end of a step of no duration
     step: int
     moments: tuple[When, ...]
     timed: Literal | None = None
@@ -86,7 +86,7 @@ def simulate(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
     schemata = {action.name: action for action in domain.actions}
     steps = {step.id: step for step in plan.steps}
     world = _World(Objects(problem), frozenset(problem.initial))
-    began: dict[int, _World] = {}  # by step, the world just before it
+    began: dict[int, _World] = {}  # world just before each step
     events: list[Event] = []
     for position, moment in enumerate(_moments(plan, schemata, problem)):
         if moment.timed is not None:
@@ -97,13 +97,15 @@ def simulate(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
         action = schemata[step.action[0]]
         binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
         before = began.setdefault(step.id, world)
-        made, spared = _effects(action, binding, moment, position, before, world)
-        needs = world.needs(_formulas(action, [when for when in moment.moments if when != "over"]), binding)
-        world = world.changed(made)
+        achieved, prevented = _effects(action, binding, moment, position, before, world)
+        requirements = world.requirements(
+            _formulas(action, [when for when in moment.moments if when != "over"]), binding
+        )
+        world = world.changed(achieved)
         if "over" in moment.moments:
-            needs += world.needs(_formulas(action, ["over"]), binding)
-        events.append(Event(step.id, needs, spared))
-    return [*events, Event(GOAL, world.needs([problem.goal], {}), {})]
+            requirements += world.requirements(_formulas(action, ["over"]), binding)
+        events.append(Event(step.id, requirements, prevented))
+    return [*events, Event(GOAL, world.requirements([problem.goal], {}), {})]
 
 
 def _moments(plan: Plan, schemata: Mapping[str, Action], problem: Problem) -> list[_Moment]:
@@ -126,41 +128,42 @@ def _formulas(action: Action, moments: Collection[When]) -> list[Formula]:
 
 def _effects(
     action: Action, binding: Binding, moment: _Moment, position: int, before: _World, now: _World
-) -> tuple[dict[Literal, Source], dict[Literal, tuple[Need, ...]]]:
-    """What an event makes true, adds before deletes, with its source; and what it spares.
+) -> tuple[dict[Literal, Source], dict[Literal, tuple[Requirement, ...]]]:
+    """The literals that an event makes true (adds before deletes) with their sources, and those it prevents.
 
     Args:
-      action: Of the step.
-      binding: Its parameters' objects.
+      action: Action of the step.
+      binding: Objects of its parameters.
       moment: The event.
-      position: Of the event.
-      before: The world before the step: what an effect demands at the start is asked there.
-      now: The world before the event.
+      position: Index of the event.
+      before: World before the step: conditions at start are evaluated there.
+      now: World before the event.
     """
-    made: dict[Literal, Source] = {}
-    spared: dict[Literal, tuple[Need, ...]] = {}
+    achieved: dict[Literal, Source] = {}
+    prevented: dict[Literal, tuple[Requirement, ...]] = {}
     for effect in sorted(action.effects, key=lambda effect: not effect.positive):
         if effect.when not in moment.moments:
             continue
         for inner in now.objects.bindings(effect.variables, binding):
             literal = Literal(fact_of(effect.atom, inner), effect.positive)
-            failing = _failing(effect, inner, before, now)
+            failing = _failing_condition(effect, inner, before, now)
             if failing is not None:
-                spared[literal] = spared.get(literal, ()) + failing
-            elif effect.positive or Literal(literal.fact) not in made:
-                why = tuple(
-                    need
-                    for condition in effect.condition
-                    for need in (before if condition.when == "start" else now).needs([condition.formula], inner)
-                )
-                made.setdefault(literal, Source(moment.step, position, why))
-    return made, spared
+                prevented[literal] = prevented.get(literal, ()) + failing
+            elif effect.positive or Literal(literal.fact) not in achieved:
+                achieved.setdefault(literal, Source(moment.step, position, _conditions(effect, inner, before, now)))
+    return achieved, prevented
 
 
-def _failing(effect: Effect, binding: Binding, before: _World, now: _World) -> tuple[Need, ...] | None:
-    """What keeps a conditional effect from happening: the opposite of its first condition that fails; None if none."""
+def _failing_condition(effect: Effect, binding: Binding, before: _World, now: _World) -> tuple[Requirement, ...] | None:
+    """Requirements of the negation of an effect's first failing condition; None if all conditions hold."""
     for condition in effect.condition:
         world = before if condition.when == "start" else now
         if not world.holds(condition.formula, binding):
-            return world.needs([Not(condition.formula)], binding)
+            return world.requirements([Not(condition.formula)], binding)
     return None
+
+
+def _conditions(effect: Effect, binding: Binding, before: _World, now: _World) -> tuple[Requirement, ...]:
+    """Requirements of the conditions of a conditional effect that happens."""
+    worlds = [(condition, before if condition.when == "start" else now) for condition in effect.condition]
+    return tuple(r for condition, world in worlds for r in world.requirements([condition.formula], binding))

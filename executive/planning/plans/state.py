@@ -1,4 +1,4 @@
-"""States as sets of facts: whether a formula holds, what an action's effects change. Shares nothing with the search."""
+"""States as sets of facts: evaluation of formulas, and the literals that support them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Objects:
     problem: Problem
 
     def of(self, variable: Typed) -> list[str]:
-        """All objects that a variable may stand for."""
+        """The objects of a variable's types."""
         domain = self.problem.domain
         return [
             item.name
@@ -42,7 +42,7 @@ class Objects:
         ]
 
     def bindings(self, variables: tuple[Typed, ...], binding: Binding) -> Iterator[Binding]:
-        """All ways to extend a binding by the variables."""
+        """All extensions of a binding by objects for the variables."""
         names = [variable.name for variable in variables]
         for objects in itertools.product(*(self.of(variable) for variable in variables)):
             yield {**binding, **dict(zip(names, objects, strict=True))}
@@ -72,7 +72,7 @@ def holds(formula: Formula, binding: Binding, state: State, objects: Objects) ->
 
 
 def support(formula: Formula, binding: Binding, state: State, objects: Objects) -> list[Literal]:
-    """Literals of the state that make the (true) formula hold; of a disjunction those of its first true part."""
+    """Literals of the state that make a (true) formula hold; of a disjunction those of its first true part."""
     match formula:
         case Atom():
             return [Literal(fact_of(formula, binding))]
@@ -81,7 +81,7 @@ def support(formula: Formula, binding: Binding, state: State, objects: Objects) 
         case Not(Atom() as atom):
             return [Literal(fact_of(atom, binding), positive=False)]
         case Not(part):
-            return support(_pushed(part), binding, state, objects)
+            return support(_negation(part), binding, state, objects)
         case And(parts):
             return [literal for part in parts for literal in support(part, binding, state, objects)]
         case Or(parts):
@@ -92,8 +92,8 @@ def support(formula: Formula, binding: Binding, state: State, objects: Objects) 
             return [literal for b in chosen for literal in support(part, b, state, objects)]
 
 
-def _pushed(formula: Formula) -> Formula:
-    """The negation of a compound formula with the "not" moved inwards."""
+def _negation(formula: Formula) -> Formula:
+    """The negation of a compound formula, with "not" moved inwards."""
     match formula:
         case And(parts):
             return Or(tuple(Not(part) for part in parts))
@@ -104,7 +104,7 @@ def _pushed(formula: Formula) -> Formula:
         case Quantified(every, variables, part):
             return Quantified(not every, variables, Not(part))
         case _:
-            return And(())  # an (in)equality: needs no support
+            return And(())  # an (in)equality requires no support
 
 
 def conditions_at(conditions: tuple[Condition, ...], when: When) -> And:

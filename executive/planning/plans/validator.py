@@ -1,4 +1,4 @@
-"""Simulates a plan event by event: is it sound from a problem's initial state? Shares nothing with the search."""
+"""Validates a plan by simulating its events from a problem's initial state. Shares nothing with the search."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ DURATION_SLACK_S = 0.0051  # half a tick of 0.01 s: durations are printed in who
 
 
 class _Unsound(Exception):
-    """Why a plan fails."""
+    """The reason why a plan is unsound."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Event:
-    """The start (or whole) or end of a step, or a timed literal; what it needs, changes, and looks at."""
+    """The start or end of a step, a whole step without duration, or a timed literal."""
 
     time: float
-    rank: int  # of simultaneous starts and ends of one plan: ends first
+    rank: int  # order of simultaneous events: ends first
     label: str
     step: Step | None
     ends: bool
@@ -36,11 +36,16 @@ class _Event:
 
 
 def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
-    """Simulates the plan from the problem's initial state.
+    """Checks that a plan is sound, by simulation from the problem's initial state.
+
+    Args:
+      plan: Schedule and causal links of any planner.
+      domain: The problem's domain.
+      problem: Initial state, timed literals and goal.
 
     Returns:
-      "" when it is sound, else why not: an unknown action, a condition that does not hold, two events that disturb
-      each other, a wrong duration, a goal that is missed, a causal link that supports nothing.
+      "" if the plan is sound, else the first fault: an unknown action, a wrong duration, a condition that does not
+      hold, two events that interfere, a goal that is not reached, or an unsound causal link.
     """
     try:
         bound = {step.id: _bind(step, domain, problem) for step in plan.steps}
@@ -54,7 +59,7 @@ def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
 
 # --- the actions ---------------------------------------------------------------------------------
 def _bind(step: Step, domain: Domain, problem: Problem) -> tuple[Action, Binding]:
-    """The step's action schema with its binding."""
+    """The action schema and binding of a step."""
     name, *arguments = step.action
     action = next((action for action in domain.actions if action.name == name), None)
     if action is None:
@@ -85,12 +90,12 @@ def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
     """The state after the last event."""
     state: State = frozenset(problem.initial)
     running: list[Step] = []
-    began: dict[int, State] = {}  # by step, the state just before its start
+    began: dict[int, State] = {}  # state just before the start of each step
     for events in _happenings(plan, problem):
         _check_conditions(events, state, problem, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
         changes = [(event, *_changes(event, state, began, problem, bound)) for event in events]
-        _check_disturbance(changes, state, problem, bound)
+        _check_interference(changes, state, problem, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
         state = (state - removed) | added
@@ -101,7 +106,7 @@ def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
 
 
 def _happenings(plan: Plan, problem: Problem) -> Iterator[list[_Event]]:
-    """Events by time; those at one time together. Without durations every step is an event for itself."""
+    """Events grouped by time; without durations every step is a group."""
     events = [_literal_event(timed.time_s, timed.literal.fact, timed.literal.positive) for timed in problem.timed]
     for step in plan.steps:
         events.append(_Event(step.start, 1, f"step {step.id}", step, ends=not plan.durative))
@@ -127,7 +132,7 @@ def _literal_event(time_s: float, fact: Fact, positive: bool) -> _Event:
 
 
 def _moments(event: _Event, action: Action) -> tuple[str, ...]:
-    """The moments of its action that an event stands for."""
+    """The moments of its action that an event covers."""
     if action.duration is None:
         return ("start", "end") if event.ends else ()
     return ("end",) if event.ends else ("start",)
@@ -141,7 +146,7 @@ def _check_conditions(events: list[_Event], state: State, problem: Problem, boun
 
 
 def _unmet(event: _Event, state: State, problem: Problem, bound: Bound) -> str:
-    """The moment of an event's condition that does not hold in a state; "" when all hold."""
+    """The moment of an event's first condition that fails in a state; "" if all hold."""
     if event.step is None:
         return ""
     action, binding = bound[event.step.id]
@@ -162,7 +167,7 @@ def _check_invariants(running: list[Step], state: State, problem: Problem, bound
 def _changes(
     event: _Event, state: State, began: dict[int, State], problem: Problem, bound: Bound
 ) -> tuple[frozenset[Fact], frozenset[Fact]]:
-    """What an event adds and removes; add effects win over delete effects of the same event."""
+    """The facts that an event adds and removes; add effects win over delete effects of the same event."""
     if event.step is None:
         return event.added, event.removed
     action, binding = bound[event.step.id]
@@ -180,8 +185,8 @@ def affected(
 ) -> Iterator[Fact]:
     """The facts that an effect makes true or false in a state.
 
-    Its conditions at the action's start are asked of `began`, the state before it, where that is another one. (A
-    condition over all is asked of the effect's own state alone.)
+    Its conditions at start are evaluated in `began`, the state before the action, if given; conditions over all only
+    in the state of the effect.
     """
     before = state if began is None else began
     for inner in objects.bindings(effect.variables, binding):
@@ -192,17 +197,18 @@ def affected(
 _Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
 
 
-def _check_disturbance(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
-    """Simultaneous events must neither undo what another needs nor contradict one another (no moving targets).
+def _check_interference(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
+    """Raises if simultaneous events contradict each other or undo each other's conditions (no moving targets).
 
-    What an event needs must hold whichever other comes first, and when all others do.
+    The conditions of an event must hold after each other event alone, and after all others.
+    Source: Fox & Long, PDDL 2.1, JAIR 20 (2003).
     """
     for other, more, less in changes:
         others = [change for change in changes if change[0] is not other]
         for event, added, removed in others:
             if added & less or removed & more or _unmet(other, (state - removed) | added, problem, bound):
                 raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
-        gone = frozenset[Fact]().union(*(removed for _, _, removed in others))
-        come = frozenset[Fact]().union(*(added for _, added, _ in others))
-        if _unmet(other, (state - gone) | come, problem, bound):
+        all_removed = frozenset[Fact]().union(*(removed for _, _, removed in others))
+        all_added = frozenset[Fact]().union(*(added for _, added, _ in others))
+        if _unmet(other, (state - all_removed) | all_added, problem, bound):
             raise _Unsound(f"what happens at the same time disturbs {other.label}")

@@ -1,4 +1,4 @@
-"""Reads a plan in VHPOP's plain or causal-link form: from our planner, a recording, or a real `vhpop` alike."""
+"""Reads a plan in VHPOP's plain or causal-link form: from this planner, a recording or an external `vhpop`."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _SKIPPED = ("Time:", "Makespan:", "Parsing time:", "Memory used")
 
 
 class PlanTextError(UsageError):
-    """Text that is no plan in either form; the message names the line."""
+    """Text that is not a plan in either form; the message names the line."""
 
 
 @dataclass(slots=True)
 class _Draft:
-    """What has been read so far."""
+    """The parts of a plan read so far."""
 
     problem: str = ""
     initial: tuple[Fact, ...] = ()
@@ -48,13 +48,20 @@ class _Draft:
 
 
 def parse_plan(text: str) -> Plan:
-    """The plan that the text holds; "Initial  :" and the paper's "Initial 0 :" both do.
+    """The plan in a text.
 
-    A plain form has no initial state, links or orderings; its steps are numbered by their order. From a causal-link
-    form of a durative plan, start times and durations are those of the printed bounds (ticks of 0.01 s).
+    The plain form has no initial state, links or orderings; its steps are numbered in their order. Start times and
+    durations of a durative causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has
+    a line "tolerance = ...".
+
+    Args:
+      text: Plain or causal-link form; "Initial  :" and the paper's "Initial 0 :" are both accepted.
+
+    Returns:
+      The plan, not validated.
 
     Raises:
-      PlanTextError: No plan, or a malformed one.
+      PlanTextError: No plan, or a malformed one, or a text beyond the limits.
     """
     lines = text[: MAX_CHARACTERS + 1].splitlines()
     if len(text) > MAX_CHARACTERS or len(lines) > MAX_LINES:
@@ -105,7 +112,7 @@ def _read_step(line: str, draft: _Draft) -> None:
     if match := _STEP.fullmatch(line):
         draft.consumer = _whole(match[1])
         if draft.consumer in draft.actions or draft.consumer == 0:
-            raise ValueError(f"step {draft.consumer} stands there twice")
+            raise ValueError(f"step {draft.consumer} is given twice")
         draft.actions[draft.consumer] = _fact(match[2])
     elif match := _LINK.fullmatch(line):
         if draft.consumer is None:
@@ -155,14 +162,14 @@ def _literal(text: str) -> Literal:
 
 # --- the causal-link form ------------------------------------------------------------------------
 def _from_links(draft: _Draft) -> Plan:
-    known = {0, GOAL, *draft.actions}
+    declared = {0, GOAL, *draft.actions}
     for i, j in [*draft.orderings, *((link.producer, link.consumer) for link in draft.links)]:
-        if i not in known or j not in known:
-            raise PlanTextError(f"plan text: {i} and {j} are linked or ordered, but there is no such step")
+        if i not in declared or j not in declared:
+            raise PlanTextError(f"plan text: {i} and {j} are linked or ordered, but one of them is not a step")
     if not draft.bounds:
         starts = levels(tuple(draft.actions), draft.orderings)
         if starts is None:
-            raise PlanTextError("plan text: the orderings go round in a circle")
+            raise PlanTextError("plan text: the orderings have a cycle")
         steps = tuple(Step(number, action, starts[number]) for number, action in draft.actions.items())
         return _plan(draft, steps, tuple(draft.orderings))
     size = 2 * len(draft.actions) + 1

@@ -9,7 +9,14 @@ from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Pla
 
 
 def format_plan(plan: Plan) -> str:
-    """The plain form: `;problem`, then `START:(action args)` a line, `[duration]` behind a durative one."""
+    """The plain form: `;problem`, then one line `START:(action args)` per step, with `[duration]` in durative plans.
+
+    Args:
+      plan: A finished plan.
+
+    Returns:
+      Text that `parse_plan` reads; starts are levels from 1, or seconds in durative plans.
+    """
     lines = [f";{plan.problem}"]
     for step in plan.steps:
         duration = f"[{format_number(step.duration)}]" if plan.durative else ""
@@ -18,9 +25,14 @@ def format_plan(plan: Plan) -> str:
 
 
 def format_links(plan: Plan) -> str:
-    """The causal-link form; a durative plan's orderings are printed as the bounds of its temporal network.
+    """The causal-link form; a durative plan's orderings are the bounds of its temporal network.
 
-    Their unit is 0.01 s as VHPOP's; for another tolerance a line of ours says so.
+    Args:
+      plan: A finished plan.
+
+    Returns:
+      Text that `parse_plan` reads. Bounds are in ticks of 0.01 s as in VHPOP; for another tolerance an additional
+      line "tolerance = ..." (not part of VHPOP's format) gives the tick in seconds.
     """
     lines = [f";{plan.problem}", "Initial  :" + "".join(" " + format_atom(fact) for fact in plan.initial)]
     for step in plan.steps:

@@ -347,5 +347,5 @@ def test_declarations_stand_in_any_order():
 
 
 def test_a_problem_of_another_domain_is_refused():
-    with pytest.raises(PddlError, match="the problem is of domain 'other', not 'd'"):
+    with pytest.raises(PddlError, match="the problem belongs to domain 'other', not 'd'"):
         read(domain_with(""), "(define (problem p) (:domain other) (:goal (p)))")

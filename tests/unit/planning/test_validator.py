@@ -61,7 +61,7 @@ def test_another_initial_state_makes_the_plan_unsound(kitchen):
         (Link(9, Literal(("hand-empty",)), 2), "names a step that is not in the plan"),
         (Link(1, Literal(("hand-empty",)), 2), "runs backward in time"),
         (Link(3, Literal(("hand-empty",)), 2), "step 3 does not achieve it"),
-        (Link(0, Literal(("holding", "cup1")), 2), "the literal does not hold at first"),
+        (Link(0, Literal(("holding", "cup1")), 2), "the literal does not hold initially"),
     ],
 )
 def test_a_causal_link_that_supports_nothing_is_found(kitchen, link, fault):
