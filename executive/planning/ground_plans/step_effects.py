@@ -11,7 +11,7 @@ class StepEffects:
     Most plans are dropped before their masks are read, so a new step is only noted; `masks()` copies the table.
     """
 
-    __slots__ = ("_masks", "bits", "known", "node")
+    __slots__ = ("_masks", "base", "bits", "node")
 
     def __init__(self, base: list[int], bits: dict[int, int] | None = None, node: int = 0) -> None:
         """A base table and, on top of it, the bits of one more step whose first node is `node`."""
