@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+import tailor
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
@@ -34,3 +35,7 @@ def test_a_page_names_commands_that_exist(page: str) -> None:
 def test_the_readme_lists_the_folders_of_the_table() -> None:
     rows = re.findall(r"^\| `(\w+)/` \|", (ROOT / "README.md").read_text(), re.MULTILINE)
     assert [row for row in rows if row in OURS] == list(ROOMS["."])
+
+
+def test_the_citation_names_the_version() -> None:
+    assert re.findall(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE) == [tailor.__version__]
