@@ -1,1 +1,1 @@
-"""BODY: simulated robots behind the driver contract. Never imports the executive."""
+"""Drivers, their guard, and simulated robots behind them. Never imports the executive."""

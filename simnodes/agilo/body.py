@@ -12,13 +12,12 @@ import numpy as np
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.simnodes.agilo import firmware as fw
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
-from tailor.simnodes.agilo.scene import compile_scene
+from tailor.simnodes.agilo.scene import load_scene
 from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
-from tailor.simnodes.body import STEP_NS, Reading
+from tailor.simnodes.body import Reading
 
 TRUTH_PERIOD_NS = 100_000_000
-ROBOT, LEFT, BALL = 0, 7, 9  # offsets into qpos
-ROBOT_V, LEFT_V, BALL_V = 0, 6, 8  # offsets into qvel
+FAR_M = 50.0  # a ball that the start does not place
 
 
 class AgiloBody:
@@ -27,34 +26,40 @@ class AgiloBody:
     robot = "agilo"
     names: tuple[str, ...] = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
 
-    def __init__(self, physical_parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
-        self._p = physical_parameters or PhysicalParameters()
+    def __init__(self, parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
         self._sensing = sensing or Sensing()
-        self._model = compile_scene(self._p)
-        self._data = mujoco.MjData(self._model)
-        self._qpos, self._qvel, self._ctrl = self._data.qpos, self._data.qvel, self._data.ctrl  # looked up once
+        self._model = model = load_scene(parameters or PhysicalParameters())
+        self._data = data = mujoco.MjData(model)
+        self._step_ns = round(model.opt.timestep * 1e9)
+        self._wheel_radius_m: float = model.geom("left").size.item(0)
+        self._track_m: float = 2 * model.body("left").pos.item(1)
+        self._ball_radius_m: float = model.geom("ball").size.item(0)
+        # views into the state, looked up once: a look-up by name costs as much as a physics step
+        self._robot_qpos, self._robot_qvel = data.joint("robot").qpos, data.joint("robot").qvel
+        self._ball_qpos, self._ball_qvel = data.joint("ball").qpos, data.joint("ball").qvel
+        self._left_qvel, self._right_qvel = data.joint("left").qvel, data.joint("right").qvel
+        self._left_ctrl, self._right_ctrl = data.actuator("left").ctrl, data.actuator("right").ctrl
         self._sensors = Sensors(self._sensing)
-        self._firmware = fw.Firmware(self._p.track_m)
+        self._firmware = fw.Firmware(self._track_m)
         self._time_ns = 0
         self._pending: list[Reading] = []
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
-        """Put robot and ball; what is not named is 0, the ball far away."""
+        """See Body.reset; defaults are 0, and a ball far away."""
         mujoco.mj_resetData(self._model, self._data)
         self._sensors.reset(rng)
         self._firmware.reset(0.0, 0.0)
         self._time_ns = 0
         self._pending = []
-        zero = {"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0, "omega": 0.0, "ball_x": 50.0, "ball_y": 50.0}
-        self.place({**zero, "ball_vx": 0.0, "ball_vy": 0.0, **start})
+        self.place({**dict.fromkeys(self.names, 0.0), "ball_x": FAR_M, "ball_y": FAR_M, **start})
 
     def place(self, values: Mapping[str, float]) -> None:
-        """Move the robot (with any of x, y, phi, v, omega) or the ball; what is not named stays as it is."""
-        now = asdict(self.ground_truth())
+        """Move the robot (any of x, y, phi, v, omega) or the ball; values left out stay."""
+        current = asdict(self.ground_truth())
         if any(name in values for name in ("x", "y", "phi", "v", "omega")):
-            self._place_robot({**now, **values})
+            self._place_robot({**current, **values})
         if any(name.startswith("ball_") for name in values):
-            self._place_ball({**now, **values})
+            self._place_ball({**current, **values})
         mujoco.mj_forward(self._model, self._data)
 
     def command(self, values: tuple[float, ...]) -> None:
@@ -70,44 +75,45 @@ class AgiloBody:
                 self._drive()
             boundary_ns = (self._time_ns // fw.PERIOD_NS + 1) * fw.PERIOD_NS
             until_ns = min(boundary_ns, end_ns)
-            mujoco.mj_step(self._model, self._data, nstep=(until_ns - self._time_ns) // STEP_NS)
+            mujoco.mj_step(self._model, self._data, nstep=(until_ns - self._time_ns) // self._step_ns)
             self._time_ns = until_ns
             if until_ns == boundary_ns:
                 readings += self._sense()
         return readings
 
     def ground_truth(self) -> SoccerGroundTruth:
-        """Pose and velocities of robot and ball, field frame."""
+        """True poses and velocities of robot and ball, field frame."""
         x, y, phi = self._pose()
-        vx, vy, _, _, _, omega, _, _, ball_vx, ball_vy = self._qvel[: BALL_V + 2].tolist()
-        ball_x, ball_y = self._qpos[BALL : BALL + 2].tolist()
+        vx, vy, _, _, _, omega = self._robot_qvel.tolist()
+        ball_x, ball_y, *_ = self._ball_qpos.tolist()
+        ball_vx, ball_vy, *_ = self._ball_qvel.tolist()
         v = vx * math.cos(phi) + vy * math.sin(phi)
         return SoccerGroundTruth(self._time_ns, x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy)
 
     def _drive(self) -> None:
         v, omega = self._firmware.tick()
-        rim = omega * self._p.track_m / 2
-        self._ctrl[0] = (v - rim) / self._p.wheel_radius_m
-        self._ctrl[1] = (v + rim) / self._p.wheel_radius_m
+        rim = omega * self._track_m / 2
+        self._left_ctrl[0] = (v - rim) / self._wheel_radius_m
+        self._right_ctrl[0] = (v + rim) / self._wheel_radius_m
 
     def _sense(self) -> list[Reading]:
         """All readings of this firmware period; camera readings fall due after the camera's delay."""
         now_ns = self._time_ns
-        left, right = self._qvel.item(LEFT_V), self._qvel.item(LEFT_V + 1)
-        v = 0.5 * (left + right) * self._p.wheel_radius_m
-        omega = (right - left) * self._p.wheel_radius_m / self._p.track_m
+        left, right = self._left_qvel.item(), self._right_qvel.item()
+        v = 0.5 * (left + right) * self._wheel_radius_m
+        omega = (right - left) * self._wheel_radius_m / self._track_m
         readings = [Reading("odom", self._sensors.odometry(now_ns, v, omega, fw.PERIOD_S), now_ns)]
         if now_ns % POSE_PERIOD_NS == 0:
-            self._look(now_ns)
+            self._take_picture(now_ns)
         while self._pending and self._pending[0].time_ns <= now_ns:
             readings.append(self._pending.pop(0))
         if now_ns % TRUTH_PERIOD_NS == 0:
             readings.append(Reading("truth", self.ground_truth(), now_ns))
         return readings
 
-    def _look(self, now_ns: int) -> None:
+    def _take_picture(self, now_ns: int) -> None:
         x, y, phi = self._pose()
-        ball_x, ball_y = self._qpos[BALL : BALL + 2].tolist()
+        ball_x, ball_y, *_ = self._ball_qpos.tolist()
         c, s = math.cos(phi), math.sin(phi)
         dx, dy = ball_x - x, ball_y - y
         due_ns = now_ns + self._sensing.camera_delay_ns
@@ -119,21 +125,21 @@ class AgiloBody:
             self._pending.append(Reading("ball", ball, due_ns))
 
     def _pose(self) -> tuple[float, float, float]:
-        x, y, _, w, i, j, k = self._qpos[ROBOT : ROBOT + 7].tolist()
+        x, y, _, w, i, j, k = self._robot_qpos.tolist()
         return x, y, math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k))
 
     def _place_robot(self, state: Mapping[str, float]) -> None:
         phi, v, omega = state["phi"], state["v"], state["omega"]
         half = 0.5 * phi
-        height = self._p.wheel_radius_m
-        self._qpos[ROBOT : ROBOT + 7] = (state["x"], state["y"], height, math.cos(half), 0, 0, math.sin(half))
-        self._qvel[ROBOT_V : ROBOT_V + 6] = (v * math.cos(phi), v * math.sin(phi), 0, 0, 0, omega)
-        rim = omega * self._p.track_m / 2
-        self._qvel[LEFT_V : LEFT_V + 2] = ((v - rim) / height, (v + rim) / height)
+        height = self._wheel_radius_m
+        self._robot_qpos[:] = (state["x"], state["y"], height, math.cos(half), 0, 0, math.sin(half))
+        self._robot_qvel[:] = (v * math.cos(phi), v * math.sin(phi), 0, 0, 0, omega)
+        rim = omega * self._track_m / 2
+        self._left_qvel[0], self._right_qvel[0] = (v - rim) / height, (v + rim) / height
         self._firmware.reset(v, omega)
 
     def _place_ball(self, state: Mapping[str, float]) -> None:
         """Put the ball on the floor, rolling without slip."""
-        radius, vx, vy = self._p.ball_radius_m, state["ball_vx"], state["ball_vy"]
-        self._qpos[BALL : BALL + 7] = (state["ball_x"], state["ball_y"], radius, 1, 0, 0, 0)
-        self._qvel[BALL_V : BALL_V + 6] = (vx, vy, 0, -vy / radius, vx / radius, 0)
+        radius, vx, vy = self._ball_radius_m, state["ball_vx"], state["ball_vy"]
+        self._ball_qpos[:] = (state["ball_x"], state["ball_y"], radius, 1, 0, 0, 0)
+        self._ball_qvel[:] = (vx, vy, 0, -vy / radius, vx / radius, 0)

@@ -1,4 +1,4 @@
-"""The motor board: slews velocity set-points at 50 Hz and keeps them within what the drive can do."""
+"""The motor board: slews velocity set-points at 50 Hz and keeps them within the limits of the drive."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ YAW_RADPS2 = 1.75
 
 
 class Firmware:
-    """Velocity limiter of a differential drive; `tick` is called once a period."""
+    """Velocity limiter of a differential drive; call `tick` once a period.
+
+    Attributes:
+      v, omega: Present set-points of the wheel servos, m/s and rad/s.
+    """
 
     def __init__(self, track_m: float) -> None:
         self._half_track_m = track_m / 2
@@ -22,7 +26,7 @@ class Firmware:
         self._target = (0.0, 0.0)
 
     def reset(self, v: float, omega: float) -> None:
-        """Start in motion with these set-points, as if they had been commanded before."""
+        """Start in motion with these set-points (m/s, rad/s)."""
         self.v, self.omega = v, omega
         self._target = (v, omega)
 
@@ -34,7 +38,7 @@ class Firmware:
         self._target = (max(-v_limit, min(v_limit, v)), omega)
 
     def tick(self) -> tuple[float, float]:
-        """Advance one period; the velocities (m/s, rad/s) that the wheel servos are to hold."""
+        """Advance one period and return the set-points (m/s, rad/s) for the wheel servos."""
         v, omega = self._target
         rate = SPEED_UP_MPS2 if abs(v) > abs(self.v) and v * self.v >= 0.0 else SLOW_DOWN_MPS2
         self.v += _towards(v - self.v, rate * PERIOD_S)

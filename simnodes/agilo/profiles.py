@@ -1,6 +1,6 @@
-"""Named AGILO robots: as it is meant to be, and one worse than its models were learned on.
+"""Profiles of the AGILO robot: nominal, and degraded compared with the robot that its models were learned on.
 
-The degraded one stands in for the real robot: worse camera, later and fewer percepts, tyres and floor that differ.
+The degraded profile stands in for the real robot: worse camera, later and fewer percepts, other tyres and floor.
 """
 
 from __future__ import annotations
@@ -28,6 +28,9 @@ PROFILES = {
 
 
 def body(profile: str = "nominal") -> AgiloBody:
-    """A body of that profile; raises KeyError for another name."""
-    physical_parameters, sensing = PROFILES[profile]
-    return AgiloBody(physical_parameters, sensing)
+    """A body of a profile.
+
+    Raises:
+      KeyError: There is no profile of that name.
+    """
+    return AgiloBody(*PROFILES[profile])

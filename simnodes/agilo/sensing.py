@@ -1,6 +1,6 @@
-"""How well the AGILO robot senses: encoders, and a camera that localises the robot and sees the ball.
+"""Error models of the AGILO robot's sensors: encoders, and a camera that measures robot pose and ball position.
 
-Every draw comes from the generator handed to `Sensors.reset`. Metres, radians, seconds.
+Every random number comes from the generator of `Sensors.reset`. Metres, radians, seconds.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ POSE_PERIOD_S = POSE_PERIOD_NS * 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Sensing:
-    """Error models. Pose errors are correlated in time (AR(1)): a camera repeats its mistakes."""
+    """Parameters of the error models. Pose errors are correlated in time (AR(1)), as a camera repeats its mistakes."""
 
     pose_sigma_m: float = 0.045
     pose_sigma_rad: float = 0.04  # 2.3°
-    pose_memory_s: float = 0.6
+    pose_correlation_s: float = 0.6  # time constant
     pose_dropout: float = 0.03  # share of percepts lost
     ball_dropout: float = 0.03
     ball_base_m: float = 0.01
@@ -38,16 +38,16 @@ class Sensing:
 
 
 class Sensors:
-    """Turns true states into noisy messages."""
+    """Converts true states to noisy messages."""
 
     def __init__(self, sensing: Sensing) -> None:
         self._s = sensing
-        self._memory = math.exp(-POSE_PERIOD_S / sensing.pose_memory_s)
-        self._fresh = math.sqrt(1.0 - self._memory**2)
+        self._correlation = math.exp(-POSE_PERIOD_S / sensing.pose_correlation_s)
+        self._innovation = math.sqrt(1.0 - self._correlation**2)
         self.reset(np.random.default_rng(0))
 
     def reset(self, rng: np.random.Generator) -> None:
-        """Forget everything; errors start in their stationary distribution."""
+        """Start anew with this source of noise; errors start in their stationary distribution."""
         self._rng = rng
         self._normals: list[float] = []
         self._pose_error = [self._normal(), self._normal(), self._normal()]
@@ -62,7 +62,7 @@ class Sensors:
         return self._normals.pop()
 
     def odometry(self, stamp_ns: int, v: float, omega: float, period_s: float) -> Odometry:
-        """Encoders' view of the wheels' velocity, and its integral since the reset."""
+        """Velocities (m/s, rad/s) as the encoders measure them, and their integral since the reset."""
         v = v * self._scale_v + self._s.encoder_v_mps * self._normal()
         omega = omega * self._scale_omega + self._s.encoder_omega_radps * self._normal()
         x, y, phi = self._odom
@@ -74,10 +74,10 @@ class Sensors:
         return Odometry(stamp_ns, x, y, phi, v, omega)
 
     def pose(self, stamp_ns: int, x: float, y: float, phi: float) -> PoseEstimate | None:
-        """The camera's view of the robot's pose; None when it found none."""
+        """Pose as the camera measures it; None if the percept is lost."""
         error = self._pose_error
         for axis in range(3):
-            error[axis] = self._memory * error[axis] + self._fresh * self._normal()
+            error[axis] = self._correlation * error[axis] + self._innovation * self._normal()
         if self._lost(self._s.pose_dropout):
             return None
         sigma, sigma_phi = self._s.pose_sigma_m, self._s.pose_sigma_rad
@@ -86,11 +86,11 @@ class Sensors:
         return PoseEstimate(stamp_ns, x, y, phi, sigma**2, sigma**2, sigma_phi**2)
 
     def ball(self, stamp_ns: int, ahead: float, left: float) -> BallPercept | None:
-        """The camera's view of the ball at (ahead, left) in the robot's frame; None when it is out of view."""
+        """Measured position of a ball at (ahead, left), base_link; None if the percept is lost or out of view."""
         along, across = self._normal(), self._normal()
         distance, bearing = math.hypot(ahead, left), math.atan2(left, ahead)
-        seen = self._s.ball_near_m < distance < self._s.ball_far_m and abs(bearing) < self._s.ball_half_view
-        if self._lost(self._s.ball_dropout) or not seen:
+        visible = self._s.ball_near_m < distance < self._s.ball_far_m and abs(bearing) < self._s.ball_half_view
+        if self._lost(self._s.ball_dropout) or not visible:
             return None
         sigma_along = self._s.ball_base_m + self._s.ball_share * distance
         sigma_across = 0.5 * sigma_along

@@ -1,4 +1,4 @@
-"""The arm's body: repeatable, within its limits whatever it is told, and as its sensors say."""
+"""The arm's body: repeatable, within its limits for any command, measured by its sensors."""
 
 import hashlib
 import subprocess
@@ -103,7 +103,7 @@ def test_a_motor_ramps_its_set_point_within_the_acceleration_limit():
     assert speeds[-1] == 1.2
 
 
-def test_encoders_say_whole_counts_and_all_six_joints():
+def test_encoders_measure_whole_counts_of_all_six_joints():
     readings = follow(body(2), [(0.3, 0.2)] * 5)
     states = [reading.message for reading in readings if reading.topic == "joint_states"]
     count = PhysicalParameters().count_rad
@@ -114,10 +114,10 @@ def test_encoders_say_whole_counts_and_all_six_joints():
         assert counts == pytest.approx(np.round(counts), abs=1e-6)
 
 
-def test_currents_tell_the_largest_since_the_last_message():
+def test_currents_include_the_peak_since_the_last_message():
     readings = follow(body(), [(0.0, 0.0)] * 3 + [(0.0, 0.7)] + [(0.0, 0.7)] * 6)
-    told = [reading.message for reading in readings if reading.topic == "currents"]
-    assert max(message.peak_amperes[1] for message in told) > 1.2 * told[-1].amperes[1]
+    currents = [reading.message for reading in readings if reading.topic == "currents"]
+    assert max(message.peak_amperes[1] for message in currents) > 1.2 * currents[-1].amperes[1]
 
 
 @pytest.mark.slow
@@ -127,15 +127,15 @@ def test_the_arm_runs_fifty_times_faster_than_real_time():
     assert min_cpu_s(lambda: made.advance(5_000_000_000)) < 5.0 / 50
 
 
-def test_hearing_a_set_point_again_changes_nothing():
+def test_repeating_a_set_point_changes_nothing():
     once, often = body(), body()
     once.command((0.4, -0.3))
     expected = once.advance(TICK_NS)
-    told = []
+    repeated = []
     for _ in range(10):
         often.command((0.4, -0.3))
-        told += often.advance(TICK_NS // 10)
-    assert told == expected
+        repeated += often.advance(TICK_NS // 10)
+    assert repeated == expected
 
 
 def test_a_motor_turns_round_after_it_was_braked_at_the_end_of_its_range():

@@ -9,17 +9,15 @@ import math
 
 from tailor.schemas.messages import JointState, Message, Odometry
 from tailor.schemas.messages.soccer import SoccerGroundTruth
-from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
+from tailor.simnodes.agilo import dimensions as agilo
 
-AGILO = PhysicalParameters()
 WHEELS = 2
-ARMATURE_KGM2 = 0.002  # of a wheel's motor and gear, as in the scene
 # equivalent mass of the spinning wheels (an ellipsoid's inertia, 2/5 m r²) and their motors
-SPINNING_KG = WHEELS * (0.4 * AGILO.wheel_mass_kg + ARMATURE_KGM2 / AGILO.wheel_radius_m**2)
-MASS_KG = AGILO.chassis_mass_kg + WHEELS * AGILO.wheel_mass_kg + SPINNING_KG
+SPINNING_KG = WHEELS * (0.4 * agilo.WHEEL_MASS_KG + agilo.WHEEL_ARMATURE_KGM2 / agilo.WHEEL_RADIUS_M**2)
+MASS_KG = agilo.CHASSIS_MASS_KG + WHEELS * agilo.WHEEL_MASS_KG + SPINNING_KG
 YAW_KGM2 = (
-    AGILO.chassis_mass_kg * ((AGILO.chassis_length_m**2 + AGILO.chassis_width_m**2) / 12 + AGILO.mass_ahead_m**2)
-    + (WHEELS * AGILO.wheel_mass_kg + SPINNING_KG) * (AGILO.track_m / 2) ** 2
+    agilo.CHASSIS_MASS_KG * ((agilo.CHASSIS_LENGTH_M**2 + agilo.CHASSIS_WIDTH_M**2) / 12 + agilo.MASS_AHEAD_M**2)
+    + (WHEELS * agilo.WHEEL_MASS_KG + SPINNING_KG) * (agilo.TRACK_M / 2) ** 2
 )
 
 
