@@ -1,4 +1,4 @@
-"""Paths in the manner of the paper's Figure 1: lines across the robot's heading whose width is its speed, at 10 Hz."""
+"""Paths like the paper's Figure 1: lines across the robot's heading, 10 a second, whose length is its speed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from matplotlib import collections as mc
 from matplotlib.figure import Figure
 
@@ -17,7 +16,7 @@ from tailor.tools.figures.track import Point, Track
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
 SCALE_MPS = 0.5
-BALL_RADIUS_M = 0.11
+OBJECT_RADIUS_M = 0.11
 
 
 def draw_paths(tracks: list[Track], path: Path) -> None:
@@ -30,7 +29,7 @@ def draw_paths(tracks: list[Track], path: Path) -> None:
 
 
 def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
-    """One run an axis, all to one scale, with a mark of what width is what speed on the first."""
+    """Draw one run an axis, all to one scale; the first shows the scale of the speed."""
     limits = _limits(tracks)
     for axis, track in zip(axes, tracks, strict=True):
         draw_path(axis, track)
@@ -40,14 +39,14 @@ def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
 
 
 def _draw_scale(axis: Any, limits: tuple[tuple[float, float], tuple[float, float]]) -> None:
-    """How wide a line of SCALE_MPS is."""
+    """A line as long as the speed SCALE_MPS."""
     x, y = limits[0][0] + 0.1, limits[1][0] + 0.1
     axis.plot([x, x + 2 * HALF_WIDTH_PER_SPEED_S * SCALE_MPS], [y, y], color="black", linewidth=1.4)
     axis.text(x, y + 0.04, f"{SCALE_MPS} m/s", fontsize="x-small")
 
 
 def draw_path(axis: Any, track: Track) -> None:
-    """One run: lines across the heading, ball, subgoals, and a legend with the actions' durations."""
+    """Draw one run: lines across the heading, objects, subgoals, and a legend with the actions' durations."""
     names: list[str] = []
     for number in sorted({point.action for point in track.points}):
         points = [point for point in track.points if point.action == number]
@@ -55,7 +54,7 @@ def draw_path(axis: Any, track: Track) -> None:
         axis.add_collection(mc.LineCollection([_across(p) for p in points], colors=colour, linewidths=1.4))
         axis.plot([], [], color=colour, label=_label(track, number, points[0].name))
         names.append(points[0].name)
-    _draw_ball(axis, track)
+    _draw_objects(axis, track)
     _draw_goals(axis, track)
     axis.set_title(f"{track.title}: {track.actual_s:.1f} s")
     axis.legend(loc="best", fontsize="small")
@@ -75,19 +74,19 @@ def _label(track: Track, number: int, name: str) -> str:
     return name
 
 
-def _draw_ball(axis: Any, track: Track) -> None:
-    xs, ys = [p.ball_x for p in track.points], [p.ball_y for p in track.points]
-    if not xs or not np.isfinite(xs).all() or abs(xs[0]) > 20:  # far away: a scenario without a ball
-        return
-    axis.plot(xs, ys, color="orangered", linewidth=0.8, alpha=0.5, zorder=0)
+def _draw_objects(axis: Any, track: Track) -> None:
+    """Path of every object, with a disc at its start and a circle at its end."""
     from matplotlib.patches import Circle
 
-    axis.add_patch(Circle((xs[0], ys[0]), BALL_RADIUS_M, color="orangered", zorder=3))
-    axis.add_patch(Circle((xs[-1], ys[-1]), BALL_RADIUS_M, fill=False, color="orangered", zorder=3))
+    for name in sorted({name for point in track.points for name in point.objects}):
+        places = [point.objects[name] for point in track.points if name in point.objects]
+        axis.plot(*zip(*places, strict=True), color="orangered", linewidth=0.8, alpha=0.5, zorder=0)
+        axis.add_patch(Circle(places[0], OBJECT_RADIUS_M, color="orangered", zorder=3))
+        axis.add_patch(Circle(places[-1], OBJECT_RADIUS_M, fill=False, color="orangered", zorder=3))
 
 
 def _draw_goals(axis: Any, track: Track) -> None:
-    """An arrow at every subgoal, as last chosen for the action that led to it; grey where it was free."""
+    """An arrow at every subgoal as last chosen for its action; grey for free ones."""
     for action in _executed(track):
         values = {p.name: p for p in action.parameters}
         if not {"xg", "yg", "phig"} <= values.keys():
@@ -100,7 +99,7 @@ def _draw_goals(axis: Any, track: Track) -> None:
 
 
 def _executed(track: Track) -> list[InstantiatedAction]:
-    """The actions that were really started: first of every announced sequence, the last word for each."""
+    """The executed actions: the first of every published sequence, each in its last version."""
     latest: dict[tuple[int, bool, str], InstantiatedAction] = {}
     for subgoals in track.subgoals:
         if subgoals.actions:
@@ -110,7 +109,7 @@ def _executed(track: Track) -> list[InstantiatedAction]:
 
 
 def _limits(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Common limits with a margin, metres; a unit square when nothing moved."""
+    """Common limits with a margin, metres; a unit square without any motion."""
     points = [point for track in tracks for point in track.points]
     goals = [{p.name: p.value for p in action.parameters} for track in tracks for action in _executed(track)]
     xs = [p.x for p in points] + [g["xg"] for g in goals if "xg" in g] or [0.0, 1.0]

@@ -1,4 +1,4 @@
-"""A run reduced to what is drawn and tabulated of it: path, speed, actions with predicted and actual durations."""
+"""Track of a run for figures and tables: path, speed, actions with predicted and actual durations."""
 
 from __future__ import annotations
 
@@ -6,20 +6,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.tools.viewer.planar_scene import TRUTH_TYPES, PlanarScene, Position, scene_of_message
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Where the robot was, every 0.1 s: metres, radians, m/s; `action` counts the actions since the start."""
+    """Ground truth every 0.1 s in metres, radians and m/s; `action` counts the actions since the start."""
 
     time_s: float
     x: float
     y: float
     phi: float
     v: float
-    ball_x: float
-    ball_y: float
+    objects: dict[str, Position]
     action: int
     name: str
 
@@ -44,7 +43,7 @@ class Track:
 
     @property
     def predicted_s(self) -> float:
-        """Sum of what was predicted for each action when it started."""
+        """Sum of the durations predicted when each action started."""
         return sum(action.predicted_s for action in self.finished)
 
 
@@ -67,20 +66,14 @@ def track_of(title: str, messages: Iterable[Message]) -> Track:
             track.ticks += 1
             track.late_ticks += message.lateness_ns > LATE_NS
             track.missed_ticks += message.skipped
-        elif isinstance(message, SoccerGroundTruth) and status is not None and status.action:
-            track.points.append(_point(message, status))
+        elif isinstance(message, TRUTH_TYPES) and status is not None and status.action:
+            scene = scene_of_message(message)
+            if scene is not None:
+                time_s = getattr(message, "stamp_ns", 0) / 1e9
+                track.points.append(_point(time_s, scene, status))
     return track
 
 
-def _point(truth: SoccerGroundTruth, status: ExecStatus) -> Point:
-    return Point(
-        time_s=truth.stamp_ns / 1e9,
-        x=truth.x,
-        y=truth.y,
-        phi=truth.phi,
-        v=truth.v,
-        ball_x=truth.ball_x,
-        ball_y=truth.ball_y,
-        action=status.action_index,
-        name=status.action,
-    )
+def _point(time_s: float, scene: PlanarScene, status: ExecStatus) -> Point:
+    index, name = status.action_index, status.action
+    return Point(time_s, scene.x, scene.y, scene.phi, scene.v, scene.objects, index, name)

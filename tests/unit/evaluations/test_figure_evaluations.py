@@ -27,7 +27,7 @@ FORESEEN = (("goToPose", True, 2.0), ("approachBall", False, 3.0), ("dribbleBall
 
 
 def point(time_s, v, name):
-    return Point(time_s, 0.0, 0.0, 0.0, v, 0.0, 0.0, 0, name)
+    return Point(time_s, 0.0, 0.0, 0.0, v, {}, 0, name)
 
 
 def test_time_spent_hardly_moving_and_the_speed_at_the_ball_are_read_off_the_track():
@@ -102,8 +102,8 @@ def test_other_noise_is_another_run_from_the_same_start():
     first, again, other = (trace_run(task, v, TRAINING_SEED)[0] for v in (plain, plain, replace(plain, noise=500_000)))
     assert first.outcome == again.outcome
     assert first.track.points != other.track.points
-    assert (first.track.points[0].x, first.track.points[0].ball_x) == pytest.approx(
-        (other.track.points[0].x, other.track.points[0].ball_x), abs=0.05
+    assert (first.track.points[0].x, first.track.points[0].objects["ball"][0]) == pytest.approx(
+        (other.track.points[0].x, other.track.points[0].objects["ball"][0]), abs=0.05
     )
 
 

@@ -67,15 +67,15 @@ def run(arguments: argparse.Namespace) -> int:
     output: Path | None = arguments.output
     if output is not None and output.suffix not in (".png", ".html"):
         raise UsageError(f"--output {output}: expected a .png or .html file")
-    explained = explained_decisions(arguments.recording, arguments.at, arguments.sender)
+    decisions = explained_decisions(arguments.recording, arguments.at, arguments.sender)
     if arguments.json:
-        print(json.dumps([_json_value(reason) for reason in explained], allow_nan=False))
+        print(json.dumps([_json_value(explained) for explained in decisions], allow_nan=False))
     else:
-        _show(explained)
-    explained = [(reason.title, reason.explanation) for reason in explained if reason.explanation is not None]
-    if output is not None and explained:
-        _draw(explained, output)
-    return 0 if explained else 1
+        _show(decisions)
+    drawable = [(explained.title, explained.explanation) for explained in decisions if explained.explanation]
+    if output is not None and drawable:
+        _draw(drawable, output)
+    return 0 if drawable else 1
 
 
 def explained_decisions(recording: Path, at_s: float | None = None, sender: str = "") -> list[ExplainedDecision]:
@@ -114,35 +114,37 @@ def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
     return ExplainedDecision(decision, explanation, explainer.best_cost(decision.subgoals))
 
 
-def _show(explained: Sequence[ExplainedDecision]) -> None:
+def _show(decisions: Sequence[ExplainedDecision]) -> None:
     console = Console(soft_wrap=True)
-    for reason in explained:
-        if reason.explanation is None:
-            console.print(f"[bold]{reason.title}[/bold]\n  no parameter was free\n", highlight=False)
+    for explained in decisions:
+        if explained.explanation is None:
+            console.print(f"[bold]{explained.title}[/bold]\n  no parameter was free\n", highlight=False)
             continue
-        console.print(f"[bold]{reason.title}[/bold]", highlight=False)
-        console.print(duration_table(reason.explanation))
-        for parameter in reason.explanation.parameters:
+        console.print(f"[bold]{explained.title}[/bold]", highlight=False)
+        console.print(duration_table(explained.explanation))
+        for parameter in explained.explanation.parameters:
             console.print(f"  {parameter_text(parameter)}", highlight=False)
-        for situation in reason.explanation.situations:
+        for situation in explained.explanation.situations:
             console.print(f"  {features_text(situation)}", highlight=False)
             if situation.rule:
                 console.print(f"    {escape(situation.rule)}", highlight=False)
-        console.print(f"  {long_search_text(reason.explanation.chosen_cost, reason.best_cost)}", highlight=False)
-        console.print(f"  {certificate_text(reason.decision.report)}", highlight=False)
-        if reason.decision.report is not None and (gated := gate_text(reason.decision.report)):
+        console.print(f"  {long_search_text(explained.explanation.chosen_cost, explained.best_cost)}", highlight=False)
+        console.print(f"  {certificate_text(explained.decision.report)}", highlight=False)
+        if explained.decision.report is not None and (gated := gate_text(explained.decision.report)):
             console.print(f"  {gated}", highlight=False)
-        console.print(f"  {search_text(reason.decision)}\n", highlight=False)
+        console.print(f"  {search_text(explained.decision)}\n", highlight=False)
 
 
-def _json_value(reason: ExplainedDecision) -> dict[str, Any]:
-    decision, report = reason.decision, reason.decision.report
+def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
+    decision, report = explained.decision, explained.decision.report
     return {
         "at_s": decision.at_s,
         "actions": [action.action for action in decision.subgoals.actions],
-        "explanation": None if reason.explanation is None else fields_of(reason.explanation),
-        "rules": [] if reason.explanation is None else [situation.rule for situation in reason.explanation.situations],
-        "best_cost": number(reason.best_cost),
+        "explanation": None if explained.explanation is None else fields_of(explained.explanation),
+        "rules": []
+        if explained.explanation is None
+        else [situation.rule for situation in explained.explanation.situations],
+        "best_cost": number(explained.best_cost),
         "search": None
         if report is None
         else {
@@ -160,9 +162,7 @@ def _json_value(reason: ExplainedDecision) -> dict[str, Any]:
 
 def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     """Write the picture, or a page that contains it."""
-    from tailor.tools.figures.alternatives import (
-        draw_alternatives,  # imports matplotlib, which is slow
-    )
+    from tailor.tools.figures.alternatives import draw_alternatives  # imports matplotlib, which is slow
     from tailor.tools.figures.report_page import image, page
 
     if output.suffix == ".png":

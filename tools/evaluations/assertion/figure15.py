@@ -116,7 +116,7 @@ def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
         said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.disturbance_m:.2f} m"
         tracks.append(replace(watched.track, title=f"{title} ({said})"))
     first = tracks[0].points[0]
-    draw_subgoal_map(ground, (first.ball_x, first.ball_y), tracks, f"start {seed}", path)
+    draw_subgoal_map(ground, first.objects["ball"], tracks, f"start {seed}", path)
     return path
 
 
