@@ -1,4 +1,4 @@
-"""Whether a card says what a card says, in the right shape: what loading, listing and drawing read."""
+"""Checks that the entries of a card have the shape that loading, listing and drawing need."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ OUTPUTS = {
     "success": ["success"],
     "benefit": ["slower"],
 }
-THRESHOLDED = ("success", "benefit")
-FIGURES = {  # of the test, that every list of models tells
+KINDS_WITH_THRESHOLD = ("success", "benefit")
+TEST_FIGURES = {  # entries of the test that every list of models shows
     "duration": ("mae_s", "mean_duration_s"),
     "energy": ("mae_j", "mean_energy_j"),
     "success": ("accuracy_pct", "missed_failures_pct"),
@@ -23,7 +23,7 @@ FIGURES = {  # of the test, that every list of models tells
 
 
 def card_error(card: Mapping[str, Any]) -> str:
-    """What is wrong with a card that has all its fields, and what was expected; empty if nothing is."""
+    """First error in a card that has all its entries; empty if there is none."""
     for name in ("robot", "action", "kind", "features", "sha256", "command"):
         if not isinstance(card[name], str) or not card[name]:
             return f"{name} is {short(card[name])}, expected text"
@@ -32,24 +32,24 @@ def card_error(card: Mapping[str, Any]) -> str:
     for name in ("episodes", "learner", "test", "golden", "versions", *(["feature_units"] * ("feature_units" in card))):
         if not isinstance(card[name], dict):
             return f"{name} is {short(card[name])}, expected an object"
-    return arguments_error(card["arguments"]) or _answers_error(card) or _golden_error(card) or _told_error(card)
+    return arguments_error(card["arguments"]) or _outputs_error(card) or _golden_error(card) or _summary_error(card)
 
 
-def _answers_error(card: Mapping[str, Any]) -> str:
+def _outputs_error(card: Mapping[str, Any]) -> str:
     expected = OUTPUTS[card["kind"]]
     if card["outputs"] != expected:
         return f"outputs is {short(card['outputs'])}, expected {expected} of a model of {card['kind']}"
     if not is_range(card["output_range"]):
         return f"output_range is {short(card['output_range'])}, expected two numbers, the lower one first"
-    if card["kind"] in THRESHOLDED and not is_number(card.get("threshold")):
+    if card["kind"] in KINDS_WITH_THRESHOLD and not is_number(card.get("threshold")):
         return f"threshold is {short(card.get('threshold'))}, expected a number"
     return ""
 
 
 def _golden_error(card: Mapping[str, Any]) -> str:
     width, rows = len(card["arguments"]), card["golden"].get("arguments")
-    whole = isinstance(rows, list) and rows and all(isinstance(row, list) and len(row) == width for row in rows)
-    if not whole or not all(is_number(value) for row in rows for value in row):
+    complete = isinstance(rows, list) and rows and all(isinstance(row, list) and len(row) == width for row in rows)
+    if not complete or not all(is_number(value) for row in rows for value in row):
         return f"golden arguments are {short(rows)}, expected rows of {width} numbers"
     for name in card["outputs"]:
         values = card["golden"].get(name)
@@ -58,13 +58,13 @@ def _golden_error(card: Mapping[str, Any]) -> str:
     return ""
 
 
-def _told_error(card: Mapping[str, Any]) -> str:
-    """What lists and pages of models tell of it."""
+def _summary_error(card: Mapping[str, Any]) -> str:
+    """First error in the entries that lists of models show."""
     if not isinstance(card["learner"].get("name"), str):
         return f"learner's name is {short(card['learner'].get('name'))}, expected text"
     if not is_number(card["episodes"].get("count")):
         return f"episodes' count is {short(card['episodes'].get('count'))}, expected a number"
-    for name in FIGURES[card["kind"]]:
+    for name in TEST_FIGURES[card["kind"]]:
         if not is_number(card["test"].get(name)):
             return f"test's {name} is {short(card['test'].get(name))}, expected a number"
     return ""

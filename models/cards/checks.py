@@ -1,4 +1,4 @@
-"""Whether a model is the one that its card, its place and its robot expect. Standard library alone."""
+"""Checks that a model is the one that its card, its place and its robot expect. Standard library only."""
 
 from __future__ import annotations
 
@@ -9,14 +9,20 @@ from typing import Any
 from tailor.models.cards.card import Card, identity
 from tailor.schemas.errors import UsageError
 
-COVER_TOLERANCE = 1e-6  # of a range's bounds, for decimals that were rounded
+COVER_TOLERANCE = 1e-6  # of the bounds of a range, for rounded decimals
 
 
 def check_identity(inside: Mapping[str, str], shape: Sequence[Any], card: Card, path: Path) -> None:
-    """The ONNX file's metadata, and the shape of its input, must be what the card says.
+    """Compare metadata and input shape of an ONNX file with its card.
+
+    Args:
+      inside: Metadata of the ONNX file.
+      shape: Shape of its input.
+      card: Its card.
+      path: The ONNX file, for errors.
 
     Raises:
-      UsageError: They differ; the message names both sides.
+      UsageError: They differ; the message names both values.
     """
     for key, value in identity(card).items():
         if inside.get(key) != value:
@@ -27,10 +33,10 @@ def check_identity(inside: Mapping[str, str], shape: Sequence[Any], card: Card, 
 
 
 def check_place(card: Card, place: str, folder: Path) -> None:
-    """A model must lie where its card says that it belongs: "robot/action/kind".
+    """Compare the place of a model in the zoo, "robot/action/kind", with its card.
 
     Raises:
-      UsageError: It does not.
+      UsageError: They differ.
     """
     name = f"{card['robot']}/{card['action']}/{card['kind']}"
     if name != place:
@@ -38,40 +44,40 @@ def check_place(card: Card, place: str, folder: Path) -> None:
 
 
 def check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: Path) -> None:
-    """A model must have seen the ranges, by argument, that its action declares.
+    """Check that a model was trained on the ranges, by argument, that its action declares.
 
     Raises:
-      UsageError: It has seen less, or does not know the argument.
+      UsageError: It was trained on a smaller range, or lacks the argument.
     """
-    seen = {argument["name"]: argument for argument in card["arguments"]}
+    trained = {argument["name"]: argument for argument in card["arguments"]}
     for name, (lower, upper) in declared.items():
-        if name not in seen:
-            raise UsageError(f"{path}: the model knows no argument '{name}' (its arguments: {', '.join(seen)})")
-        low, high = seen[name]["lower"], seen[name]["upper"]
+        if name not in trained:
+            raise UsageError(f"{path}: the model has no argument '{name}' (its arguments: {', '.join(trained)})")
+        low, high = trained[name]["lower"], trained[name]["upper"]
         if lower < low - COVER_TOLERANCE or upper > high + COVER_TOLERANCE:
             raise UsageError(
-                f"{path}: {name} was learned in [{low:g}, {high:g}] {seen[name]['unit']}, "
+                f"{path}: {name} was trained in [{low:g}, {high:g}] {trained[name]['unit']}, "
                 f"expected to cover [{lower:g}, {upper:g}] as the action declares"
             )
 
 
 def check_trained_with(card: Card, installed: Mapping[str, str], path: Path) -> None:
-    """A refinement gate judges the choices of the action models that it was learned with, and of no others.
+    """Check that a refinement gate was trained with the installed action models; with others it is not valid.
 
     Args:
-      card: Of the tree.
+      card: Card of the gate.
       installed: SHA-256 of the robot's models by "action/kind".
-      path: Where the tree lies.
+      path: ONNX file of the gate, for errors.
 
     Raises:
-      UsageError: One of these models is not there, or another.
+      UsageError: One of the models is missing, or is another one.
     """
     if not card.get("models"):
-        raise UsageError(f"{path}: card names no models that the tree was learned with, expected those of the robot")
+        raise UsageError(f"{path}: card names no action models, expected those that the gate was trained with")
     for name, sha256 in card["models"].items():
-        found = installed.get(name, "missing")
-        if found != sha256:
+        present = installed.get(name, "missing")
+        if present != sha256:
             raise UsageError(
-                f"{path}: was learned when {name} was {sha256[:12]}…, which is {found[:12]} here: train it again "
+                f"{path}: was trained with {name} {sha256[:12]}…, which is {present[:12]} here: train it again "
                 f"with `tailor train-gate`, or set refinement.gate = false"
             )

@@ -1,6 +1,6 @@
-"""Data sets of episodes: Parquet parts with one row group per episode; manifest.py says how they were made.
+"""Data sets of episodes: Parquet parts with one row group per episode; the manifest holds their provenance.
 
-A part appears whole or not at all, so that gathering may be killed at any time and go on later.
+A part is written atomically, so that gathering can be killed at any time and resumed later.
 """
 
 from __future__ import annotations
@@ -24,27 +24,45 @@ from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
-WHOLE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
-UNOBSERVED = "unobserved"  # "failure" of an episode that says nothing about success
+PER_EPISODE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
+UNOBSERVED = "unobserved"  # "failure" of an episode whose success was not observed
 
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """One run of an action: what was asked, what was seen at each tick, and how it ended."""
+    """One execution of an action.
+
+    Attributes:
+      number: Number in its data set.
+      arguments: Requested current and goal state, shape (k,).
+      ticks: Believed current state, and goal state, at each 10 Hz tick, shape (t, k).
+      duration_s: Duration in seconds.
+      success: Whether the action achieved its effect.
+      failure: Kind of failure, `UNOBSERVED`, or empty.
+      finished: Whether the controller finished; False if the time limit was exceeded.
+      work_j: Work of the drives from each tick to the next in joules, shape (t,); None if not recorded.
+      on_policy: Whether an optimiser chose the arguments.
+    """
 
     number: int
-    arguments: Array  # (k,) as asked for: current and goal state
-    ticks: Array  # (t, k) the same at each 10 Hz tick: the believed current state and the goal
+    arguments: Array
+    ticks: Array
     duration_s: float
     success: bool
-    failure: str  # kind of failure, empty if none
-    finished: bool = True  # the controller said so; False: the time limit did
-    work_j: Array | None = None  # (t,) joules of the drives from each tick to the next; None: nobody knows
-    on_policy: bool = False  # an optimiser chose its arguments
+    failure: str
+    finished: bool = True
+    work_j: Array | None = None
+    on_policy: bool = False
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
-    """Write episodes as one Parquet file, a row group each; `names` are those of the arguments."""
+    """Write episodes as one Parquet file, atomically; without episodes nothing is written.
+
+    Args:
+      path: The file.
+      episodes: One row group each.
+      names: Names of the arguments, k.
+    """
     temporary = path.with_suffix(f".{os.getpid()}.tmp")
     writer = None
     try:
@@ -77,7 +95,7 @@ def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
 
 @dataclass(frozen=True, slots=True)
 class DataSet:
-    """Episodes of one action with their manifest and a hash of all parts."""
+    """Episodes of one action, their manifest, and the SHA-256 of all parts."""
 
     manifest: Mapping[str, Any]
     episodes: tuple[Episode, ...]
@@ -104,40 +122,40 @@ def read_data_set(folder: Path) -> DataSet:
         episodes.extend(_episodes(_read_part(path, names), names, bool(manifest.get("on_policy"))))
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
-        twice = next(number for number, count in Counter(numbers).items() if count > 1)
-        raise UsageError(f"{folder}: holds episode {twice} twice, expected each once: tests must be of unseen ones")
+        repeated = next(number for number, count in Counter(numbers).items() if count > 1)
+        raise UsageError(f"{folder}: holds episode {repeated} twice, expected once: training and test would share it")
     return DataSet(manifest, tuple(episodes), digest.hexdigest())
 
 
 def _read_part(path: Path, names: Sequence[str]) -> pa.Table:
-    """A part with all that it must hold.
+    """Read and check one part.
 
     Raises:
-      UsageError: It cannot be read, is damaged, lacks a column, or holds what is no number.
+      UsageError: It cannot be read, is damaged, lacks a column, or holds a value that is not a finite number.
     """
     try:
         table = pq.read_table(path, page_checksum_verification=True)
     except (pa.ArrowException, OSError) as error:
         raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
     numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
-    missing = [name for name in (*WHOLE, *numbers) if name not in table.column_names]
+    missing = [name for name in (*PER_EPISODE, *numbers) if name not in table.column_names]
     if missing or not table.num_rows:
         raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
     for name in numbers:
         if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
-            raise UsageError(f"{path}: column {name} holds what is no finite number, expected some everywhere")
+            raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
     return table
 
 
 def merge(sets: Sequence[DataSet]) -> DataSet:
-    """Several data sets of one action as one; the first one's manifest speaks, its ranges stand.
+    """Merge data sets of one action; manifest and ranges are those of the first.
 
     Raises:
-      UsageError: They are of different robots, actions or arguments, or two hold the same episodes.
+      UsageError: Robots, actions or arguments differ, or two hold the same episodes.
     """
     first, *others = sets
     for one, other in itertools.combinations(sets, 2):
-        if one.sha256 == other.sha256 or _drawn(one.manifest) == _drawn(other.manifest) is not None:
+        if one.sha256 == other.sha256 or _draw(one.manifest) == _draw(other.manifest) is not None:
             action, seed = one.manifest["action"], one.manifest.get("seed")
             raise UsageError(f"two data sets hold the same episodes of {action} (seed {seed}), expected each once")
     for other in others:
@@ -152,8 +170,8 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     return DataSet({**first.manifest, "on_policy": policy}, tuple(episodes), digest)
 
 
-def _drawn(manifest: Mapping[str, Any]) -> list[Any] | None:
-    """What decided which episodes a data set holds; None where no seed did."""
+def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
+    """The manifest entries that determine the episodes of a data set; None if they were not drawn from a seed."""
     if manifest.get("seed") is None:
         return None
     return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256")]
@@ -163,14 +181,14 @@ def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Ep
     column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
     failure = table["failure"].to_pylist()
     ticks = np.column_stack([column[name] for name in names])
-    asked = np.column_stack([column[f"asked_{name}"] for name in names])
+    requested = np.column_stack([column[f"asked_{name}"] for name in names])
     numbers = column["episode"]
-    work = column.get("work_j", np.full(len(numbers), np.nan))  # older data sets do not tell
+    work = column.get("work_j", np.full(len(numbers), np.nan))  # older data sets lack the column
     starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
     return [
         Episode(
             int(numbers[a]),
-            asked[a],
+            requested[a],
             ticks[a:b],
             float(column["duration_s"][a]),
             bool(column["success"][a]),

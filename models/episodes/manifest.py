@@ -1,4 +1,4 @@
-"""The manifest of a data set: a JSON file beside its parts that says whose episodes they are and how they were made."""
+"""Manifest of a data set: a JSON file beside its parts with robot, action, arguments and provenance."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ MANIFEST = "manifest.json"
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
-    """Write the manifest of a data set, whole or not at all."""
+    """Write the manifest of a data set atomically."""
     temporary = folder / f".{MANIFEST}.{os.getpid()}"
     temporary.write_text(json.dumps(manifest, indent=1) + "\n")
     temporary.replace(folder / MANIFEST)
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
-    """The manifest of a data set.
+    """Read the manifest of a data set.
 
     Raises:
-      UsageError: There is none, or it is not one.
+      UsageError: The file is missing, or is not a manifest.
     """
     try:
         manifest = json.loads((folder / MANIFEST).read_text())
     except OSError:
-        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` makes them)") from None
+        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` writes them)") from None
     except ValueError as error:
         raise UsageError(f"{folder / MANIFEST}: not a manifest ({error}), `tailor gather` writes them") from None
-    wrong = _manifest_error(manifest)
-    if wrong:
-        raise UsageError(f"{folder / MANIFEST}: not a manifest ({wrong}), `tailor gather` writes them")
+    problem = _manifest_error(manifest)
+    if problem:
+        raise UsageError(f"{folder / MANIFEST}: not a manifest ({problem}), `tailor gather` writes them")
     return dict(manifest)
 
 
 def _manifest_error(manifest: Any) -> str:
-    """What is wrong with it; empty if nothing that training needs."""
+    """First error in the entries that training needs; empty if there is none."""
     if not isinstance(manifest, dict):
         return f"a {type(manifest).__name__}, expected an object"
     for key in ("robot", "action"):

@@ -1,4 +1,4 @@
-"""What a regression model may predict of an action: its duration, or the energy that it takes; each with its unit."""
+"""Targets of regression models: the duration of an action, or its energy."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tailor.models.episodes.examples import Examples, duration_examples, energy_
 
 @dataclass(frozen=True, slots=True)
 class RegressionTarget:
-    """A quantity that an action takes in the whole, and of which less remains at every tick."""
+    """A quantity that an action consumes, of which less remains at every tick."""
 
-    kind: str  # of model
-    unit: str  # as field names end: "s"
-    examples: Callable[[Sequence[Episode], int], Examples]  # what remains at the first n_i ticks
+    kind: str  # kind of model, as in cards
+    unit: str  # suffix of field names: "s" or "j"
+    examples: Callable[[Sequence[Episode], int], Examples]  # remaining quantity at the first n_i ticks
     is_recorded: Callable[[Episode], bool]  # whether a finished episode holds the quantity
-    whole: Callable[[Episode], float]
+    whole: Callable[[Episode], float]  # quantity of the whole episode
 
 
 def _energy_j(episode: Episode) -> float:
@@ -26,4 +26,4 @@ def _energy_j(episode: Episode) -> float:
 
 DURATION = RegressionTarget("duration", "s", duration_examples, lambda _: True, lambda episode: episode.duration_s)
 ENERGY = RegressionTarget("energy", "j", energy_examples, lambda episode: episode.work_j is not None, _energy_j)
-REGRESSION_TARGETS = {amount.kind: amount for amount in (DURATION, ENERGY)}
+REGRESSION_TARGETS = {target.kind: target for target in (DURATION, ENERGY)}

@@ -10,7 +10,7 @@ import onnx
 from tailor.models.export.onnx_features import add_features, as_columns
 from tailor.models.export.onnx_graph import Graph
 from tailor.models.export.onnx_trees import add_bag, add_probability, add_tree
-from tailor.models.failure.failure_tree import FailureModel
+from tailor.models.failure.failure_model import FailureTrees
 from tailor.models.features.features import FeatureSpace
 from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
@@ -28,17 +28,17 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
     features = add_features(graph, space, "arguments")
     match learner:
         case BaggedModelTrees():
-            mean, spread = add_bag(graph, features, learner.trees_)
+            mean, std = add_bag(graph, features, learner.trees_)
         case ModelTreeRegressor():
-            mean, spread = add_tree(graph, features, learner.tree_)
+            mean, std = add_tree(graph, features, learner.tree_)
         case SklearnRegressor():
             from tailor.models.export.onnx_sklearn import add_regressor
 
             columns = as_columns(graph, features)
-            mean, spread = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.spread_)
+            mean, std = add_regressor(graph, columns, learner.inner_, learner.low_, learner.high_, learner.std_)
         case _:
             raise TypeError(f"no export for {type(learner).__name__}")
-    return graph.model(len(space.arguments), {f"mean_{unit}": mean, f"std_{unit}": spread}, notes)
+    return graph.model(len(space.arguments), {f"mean_{unit}": mean, f"std_{unit}": std}, notes)
 
 
 def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
@@ -50,7 +50,7 @@ def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) 
     graph = Graph()
     features = as_columns(graph, add_features(graph, space, "arguments"))
     match learner:
-        case FailureModel():
+        case FailureTrees():
             success = add_probability(graph, features, learner.steps_)
         case SklearnClassifier():
             from tailor.models.export.onnx_sklearn import add_classifier

@@ -1,35 +1,35 @@
-"""A forest taught by boosted trees: as sure as they are where failures are rare, and bounded leaf by leaf."""
+"""Random forest distilled from gradient boosting, for rare failures."""
 
 from __future__ import annotations
-
-from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingClassifier
 from sklearn.tree import DecisionTreeRegressor
 
-from tailor.models.episodes.episode_groups import resampled
-from tailor.models.failure.failure_tree import FailureModel
-from tailor.models.trees.sklearn_trees import means_of, splits_of
+from tailor.models.episodes.episode_groups import bootstrap_weights
+from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
+from tailor.models.trees.sklearn_trees import Step, means_of, splits_of
 
 Array = NDArray[np.float64]
 
-FEATURE_SHARE = 0.7  # of the features, as many are looked at for each split
+FEATURE_SHARE = 0.7  # of the features, considered for each split
+MIN_ROWS = 5  # in a leaf
 TEACHER = {"learning_rate": 0.05, "max_leaf_nodes": 16, "min_samples_leaf": 20, "early_stopping": False}
 
 
-class DistilledForest(FailureModel):
-    """Regression trees over resampled episodes that learn what boosted trees (Friedman 2001) say of each row.
+class DistilledForest(FailureTrees):
+    """Regression trees over resampled episodes, fitted to the probabilities of boosted trees (Friedman 2001).
 
-    An optimiser asks where hardly anything fails, and there a forest of outcomes, with both kinds in each leaf, can
-    hardly tell 1 % from 10 %; boosting can. But its sum of logits has no bounds leaf by leaf, as a mean of trees has.
+    An optimiser evaluates the model where failures are rare. There a forest fitted to outcomes, with both classes in
+    each leaf, hardly separates 1 % from 10 %; boosting does. But boosting's sum of logits has no bounds leaf by leaf,
+    which a mean of trees has.
 
     Args:
-      trees: How many.
-      leaves: Of each, at most.
+      trees: Number of trees.
+      leaves: Maximum number of leaves per tree.
       cost_ratio: Cost of a missed failure over that of a false alarm; moves the threshold, not the probabilities.
-      rounds: Boosted trees of the teacher.
+      rounds: Number of boosted trees of the teacher.
       random_state: Seed or generator that draws episodes and features.
     """
 
@@ -47,27 +47,25 @@ class DistilledForest(FailureModel):
         self.rounds = rounds
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
-        """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
-        features, success, episodes = self._checked(X, y, groups)
+    def _fitted(self, features: Floats, success: Ints, episodes: Ints) -> list[Step]:
         rng = np.random.default_rng(self.random_state or 0)
-        said = self._taught(features, success, rng)
-        least = min(5, max(1, len(said) // 20))
-        self.steps_ = []
+        targets = self._teacher_probabilities(features, success, rng)
+        min_rows = min(MIN_ROWS, max(1, len(targets) // 20))
+        steps: list[Step] = []
         for _ in range(self.trees):
-            weights = resampled(episodes, rng)
+            weights = bootstrap_weights(episodes, rng)
             drawn = np.flatnonzero(weights)
             tree = DecisionTreeRegressor(
                 max_leaf_nodes=self.leaves,
-                min_samples_leaf=least,
+                min_samples_leaf=min_rows,
                 max_features=FEATURE_SHARE,
                 random_state=int(rng.integers(2**31)),
-            ).fit(features[drawn], said[drawn], weights[drawn])
-            self.steps_.append((splits_of(tree), means_of(tree)))
-        return self
+            ).fit(features[drawn], targets[drawn], weights[drawn])
+            steps.append((splits_of(tree), means_of(tree)))
+        return steps
 
-    def _taught(self, features: NDArray[np.float32], success: Any, rng: np.random.Generator) -> Array:
-        """The probability of success of each row, shape (n,), as the teacher sees it."""
+    def _teacher_probabilities(self, features: Floats, success: Ints, rng: np.random.Generator) -> Array:
+        """Probability of success of each row by the boosted trees, shape (n,)."""
         if len(self.classes_) < 2:
             return np.ones(len(success))
         teacher = HistGradientBoostingClassifier(

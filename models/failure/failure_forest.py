@@ -1,25 +1,23 @@
-"""The failure forest: decision trees over resampled episodes; surer than one tree, as quick to run."""
+"""Random forest of decision trees over resampled episodes."""
 
 from __future__ import annotations
-
-from typing import Any, Self
 
 import numpy as np
 from sklearn.tree import DecisionTreeClassifier
 
-from tailor.models.episodes.episode_groups import resampled
-from tailor.models.failure.failure_tree import FailureModel
-from tailor.models.trees.sklearn_trees import shares_of, splits_of
+from tailor.models.episodes.episode_groups import bootstrap_weights
+from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
+from tailor.models.trees.sklearn_trees import Step, shares_of, splits_of
 
 
-class FailureForest(FailureModel):
-    """Decision trees over resampled episodes and random features (Breiman's forest); the mean share predicts.
+class FailureForest(FailureTrees):
+    """Decision trees over resampled episodes and random features (Breiman 2001); the mean share predicts.
 
     Args:
-      trees: How many.
+      trees: Number of trees.
       cost_ratio: Cost of a missed failure over that of a false alarm; moves the threshold, not the probabilities.
-      min_rows: Rows in a leaf at least.
-      feature_share: Of the features, as many are looked at for each split; fewer make the trees differ more.
+      min_rows: Minimum number of rows in a leaf.
+      feature_share: Share of the features considered for each split, 0..1; fewer decorrelate the trees.
       random_state: Seed or generator that draws episodes and features.
     """
 
@@ -37,17 +35,15 @@ class FailureForest(FailureModel):
         self.feature_share = feature_share
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
-        """Fit to features (n, f) and outcomes (n,), two classes; `groups` (n,) says which rows are one episode."""
-        features, success, episodes = self._checked(X, y, groups)
+    def _fitted(self, features: Floats, success: Ints, episodes: Ints) -> list[Step]:
         rng = np.random.default_rng(self.random_state or 0)
-        least = min(self.min_rows, max(1, len(success) // 20))
-        self.steps_ = []
+        min_rows = min(self.min_rows, max(1, len(success) // 20))
+        steps: list[Step] = []
         for _ in range(self.trees):
-            weights = resampled(episodes, rng)
+            weights = bootstrap_weights(episodes, rng)
             drawn = np.flatnonzero(weights)
             tree = DecisionTreeClassifier(
-                min_samples_leaf=least, max_features=self.feature_share, random_state=int(rng.integers(2**31))
+                min_samples_leaf=min_rows, max_features=self.feature_share, random_state=int(rng.integers(2**31))
             ).fit(features[drawn], success[drawn], weights[drawn])
-            self.steps_.append((splits_of(tree), shares_of(tree)))
-        return self
+            steps.append((splits_of(tree), shares_of(tree)))
+        return steps

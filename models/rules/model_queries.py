@@ -9,7 +9,7 @@ from sklearn.tree import DecisionTreeRegressor
 from tailor.models.cards.card import Card
 from tailor.models.features.features import SPACES, FeatureSpace
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
-from tailor.models.trees.distillation import distil
+from tailor.models.trees.distillation import distill
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.sklearn_trees import means_of, splits_of
 from tailor.models.trees.split_tree import SplitTree
@@ -33,7 +33,7 @@ def distilled_duration(model: OnnxDuration, rng: np.random.Generator) -> tuple[L
     """A tree of at most 64 leaves that says what the model says, and by how many seconds it differs elsewhere."""
     space = space_of(model.card)
     arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
-    tree = distil(lambda _: model.predict(arguments), space(arguments))
+    tree = distill(lambda _: model.predict(arguments), space(arguments))
     return tree, float(np.nanmean(np.abs(tree.predict(space(fresh)) - model.predict(fresh)[0])))
 
 

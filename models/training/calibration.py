@@ -1,6 +1,6 @@
-"""Prediction intervals that hold what they promise where they are used: at the optimiser's choices, if those are known.
+"""Calibration of prediction intervals where they are used: on the optimiser's choices, if enough are available.
 
-An interval calibrated on random episodes covers less there (learning.md): the optimiser goes where a model errs.
+An interval calibrated on random episodes covers less there (learning.md): the optimiser prefers where a model errs.
 """
 
 from __future__ import annotations
@@ -15,30 +15,31 @@ from tailor.models.training import scores
 Array = NDArray[np.float64]
 
 LEVEL = 0.9
-MIN_POLICY_EPISODES = 30  # on-policy test episodes: fewer say little about a tenth of them
+MIN_POLICY_EPISODES = 30  # on-policy test episodes: fewer do not determine a tenth of them
 
 
-def calibrated(errors: Array, spread: Array, on_policy: NDArray[np.bool_]) -> dict[str, Any]:
-    """What a card says of the interval `mean ± factor · spread` that holds 90 % of the errors.
+def calibrated(errors: Array, std: Array, on_policy: NDArray[np.bool_]) -> dict[str, Any]:
+    """Card entries of the interval `mean ± factor · std` that covers 90 % of the errors.
 
     Args:
-      errors, spread: Of test episodes that the model has not seen, shapes (n,).
-      on_policy: Which of them the optimiser chose, shape (n,); with enough of these they set the factor.
+      errors: Observed minus predicted values of held-out episodes, shape (n,).
+      std: Their predicted standard deviations, shape (n,).
+      on_policy: Whether the optimiser chose the episode, shape (n,); if enough are, they alone set the factor.
 
     Returns:
       `interval90_factor`, `interval90_on` ("on-policy" or "random") and, with both kinds of episodes, the random ones'
-      factor and the share of on-policy errors that it would hold.
+      factor and the share of on-policy errors that it would cover.
     """
     random = ~on_policy
     enough = int(on_policy.sum()) >= MIN_POLICY_EPISODES
     used = on_policy if enough else random if random.any() else on_policy
-    said: dict[str, Any] = {
-        "interval90_factor": scores.interval_factor(errors[used], spread[used], LEVEL),
+    entries: dict[str, Any] = {
+        "interval90_factor": scores.interval_factor(errors[used], std[used], LEVEL),
         "interval90_on": "on-policy" if used is on_policy else "random",
         "interval90_n": int(used.sum()),
     }
     if enough and random.any():
-        factor = scores.interval_factor(errors[random], spread[random], LEVEL)
-        said["interval90_random_factor"] = factor
-        said["interval90_random_covers_pct"] = scores.coverage(errors[on_policy], spread[on_policy], factor)
-    return said
+        factor = scores.interval_factor(errors[random], std[random], LEVEL)
+        entries["interval90_random_factor"] = factor
+        entries["interval90_random_covers_pct"] = scores.coverage(errors[on_policy], std[on_policy], factor)
+    return entries

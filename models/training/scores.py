@@ -1,4 +1,4 @@
-"""How good a model is: errors with confidence intervals over episodes, confusion matrices, calibration."""
+"""Scores of models: errors with confidence intervals over episodes, confusion matrices, calibration."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 BOOTSTRAPS = 2000
-MIN_STD = 1e-3  # no model is surer than that
+MIN_STD = 1e-3  # s, floor of predicted standard deviations
 
 
 def mean_with_ci(values: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
-    """Mean of one value per episode, and its bootstrapped 95 % interval."""
+    """Mean of one value per episode, shape (n,), and its bootstrapped 95 % interval."""
     draws = rng.integers(0, len(values), (BOOTSTRAPS, len(values)))
     low, high = np.quantile(values[draws].mean(axis=1), [0.025, 0.975])
     return float(values.mean()), (float(low), float(high))
@@ -21,7 +21,7 @@ def mean_with_ci(values: Array, rng: np.random.Generator) -> tuple[float, tuple[
 
 @dataclass(frozen=True, slots=True)
 class Confusion:
-    """Table 2: shares of episodes in percent, predicted against observed; and how many episodes."""
+    """Table 2: shares of episodes in percent, predicted against observed, and the number of episodes."""
 
     fail_fail: float  # predicted fail, observed fail
     fail_success: float  # false alarm
@@ -31,32 +31,39 @@ class Confusion:
 
     @property
     def accuracy(self) -> float:
-        """Percent predicted right."""
+        """Percent predicted correctly."""
         return self.fail_fail + self.success_success
 
 
 def confusion(predicted: NDArray[np.bool_], observed: NDArray[np.bool_]) -> Confusion:
-    """Confusion matrix of successes predicted and observed, shapes (n,)."""
-    cells = [float(100 * np.mean((predicted == p) & (observed == o))) for p in (False, True) for o in (False, True)]
-    return Confusion(*cells, n=len(observed))
+    """Confusion matrix of predicted and observed successes, shapes (n,)."""
+    a, b, c, d = (
+        float(100 * np.mean((predicted == p) & (observed == o))) for p in (False, True) for o in (False, True)
+    )
+    return Confusion(a, b, c, d, len(observed))
 
 
-def interval_factor(errors: Array, spread: Array, level: float = 0.9) -> float:
-    """Factor on the spread that makes `mean ± factor · spread` hold a share `level` of the errors.
+def interval_factor(errors: Array, std: Array, level: float = 0.9) -> float:
+    """Factor for which `mean ± factor · std` covers a share `level` of the errors.
 
-    Of fresh ones, too: the rank is that of split conformal prediction, ceil((n + 1) level), at most n.
+    The rank is that of split conformal prediction, ceil((n + 1) level), at most n, so that it covers fresh errors, too.
+
+    Args:
+      errors: Observed minus predicted, shape (n,).
+      std: Predicted standard deviations, shape (n,).
+      level: Share to cover, 0..1.
     """
-    ratios = np.sort(np.abs(errors) / np.maximum(spread, MIN_STD))
+    ratios = np.sort(np.abs(errors) / np.maximum(std, MIN_STD))
     return float(ratios[min(len(ratios), int(np.ceil((len(ratios) + 1) * level))) - 1])
 
 
-def coverage(errors: Array, spread: Array, factor: float) -> float:
-    """Percent of the errors that `mean ± factor · spread` holds."""
-    return float(100 * np.mean(np.abs(errors) <= factor * np.maximum(spread, MIN_STD)))
+def coverage(errors: Array, std: Array, factor: float) -> float:
+    """Percent of the errors that `mean ± factor · std` covers."""
+    return float(100 * np.mean(np.abs(errors) <= factor * np.maximum(std, MIN_STD)))
 
 
 def reliability(probability: Array, success: NDArray[np.bool_], bins: int = 10) -> list[tuple[float, float, int]]:
-    """Mean predicted probability, observed share and count, by bins of the prediction; empty bins left out."""
+    """Mean predicted probability, observed share and count, by bins of the prediction; empty bins are left out."""
     place = np.minimum((probability * bins).astype(int), bins - 1)
     return [
         (float(probability[place == k].mean()), float(success[place == k].mean()), int((place == k).sum()))

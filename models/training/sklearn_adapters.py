@@ -1,4 +1,4 @@
-"""Learners of scikit-learn behind our interface: boosting, networks, support vectors (paper 8)."""
+"""Adapters that give scikit-learn's estimators our interface: boosting, networks, support vectors (paper 8)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import BaseEstimator, ClassifierMixin, RegressorMixin, clone
+from sklearn.base import clone
+
+from tailor.models.failure.failure_model import FailureModel
+from tailor.models.trees.regression_model import RegressionModel
 
 Array = NDArray[np.float64]
 
 
-class SklearnRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
-    """Any regressor as a duration model; its spread is the deviation of its training errors, everywhere alike.
+class SklearnRegressor(RegressionModel):
+    """Any regressor as a duration model; its standard deviation is that of its training errors, the same everywhere.
 
     Args:
       inner: The regressor.
@@ -22,22 +25,22 @@ class SklearnRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.inner = inner
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
-        """Fit to features (n, f) and seconds (n,); episodes play no part."""
+        """Fit to features (n, f) and seconds (n,); groups are ignored."""
         self.inner_ = clone(self.inner).fit(X, y)
         self.low_, self.high_ = float(np.min(y)), float(np.max(y))
-        self.spread_ = float(np.std(self.predict(X) - y))
+        self.std_ = float(np.std(self.predict(X) - y))
         return self
 
     def predict(self, X: Any) -> Array:
-        """Seconds, shape (n,), within what training saw."""
-        return np.clip(self.inner_.predict(X), self.low_, self.high_)
+        """Seconds, shape (n,), clipped to the range of the training targets."""
+        return np.asarray(np.clip(self.inner_.predict(X), self.low_, self.high_))
 
     def predict_with_std(self, X: Any) -> tuple[Array, Array]:
-        """Seconds and the constant spread, shapes (n,)."""
-        return self.predict(X), np.full(len(X), self.spread_)
+        """Seconds and the constant standard deviation, shapes (n,)."""
+        return self.predict(X), np.full(len(X), self.std_)
 
 
-class SklearnClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+class SklearnClassifier(FailureModel):
     """Any probabilistic classifier of two classes as a failure model.
 
     Args:
@@ -50,7 +53,7 @@ class SklearnClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.cost_ratio = cost_ratio
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
-        """Fit to features (n, f) and outcomes (n,); episodes play no part."""
+        """Fit to features (n, f) and outcomes (n,); groups are ignored."""
         self.inner_ = clone(self.inner).fit(X, y)
         self.classes_ = self.inner_.classes_
         return self
@@ -58,12 +61,3 @@ class SklearnClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     def predict_proba(self, X: Any) -> Array:
         """Probabilities of failure and success, shape (n, 2)."""
         return np.asarray(self.inner_.predict_proba(X))
-
-    @property
-    def threshold_(self) -> float:
-        """Predict success only above this probability of it: where both mistakes cost the same."""
-        return self.cost_ratio / (1 + self.cost_ratio)
-
-    def predict(self, X: Any) -> NDArray[Any]:
-        """The class with the lower expected cost, shape (n,)."""
-        return self.classes_[(self.predict_proba(X)[:, 1] >= self.threshold_).astype(int)]

@@ -1,4 +1,7 @@
-"""Trains and tests action models: whole episodes apart, n_i by cross-validation, the final model on all episodes."""
+"""Trains action models and tests them on held-out episodes; the published model is fitted to all episodes.
+
+Episodes are never split between training and test. n_i, the number of first ticks, is chosen by cross-validation.
+"""
 
 from __future__ import annotations
 
@@ -19,16 +22,22 @@ from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
-TEST_SHARE = 0.25  # paper 5.1: three quarters for training
+TEST_SHARE = 0.25  # of the episodes (paper 5.1)
 FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
 FOLDS = 4
-CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes
-MIN_EPISODES = 40  # episodes: fewer cannot be split four ways
+CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes in the learning curve
+MIN_EPISODES = 40  # fewer cannot be split four ways
 
 
 @dataclass(frozen=True, slots=True)
 class Trained:
-    """A learner fitted to all episodes, and what its twin, fitted to three quarters, reached on the rest."""
+    """A trained model.
+
+    Attributes:
+      learner: The estimator, fitted to all episodes.
+      n_i: Number of first ticks of each episode that it was fitted to.
+      test: Scores of the same learner fitted to three quarters of the episodes, on the others; as in a card.
+    """
 
     learner: Any
     n_i: int
@@ -36,64 +45,77 @@ class Trained:
 
 
 def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
-    """Learn how long an action takes; see `train_regression`."""
+    """Train a model of durations, in seconds; see `train_regression`."""
     return train_regression(DURATION, episodes, space, learner, seed)
 
 
 def train_regression(
-    amount: RegressionTarget, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
+    target: RegressionTarget, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
 ) -> Trained:
-    """Learn how long an action takes, or how much energy.
+    """Train a model of durations or energies on the finished episodes.
+
+    Args:
+      target: `DURATION` or `ENERGY`.
+      episodes: Episodes of one action.
+      space: Feature space of the action's arguments.
+      learner: Key of `learners.DURATION_LEARNERS`.
+      seed: Random seed of splits and learner.
 
     Raises:
-      UsageError: Too few finished episodes that tell it, or an unknown learner.
+      UsageError: Fewer than MIN_EPISODES finished episodes hold the target, or the learner is unknown.
     """
-    finished = [episode for episode in episodes if episode.finished and amount.is_recorded(episode)]
+    finished = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
     _check_count(finished, "finished")
     rng = np.random.default_rng(seed)
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
-    n_i = _best_n_i(amount, finished, kept, space, rng)
-    rows = amount.examples(finished, n_i)
-    first = amount.examples(finished, 1).of(apart)
-    twin = fit(amount.kind, learner, rows.of(kept), space, seed)
-    mean, spread = twin.predict_with_std(space(first.arguments))
+    n_i = _best_n_i(target, finished, kept, space, rng)
+    rows = target.examples(finished, n_i)
+    first = target.examples(finished, 1).of(apart)
+    held_out = fit(target.kind, learner, rows.of(kept), space, seed)
+    mean, std = held_out.predict_with_std(space(first.arguments))
     errors = first.targets - mean
     mae, ci = scores.mean_with_ci(np.abs(errors), rng)
-    chosen = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
-    unit = amount.unit
+    on_policy = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
+    unit = target.unit
     test = {
         "n": len(apart),
         "training_episodes": len(kept),
-        f"mean_{amount.kind}_{unit}": float(np.mean([amount.whole(episode) for episode in finished])),
+        f"mean_{target.kind}_{unit}": float(np.mean([target.whole(episode) for episode in finished])),
         f"mae_{unit}": mae,
         "mae_ci95": list(ci),
-        f"mae_first_ticks_{unit}": _mae(twin, rows.of(apart), space),
+        f"mae_first_ticks_{unit}": _mae(held_out, rows.of(apart), space),
         f"bias_{unit}": float(-errors.mean()),
-        **calibrated(errors, spread, chosen),
-        "learning_curve": _curve(amount.kind, learner, rows, first, kept, space, rng, seed),
+        **calibrated(errors, std, on_policy),
+        "learning_curve": _curve(target.kind, learner, rows, first, kept, space, rng, seed),
     }
-    return Trained(fit(amount.kind, learner, rows, space, seed), n_i, test)
+    return Trained(fit(target.kind, learner, rows, space, seed), n_i, test)
 
 
 def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
-    """Learn whether an action succeeds, from the first tick of each episode.
+    """Train a model of success on the first tick of each episode.
+
+    Args:
+      episodes: Episodes of one action; those with failure `UNOBSERVED` are left out.
+      space: Feature space of the action's arguments.
+      learner: Key of `learners.SUCCESS_LEARNERS`.
+      seed: Random seed of splits and learner.
 
     Raises:
-      UsageError: Too few episodes, only one outcome, or an unknown learner.
+      UsageError: Fewer than MIN_EPISODES episodes, only one outcome, or an unknown learner.
     """
     episodes = [episode for episode in episodes if episode.failure != UNOBSERVED]
     _check_count(episodes, "")
     if len({episode.success for episode in episodes}) < 2:
-        raise UsageError("all episodes ended alike, expected some successes and some failures")
+        raise UsageError("all episodes have the same outcome, expected some successes and some failures")
     rng = np.random.default_rng(seed)
     rows = success_examples(episodes, 1)
     kept, apart = split(rows.groups, TEST_SHARE, rng)
     fresh = rows.of(apart)
-    twin = fit("success", learner, rows.of(kept), space, seed)
+    held_out = fit("success", learner, rows.of(kept), space, seed)
     features = space(fresh.arguments)
-    observed, probability = fresh.targets > 0.5, twin.predict_proba(features)[:, 1]
-    table = scores.confusion(probability >= twin.threshold_, observed)
+    observed, probability = fresh.targets > 0.5, held_out.predict_proba(features)[:, 1]
+    table = scores.confusion(probability >= held_out.threshold_, observed)
     test = {
         "n": table.n,
         "training_episodes": len(kept),
@@ -108,7 +130,18 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
 
 
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
-    """A learner of that name, fitted to examples in a feature space."""
+    """Fit a learner to examples.
+
+    Args:
+      kind: "duration", "energy" or "success".
+      name: Name of the learner, see `learners.make_learner`.
+      rows: Examples.
+      space: Feature space of their arguments.
+      seed: Random seed.
+
+    Returns:
+      The fitted estimator.
+    """
     learner = learners.make_learner(kind, name, seed)
     targets = rows.targets if kind != "success" else rows.targets.astype(np.int64)
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
@@ -120,18 +153,18 @@ def _check_count(episodes: Sequence[Episode], what: str) -> None:
 
 
 def _best_n_i(
-    amount: RegressionTarget,
+    target: RegressionTarget,
     episodes: Sequence[Episode],
     kept: NDArray[np.int64],
     space: FeatureSpace,
     rng: np.random.Generator,
 ) -> int:
-    """How many first ticks predict the whole duration of unseen episodes best, by single trees."""
-    first = amount.examples(episodes, 1)
+    """Number of first ticks with the lowest error on the whole duration of held-out episodes, by single trees."""
+    first = target.examples(episodes, 1)
     parts = folds(kept, FOLDS, rng)
     error = []
     for n_i in FIRST_TICKS:
-        rows = amount.examples(episodes, n_i)
+        rows = target.examples(episodes, n_i)
         trees = [fit("duration", "linear", rows.of(np.setdiff1d(kept, part)), space, 0) for part in parts]
         error.append(np.mean([_mae(tree, first.of(part), space) for tree, part in zip(trees, parts, strict=True)]))
     return FIRST_TICKS[int(np.argmin(error))]
@@ -151,7 +184,7 @@ def _curve(
     rng: np.random.Generator,
     seed: int,
 ) -> list[list[float]]:
-    """MAE on the test episodes against the number of training episodes (paper 5.1: to see where it flattens)."""
+    """MAE on the test episodes against the number of training episodes (paper 5.1)."""
     order, curve = rng.permutation(kept), []
     for share in CURVE:
         some = order[: round(share * len(order))]

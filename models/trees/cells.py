@@ -1,6 +1,6 @@
-"""Trees as tables of cells: the thresholds of each feature cut space into a grid, and each cell lies in one leaf.
+"""Trees as tables of cells: the thresholds of each feature divide space into a grid, and each cell lies in one leaf.
 
-To find a cell takes comparisons and sums alone, no branches that a processor guesses wrong: matrix products do it.
+Finding a cell takes only comparisons and sums, as matrix products, and no branches that a processor mispredicts.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tailor.models.trees.split_tree import SplitTree
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
-CELLS_MAX = 1 << 20  # of all trees: 2 MB of table, which still lies in a processor's cache
-LEAVES_MAX = 1 << 16  # a table's numbers take two bytes
+MAX_CELLS = 1 << 20  # of all trees: a table of 2 MB, which fits into a processor's cache
+MAX_LEAVES = 1 << 16  # a table's numbers take two bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +35,11 @@ class Cells:
 
 
 def cells_of(trees: Sequence[SplitTree], features: int) -> Cells | None:
-    """The cells of trees over so many features; None if there are too many to be worth it, or nothing but roots."""
+    """Cells of trees over `features` features; None if there are more than MAX_CELLS, or no tree has a split."""
     own = [_thresholds(tree, features) for tree in trees]
     sizes = [int(np.prod([len(some) + 1 for some in each])) for each in own]
     leaves = [tree.leaves for tree in trees]
-    if max(leaves) == 1 or max(leaves) > LEAVES_MAX or sum(sizes) > CELLS_MAX:
+    if max(leaves) == 1 or max(leaves) > MAX_LEAVES or sum(sizes) > MAX_CELLS:
         return None
     union = [np.unique(np.concatenate([each[f] for each in own])) for f in range(features)]
     strides = np.stack([_strides(each, union) for each in own], axis=1)
@@ -59,7 +59,7 @@ def _thresholds(tree: SplitTree, features: int) -> list[Floats]:
 
 
 def _strides(own: Sequence[Floats], union: Sequence[Floats]) -> Floats:
-    """What each threshold of the union adds to a cell's number in one tree, (u,): the last feature counts by ones."""
+    """Increment of the cell number by each threshold of the union in one tree, (u,); the last feature has stride 1."""
     steps = np.cumprod([1, *(len(some) + 1 for some in own[:0:-1])])[::-1]
     parts = [np.where(np.isin(every, some), step, 0) for every, some, step in zip(union, own, steps, strict=True)]
     return np.concatenate(parts).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Distils what a model says into one model tree that prints as rules and costs a tenth of a bag."""
+"""Distils the predictions of a model into one model tree, which prints as rules and costs a tenth of a bag."""
 
 from __future__ import annotations
 
@@ -13,33 +13,42 @@ from tailor.models.trees.linear_variant import TreeSettings, fit_linear
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 
 Floats = NDArray[np.float32]
-Answers = tuple[NDArray[Any], NDArray[Any]]  # mean and spread, (n,) each
+Predictions = tuple[NDArray[Any], NDArray[Any]]  # mean and standard deviation, (n,) each
 
-ROWS = 30_000  # asked of the teacher, at most
-ROWS_EACH = 30  # for each row of the examples
+MAX_ROWS = 30_000  # of interpolated features
+ROWS_PER_EXAMPLE = 30  # of interpolated features
 SETTINGS = TreeSettings(max_leaves=64, min_rows=60, smoothing=0.0)
 
 
-def between(features: Floats, count: int, rng: np.random.Generator) -> Floats:
-    """Rows on the lines between random pairs of rows: everywhere that the examples surround, shape (count, f)."""
+def interpolated_rows(features: Floats, count: int, rng: np.random.Generator) -> Floats:
+    """Points on the lines between random pairs of rows (n, f), shape (count, f)."""
     a, b = features[rng.integers(0, len(features), (2, count))]
     share = rng.uniform(0, 1, (count, 1)).astype(np.float32)
-    return a + share * (b - a)
+    rows: Floats = a + share * (b - a)
+    return rows
 
 
-def distil(teacher: Callable[[Floats], Answers], features: Floats) -> LinearTree:
-    """A tree fitted to what the teacher says of features (n, f); a leaf's spread is the mean of the teacher's there."""
-    mean, spread = teacher(features)
-    nothing = np.zeros(len(mean), bool)
-    tree = fit_linear(features, mean.astype(np.float64), np.ones(len(mean)), nothing, SETTINGS)
+def distill(teacher: Callable[[Floats], Predictions], features: Floats) -> LinearTree:
+    """Fit a tree to a teacher's predictions.
+
+    Args:
+      teacher: Mean and standard deviation, shapes (n,), of features (n, f).
+      features: Rows to fit to, shape (n, f).
+
+    Returns:
+      A tree of at most 64 leaves; a leaf's standard deviation is the teacher's mean standard deviation there.
+    """
+    mean, std = teacher(features)
+    none = np.zeros(len(mean), bool)
+    tree = fit_linear(features, mean.astype(np.float64), np.ones(len(mean)), none, SETTINGS)
     leaf = tree.splits.leaf_of(features)
     rows = np.bincount(leaf, minlength=tree.leaves)
-    uncertain = np.bincount(leaf, spread, tree.leaves) / np.maximum(rows, 1)
-    return tree.with_std(uncertain.astype(np.float32))
+    mean_std = np.bincount(leaf, std, tree.leaves) / np.maximum(rows, 1)
+    return tree.with_std(mean_std.astype(np.float32))
 
 
 class DistilledModelTree(ModelTreeRegressor):
-    """One tree of 64 leaves that says what a bag says; its settings are the bag's."""
+    """One tree of at most 64 leaves that is fitted to a bag's predictions; the settings are the bag's."""
 
     def __init__(
         self,
@@ -60,6 +69,7 @@ class DistilledModelTree(ModelTreeRegressor):
         features, _, _ = self._checked(X, y, groups)
         settings = (self.max_leaves, self.min_rows, self.smoothing, self.ridge, self.bins, self.clip)
         bag = BaggedModelTrees(self.trees, *settings, self.random_state).fit(X, y, groups)
-        asked = between(features, min(ROWS, ROWS_EACH * len(features)), np.random.default_rng(self.random_state or 0))
-        self.tree_ = distil(bag.predict_with_std, np.concatenate([features, asked]))
+        count = min(MAX_ROWS, ROWS_PER_EXAMPLE * len(features))
+        rows = interpolated_rows(features, count, np.random.default_rng(self.random_state or 0))
+        self.tree_ = distill(bag.predict_with_std, np.concatenate([features, rows]))
         return self

@@ -1,6 +1,6 @@
-"""The fitted form of a model tree: splits, and for each leaf a linear formula, a clip range and a spread.
+"""The fitted form of a model tree: splits, and for each leaf a linear formula, a clip range and a standard deviation.
 
-Everything is single precision: what the ONNX runtime computes is what is computed here.
+All arrays are single precision, as in the ONNX runtime, so that both compute the same numbers.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tailor.models.trees.split_tree import Floats, Ints, SplitRow, SplitTree
 
-LeafRow = tuple[NDArray[np.float64], float, float, float, float, int]  # slopes, intercept, low, high, spread, rows
+LeafRow = tuple[NDArray[np.float64], float, float, float, float, int]  # slopes, intercept, low, high, std, rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,21 +23,23 @@ class LinearTree:
     splits: SplitTree
     slopes: Floats  # (l, f), seconds per unit of each feature
     intercept: Floats  # (l,) seconds
-    low: Floats  # (l,) seconds: nothing shorter was seen in this leaf
-    high: Floats  # (l,) seconds
-    std: Floats  # (l,) seconds: standard deviation of what was seen around the formula
-    rows: Ints  # (l,) examples that the leaf was fitted to
+    low: Floats  # (l,) seconds: shortest training target in the leaf
+    high: Floats  # (l,) seconds: longest training target in the leaf
+    std: Floats  # (l,) seconds: standard deviation of the training targets around the formula
+    rows: Ints  # (l,) number of examples that the leaf was fitted to
 
     @classmethod
     def of(cls, nodes: Sequence[SplitRow], leaves: Sequence[LeafRow]) -> LinearTree:
         """A tree of node rows and leaf rows."""
-        slopes, *rest, rows = zip(*leaves, strict=True)
-        numbers = (np.asarray(column, np.float32) for column in rest)
-        return cls(SplitTree.of(nodes), np.asarray(slopes, np.float32), *numbers, np.asarray(rows))
+        slopes, intercept, low, high, std = (
+            np.asarray([leaf[k] for leaf in leaves], np.float32) for k in range(len(leaves[0]) - 1)
+        )
+        rows = np.asarray([leaf[-1] for leaf in leaves])
+        return cls(SplitTree.of(nodes), slopes, intercept, low, high, std, rows)
 
-    def with_std(self, spread: Floats) -> LinearTree:
-        """The same tree with other spreads, (l,)."""
-        return replace(self, std=spread)
+    def with_std(self, std: Floats) -> LinearTree:
+        """The same tree with other standard deviations, shape (l,)."""
+        return replace(self, std=std)
 
     @property
     def leaves(self) -> int:
@@ -48,4 +50,5 @@ class LinearTree:
         """Seconds, shape (n,), for features of shape (n, f) in single precision."""
         leaf = self.splits.leaf_of(features)
         total = (features * self.slopes[leaf]).sum(axis=1) + self.intercept[leaf]
-        return np.clip(total, self.low[leaf], self.high[leaf])
+        seconds: Floats = np.clip(total, self.low[leaf], self.high[leaf])
+        return seconds

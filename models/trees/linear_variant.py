@@ -1,4 +1,4 @@
-"""The `linear` flavour of the model tree: grown by linear fits, sized on held-out episodes, smoothed, clipped."""
+"""The `linear` variant of the model tree: grown by linear fits, sized on held-out episodes, smoothed, clipped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.robust_fit import refit
 from tailor.models.trees.scaling import Scale
-from tailor.models.trees.tree_conversion import Source, write_down
+from tailor.models.trees.tree_conversion import Source, to_linear_tree
 from tailor.models.trees.tree_induction import Examples, Growth, Node, grow, quantile_bins
 
 Array = NDArray[np.float64]
@@ -18,14 +18,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class TreeSettings:
-    """What the two flavours of model trees can be told."""
+    """Settings of both variants of model trees."""
 
     max_leaves: int = 64
     min_rows: float = 40.0  # weighted rows on each side of a split
     smoothing: float = 0.0  # rows that an ancestor's formula counts for (M5's k)
     ridge: float = 1e-4  # on standardised features
     bins: int = 128  # candidate thresholds per feature
-    clip: bool = True  # keep each leaf within what was seen in it
+    clip: bool = True  # clip each leaf to the range of its training targets
     huber: float = 0.0  # leaves fitted robustly, see robust_fit.refit; 0: by least squares
 
 
@@ -40,6 +40,9 @@ def fit_linear(
       weights: How often each row counts, shape (n,).
       held_out: Rows that choose the size, shape (n,); without any, the tree grows to `max_leaves`.
       settings: See `TreeSettings`.
+
+    Returns:
+      The tree, in the units of features and targets.
     """
     scale = Scale.of(features.astype(np.float64), targets)
     z = (features - scale.centre) / scale.width
@@ -50,16 +53,16 @@ def fit_linear(
     size = len(splits)
     if held_out.any():
         size = _best_size(root, splits, z[held_out], features[held_out], y[held_out])
-        if weights[held_out].any():  # those episodes are for fitting, too
+        if weights[held_out].any():  # the final fit uses the held-out episodes, too
             root, _ = grow(Examples.of(z, y, weights, bins, edges), replace(limits, max_leaves=size + 1))
     if settings.huber > 0:
         _refit_leaves(root, size, z, y, weights, settings)
     source = Source(features, targets, weights, scale)
-    return write_down(root, size, source, smoothing=settings.smoothing, clip=settings.clip)
+    return to_linear_tree(root, size, source, smoothing=settings.smoothing, clip=settings.clip)
 
 
 def _refit_leaves(node: Node, size: int, z: Array, y: Array, weights: Array, settings: TreeSettings) -> None:
-    """Fit the leaves of the first `size` splits anew, robustly."""
+    """Fit the leaves of the first `size` splits again, robustly."""
     if node.order is not None and node.order < size and node.children is not None:
         for child in node.children:
             _refit_leaves(child, size, z, y, weights, settings)

@@ -1,4 +1,4 @@
-"""The `m5` flavour of the model tree: M5' as Quinlan and Wang & Witten describe it, the paper's learner.
+"""The `m5` variant of the model tree: M5' of Quinlan (1992) and Wang & Witten (1997), the paper's learner.
 
 Splits by standard deviation reduction; formulas of the attributes tested below; attributes and subtrees dropped by the
 estimate error·(n + v)/(n - v); smoothing with k = 15.
@@ -37,7 +37,16 @@ class _Node:
 
 
 def fit_m5(features: NDArray[np.float32], targets: Array, clip: bool) -> LinearTree:
-    """Fit M5' to features (n, f) and seconds (n,); `clip` keeps each leaf within what was seen in it."""
+    """Fit M5' to examples.
+
+    Args:
+      features: Shape (n, f).
+      targets: Seconds, shape (n,).
+      clip: Clip each leaf to the range of its training targets.
+
+    Returns:
+      The tree, in the units of features and targets.
+    """
     scale = Scale.of(features.astype(np.float64), targets)
     z, y = (features - scale.centre) / scale.width, (targets - scale.y_centre) / scale.y_width
     root = _grow(features, z, y, np.arange(len(y)))
@@ -45,7 +54,7 @@ def fit_m5(features: NDArray[np.float32], targets: Array, clip: bool) -> LinearT
 
 
 def _grow(features: NDArray[np.float32], z: Array, y: Array, rows: Rows) -> _Node:
-    """Grow a subtree, then give it its formula and prune it if the formula alone is estimated to be better."""
+    """Grow a subtree and fit its formula; prune the subtree if the formula alone has the lower estimated error."""
     split = _best_split(features[rows], y[rows]) if len(rows) >= 2 * MIN_ROWS and y[rows].std() >= STOP_SHARE else None
     if split is None:
         solution, estimate = _formula(z, y, rows, frozenset())
@@ -62,7 +71,7 @@ def _grow(features: NDArray[np.float32], z: Array, y: Array, rows: Rows) -> _Nod
 
 
 def _best_split(x: NDArray[np.float32], y: Array) -> tuple[int, float] | None:
-    """The cut that lowers the standard deviation the most, if any does."""
+    """Feature and threshold with the largest reduction of the standard deviation, None if there is no reduction."""
     count, best, chosen = len(y), 1e-12, None
     order = np.argsort(x, axis=0, kind="stable")
     size = np.arange(1, count)
@@ -82,7 +91,7 @@ def _best_split(x: NDArray[np.float32], y: Array) -> tuple[int, float] | None:
 
 
 def _formula(z: Array, y: Array, rows: Rows, used: frozenset[int]) -> tuple[Array, float]:
-    """A linear formula of the used attributes, dropping greedily those whose absence lowers the estimated error."""
+    """A linear formula of the used attributes; those whose absence lowers the estimated error are dropped greedily."""
     kept, best = sorted(used), None
     while True:
         solution, estimate = _fit(z, y, rows, kept)
@@ -98,7 +107,7 @@ def _formula(z: Array, y: Array, rows: Rows, used: frozenset[int]) -> tuple[Arra
 
 
 def _fit(z: Array, y: Array, rows: Rows, kept: list[int]) -> tuple[Array, float]:
-    part = z[np.ix_(rows, kept)]
+    part = z[np.ix_(rows, np.array(kept, np.intp))]
     full = moments.unpack(moments.row_products(part, y[rows], np.ones(len(rows))).sum(axis=0), len(kept))
     solution = moments.fit(full, RIDGE)[0]
     error = float(np.abs(part @ solution[:-1] + solution[-1] - y[rows]).mean())
@@ -118,10 +127,10 @@ def _write_down(root: _Node, features: NDArray[np.float32], targets: Array, scal
         nodes.append((LEAF, 0.0, 0, 0, len(leaves)))
         if node.children is None:
             slopes, intercept = scale.raw(_smoothed(node, path))
-            seen = targets[node.rows]
-            low, high = (float(seen.min()), float(seen.max())) if clip else (-np.inf, np.inf)
-            spread = float((np.clip(features[node.rows] @ slopes + intercept, low, high) - seen).std())
-            leaves.append((slopes, intercept, low, high, spread, len(node.rows)))
+            observed = targets[node.rows]
+            low, high = (float(observed.min()), float(observed.max())) if clip else (-np.inf, np.inf)
+            std = float((np.clip(features[node.rows] @ slopes + intercept, low, high) - observed).std())
+            leaves.append((slopes, intercept, low, high, std, len(node.rows)))
         else:
             left, right = (visit(child, (*path, node)) for child in node.children)
             nodes[place] = (node.feature, node.threshold, left, right, -1)

@@ -1,7 +1,7 @@
 """Second moments of examples, and the linear fits that they determine.
 
-A set of rows is summed up by M = sum of w z zᵀ with z = (x_1 .. x_f, 1, y); sets add, so every split of a node is
-judged from running sums. Only the upper triangle is kept ("packed").
+A set of rows has the moments M = Σ w z zᵀ with z = (x_1 .. x_f, 1, y). Moments of disjoint sets add, so every split of
+a node is evaluated from running sums. Only the upper triangle is stored ("packed").
 """
 
 from __future__ import annotations
@@ -44,6 +44,6 @@ def fit(moments: Array, ridge: float) -> tuple[Array, Array]:
     penalty = np.zeros((size, size))
     np.fill_diagonal(penalty[:-1, :-1], ridge)
     penalty[-1, -1] = 1e-12
-    solution = np.linalg.solve(gram + penalty * count[..., None, None], cross[..., None])[..., 0]
-    error = squares - 2 * np.sum(cross * solution, -1) + np.einsum("...i,...ij,...j->...", solution, gram, solution)
-    return solution, np.maximum(error, 0.0)
+    solution = np.linalg.solve(gram + penalty * count[..., None, None], cross[..., None])[..., 0].astype(np.float64)
+    explained = np.einsum("...i,...ij,...j->...", solution, gram, solution)
+    return solution, np.maximum(squares - 2 * np.sum(cross * solution, -1) + explained, 0.0)

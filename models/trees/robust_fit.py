@@ -1,4 +1,4 @@
-"""Linear fits that a few wild targets do not bend: Huber's weights, found by fitting again."""
+"""Linear fits that are robust against outliers: Huber's weights by iteratively reweighted least squares."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-ROUNDS = 6  # fits; the weights hardly change after
+ROUNDS = 6  # of reweighting; the weights hardly change after
 MAD_SIGMA = 1.4826  # a normal's standard deviation over its median absolute deviation
 MIN_SCALE = 1e-3  # of standardised targets
 
 
 def refit(features: Array, targets: Array, weights: Array, start: Array, ridge: float, huber: float) -> Array:
-    """Coefficients, slopes then intercept, shape (f + 1,), from least squares towards least absolute errors.
+    """Coefficients, slopes then intercept, shape (f + 1,), between least squares and least absolute errors.
 
     Args:
       features: Standardised, shape (n, f).
@@ -21,7 +21,7 @@ def refit(features: Array, targets: Array, weights: Array, start: Array, ridge: 
       weights: How often each row counts, shape (n,).
       start: Coefficients of least squares, shape (f + 1,).
       ridge: Penalty on squared slopes, relative to the rows' weight.
-      huber: Deviations within which errors count squared, beyond linearly; 1.345 loses 5 % on normal errors.
+      huber: Number of deviations up to which errors count squared, beyond linearly; 1.345 loses 5 % on normal errors.
     """
     rows = np.column_stack([features, np.ones(len(features))])
     penalty = np.diag([*[ridge] * features.shape[1], 1e-12])

@@ -1,4 +1,4 @@
-"""Standardisation of features and targets for fitting; undone when a formula is written down."""
+"""Standardisation of features and targets for fitting; undone when a tree is converted."""
 
 from __future__ import annotations
 

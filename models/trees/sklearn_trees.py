@@ -1,4 +1,4 @@
-"""What scikit-learn has grown, in our form: splits, and what each leaf says, in the order of leaf numbers."""
+"""Converts scikit-learn's trees: splits, and the value of each leaf in the order of leaf numbers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Step = tuple[SplitTree, Floats]  # a tree, and a number for each of its leaves: 
 
 
 def splits_of(grown: BaseDecisionTree) -> SplitTree:
-    """The splits; scikit-learn's double thresholds, rounded down, are exact on single precision rows."""
+    """Splits of a tree; scikit-learn's double thresholds, rounded down, are exact on single precision rows."""
     tree = grown.tree_
     inner = tree.children_left != LEAF
     threshold = tree.threshold.astype(np.float32)
@@ -28,12 +28,14 @@ def splits_of(grown: BaseDecisionTree) -> SplitTree:
 
 
 def shares_of(grown: DecisionTreeClassifier) -> Floats:
-    """The weighted share of the second of two classes in each leaf; all or nothing if only one class was seen."""
+    """Weighted share of the second of two classes in each leaf, shape (leaves,); 0 or 1 if only one class was seen."""
     value = grown.tree_.value[grown.tree_.children_left == LEAF, 0, :]
     share = value[:, 1] / value.sum(axis=1) if value.shape[1] == 2 else np.full(len(value), float(grown.classes_[0]))
-    return share.astype(np.float32)
+    shares: Floats = share.astype(np.float32)
+    return shares
 
 
 def means_of(grown: DecisionTreeRegressor) -> Floats:
-    """The mean of the targets in each leaf."""
-    return grown.tree_.value[grown.tree_.children_left == LEAF, 0, 0].astype(np.float32)
+    """Mean of the targets in each leaf, shape (leaves,)."""
+    means: Floats = grown.tree_.value[grown.tree_.children_left == LEAF, 0, 0].astype(np.float32)
+    return means

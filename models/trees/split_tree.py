@@ -1,4 +1,4 @@
-"""The splits of a fitted tree as arrays, in single precision: which leaf a row of features falls into."""
+"""Splits of a fitted tree as arrays in single precision; finds the leaf of each row of features."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes a grown tree down: arrays in the features' own units, formulas smoothed and clipped."""
+"""Converts a grown tree into arrays: formulas in the features' own units, smoothed and clipped."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """What a tree was grown from, in its own units, and the scale that it was grown in."""
+    """The examples that a tree was grown from, in their own units, and the scale that it was grown in."""
 
     features: NDArray[np.float32]  # (n, f)
     targets: Array  # (n,) seconds
@@ -25,15 +25,15 @@ class Source:
     scale: Scale
 
 
-def write_down(root: Node, size: int, source: Source, smoothing: float, clip: bool) -> LinearTree:
+def to_linear_tree(root: Node, size: int, source: Source, smoothing: float, clip: bool) -> LinearTree:
     """The first `size` splits of a grown tree.
 
     Args:
-      root: Of the grown tree.
-      size: Splits to keep, in the order in which they were made.
-      source: What it was grown from.
-      smoothing: Rows that an ancestor's formula counts for.
-      clip: Keep each leaf within what was seen in it.
+      root: Root of the grown tree.
+      size: Number of splits to keep, in the order in which they were made.
+      source: The examples that it was grown from.
+      smoothing: Number of rows that an ancestor's formula counts for.
+      clip: Clip each leaf to the range of its training targets.
     """
     nodes: list[SplitRow] = []
     leaves: list[LeafRow] = []
@@ -54,11 +54,11 @@ def write_down(root: Node, size: int, source: Source, smoothing: float, clip: bo
 
 def _leaf(node: Node, source: Source, smoothing: float, clip: bool) -> LeafRow:
     slopes, intercept = source.scale.raw(_smoothed(node, source.weights, smoothing))
-    seen, weights = source.targets[node.rows], source.weights[node.rows]
-    low, high = (float(seen.min()), float(seen.max())) if clip else (-np.inf, np.inf)
-    off = np.clip(source.features[node.rows] @ slopes + intercept, low, high) - seen
-    spread = float(np.sqrt(np.average(off**2, weights=weights)))
-    return slopes, intercept, low, high, spread, len(node.rows)
+    observed, weights = source.targets[node.rows], source.weights[node.rows]
+    low, high = (float(observed.min()), float(observed.max())) if clip else (-np.inf, np.inf)
+    off = np.clip(source.features[node.rows] @ slopes + intercept, low, high) - observed
+    std = float(np.sqrt(np.average(off**2, weights=weights)))
+    return slopes, intercept, low, high, std, len(node.rows)
 
 
 def _smoothed(node: Node, weights: Array, k: float) -> Array:

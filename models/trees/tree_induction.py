@@ -1,4 +1,4 @@
-"""Grows model trees best-first: each split is the one that lowers the error of linear fits on both sides the most."""
+"""Induction of model trees, best first: each split minimises the error of linear fits on both sides."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(slots=True)
 class Node:
-    """A node while it grows; `order` is when its split was made (0 first), None for a leaf."""
+    """A node of a growing tree; `order` counts the splits (0 first) and is None for a leaf."""
 
     rows: NDArray[np.intp]
     coefficients: Array  # (f + 1,) of standardised features and targets
@@ -31,7 +31,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """Standardised examples with their bins; all that growing looks at."""
+    """Standardised examples with their bins: the input of induction."""
 
     features: Array  # (n, f)
     targets: Array  # (n,)
@@ -67,7 +67,7 @@ def quantile_bins(
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """How far a tree may grow."""
+    """Limits of the growth of a tree."""
 
     max_leaves: int
     min_rows: float  # weighted rows on each side of a split
@@ -75,10 +75,14 @@ class Growth:
 
 
 def grow(examples: Examples, limits: Growth) -> tuple[Node, list[Node]]:
-    """Grow a tree; returns its root and its split nodes in the order in which they were split."""
+    """Grow a tree.
+
+    Returns:
+      The root, and the split nodes in the order of their splits.
+    """
     rows = np.flatnonzero(examples.weights > 0)
     root = _node(examples, rows, limits, ())
-    queue, made, ticket = [(-root.gain, 0, root)], [], 1
+    queue, made, ticket = [(-root.gain, 0, root)], list[Node](), 1
     while queue and len(made) < limits.max_leaves - 1:
         _, _, node = heapq.heappop(queue)
         if node.gain <= 0.0:
@@ -107,7 +111,7 @@ def _node(examples: Examples, rows: NDArray[np.intp], limits: Growth, ancestors:
 
 
 def _choose_split(node: Node, examples: Examples, products: Array, total: Array, limits: Growth) -> None:
-    """Set the node's best split, if any pays."""
+    """Set the node's best split, if any reduces the error."""
     count = examples.features.shape[1]
     one = products.shape[1] - 3  # packed place of 1·1: the third from the end
     for feature in range(count):
@@ -115,16 +119,16 @@ def _choose_split(node: Node, examples: Examples, products: Array, total: Array,
         if not len(edges):
             continue
         left = _running_sums(examples.bins[node.rows, feature], products, len(edges))
-        able = (left[:, one] >= limits.min_rows) & (total[one] - left[:, one] >= limits.min_rows)
-        if not able.any():
+        allowed = (left[:, one] >= limits.min_rows) & (total[one] - left[:, one] >= limits.min_rows)
+        if not allowed.any():
             continue
-        sides = moments.unpack(np.stack([left[able], total - left[able]]), count)
+        sides = moments.unpack(np.stack([left[allowed], total - left[allowed]]), count)
         errors = moments.fit(sides, limits.ridge)[1].sum(axis=0)
         best = int(np.argmin(errors))
         gain = node.error - float(errors[best])
         if gain > max(node.gain, 1e-9 * total[-1]):
             node.feature, node.gain = feature, gain
-            node.threshold = float(edges[np.flatnonzero(able)[best]])
+            node.threshold = float(edges[np.flatnonzero(allowed)[best]])
 
 
 def _running_sums(bins: NDArray[np.uint8], products: Array, edges: int) -> Array:

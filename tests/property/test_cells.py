@@ -9,7 +9,7 @@ from tailor.models.bounds.cell_boxes import boxes_of_cells
 from tailor.models.bounds.onnx_reader import read_graph
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.features import projective
-from tailor.models.trees.cells import CELLS_MAX, cells_of
+from tailor.models.trees.cells import MAX_CELLS, cells_of
 from tailor.models.trees.model_tree import BaggedModelTrees
 from tailor.models.trees.split_tree import LEAF, SplitTree
 from tests.support import standin
@@ -55,7 +55,7 @@ def test_too_many_cells_and_trees_without_splits_have_no_table() -> None:
     fine = np.array([(k % FEATURES, k / 7.0) for k in range(3 * 120)])  # 121 ** 3 cells
     nodes = [(int(f), t, k + 1, len(fine) + 1 + k, -1) for k, (f, t) in enumerate(fine)]
     nodes += [(LEAF, 0.0, 0, 0, k) for k in range(len(fine) + 1)]
-    assert CELLS_MAX < 121**3
+    assert MAX_CELLS < 121**3
     assert cells_of([SplitTree.of(nodes)], FEATURES) is None
 
 

@@ -80,7 +80,7 @@ def test_durations_agree(learner, examples) -> None:
 
 
 def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> None:
-    monkeypatch.setattr(cells, "CELLS_MAX", 10)
+    monkeypatch.setattr(cells, "MAX_CELLS", 10)
     arguments, targets, groups = examples
     bag = BaggedModelTrees(trees=3).fit(projective(arguments), targets, groups=groups)
     model = export_duration(bag, projective, {})

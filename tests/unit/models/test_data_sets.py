@@ -72,7 +72,7 @@ def change(column: str, value: object) -> Callable[[Path], None]:
         (lambda path: pq.write_table(pa.table({"a": [1]}), path), "lacks episode, success"),
         (lambda path: pq.write_table(pq.read_table(path).slice(0, 0), path), "lacks rows"),
         (change("xg", None), "lacks xg"),
-        (change("xg", float("nan")), "column xg holds what is no finite number"),
+        (change("xg", float("nan")), "column xg holds values that are not finite numbers"),
     ],
 )
 def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], said: str) -> None:

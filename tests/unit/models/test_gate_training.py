@@ -152,7 +152,7 @@ def test_a_zoo_without_a_tree_has_none_and_a_gate_that_is_off_loads_none(zoo: Pa
 def test_a_tree_that_was_learned_with_other_models_is_refused(zoo: Path) -> None:
     card = read_card(card_path(tree_of(zoo)))
     write_card(card_path(tree_of(zoo)), {**card, "models": {**card["models"], "dribbleBall/duration": "0" * 64}})
-    with pytest.raises(UsageError, match=r"learned when dribbleBall/duration was 0{12}.*train-gate.*gate"):
+    with pytest.raises(UsageError, match=r"trained with dribbleBall/duration 0{12}.*train-gate.*gate"):
         load_models("agilo", str(zoo), gated=True)
     assert load_models("agilo", str(zoo), gated=False).gate is None
     assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 1

@@ -100,9 +100,9 @@ def test_a_card_of_another_model_is_refused(zoo: Path, key: str, value: str) -> 
 
 def test_ranges_that_the_model_has_not_seen_are_refused(zoo: Path) -> None:
     runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.6)}})
-    with pytest.raises(UsageError, match=r"vg was learned in \[0, 0.6\] m/s, expected to cover \[0, 0.9\]"):
+    with pytest.raises(UsageError, match=r"vg was trained in \[0, 0.6\] m/s, expected to cover \[0, 0.9\]"):
         runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.9)}})
-    with pytest.raises(UsageError, match="knows no argument 'z'"):
+    with pytest.raises(UsageError, match="has no argument 'z'"):
         runtime.load_robot("agilo", zoo, {"goToPose": {"z": (0.0, 0.9)}})
 
 
@@ -169,7 +169,7 @@ def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: 
     """The executive, and whatever else composes models, asks the domain for the ranges."""
     arguments = read_card(card_path(duration(zoo)))["arguments"]
     changed_card(duration(zoo), arguments=[{**a, **({"upper": 0.2} if a["name"] == "vg" else {})} for a in arguments])
-    with pytest.raises(UsageError, match=r"vg was learned in \[0, 0.2\] m/s, expected to cover \[0, 0.6\]"):
+    with pytest.raises(UsageError, match=r"vg was trained in \[0, 0.2\] m/s, expected to cover \[0, 0.6\]"):
         load_models("agilo", str(zoo))
     assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
 

@@ -23,7 +23,7 @@ ESTIMATORS = [
 ]
 
 
-@pytest.mark.parametrize("estimator", ESTIMATORS, ids=lambda e: f"{type(e).__name__}-{getattr(e, 'flavour', '')}")
+@pytest.mark.parametrize("estimator", ESTIMATORS, ids=lambda e: f"{type(e).__name__}-{getattr(e, 'variant', '')}")
 @pytest.mark.filterwarnings("ignore")
 def test_estimators_keep_the_contract_of_scikit_learn(estimator) -> None:
     check_estimator(estimator)
@@ -37,14 +37,14 @@ def two_planes(count: int, seed: int = 0, noise: float = 0.01):
     return x, y + rng.normal(0, noise, count)
 
 
-@pytest.mark.parametrize("flavour", ["linear", "m5"])
-def test_two_planes_are_found_again(flavour: str) -> None:
+@pytest.mark.parametrize("variant", ["linear", "m5"])
+def test_two_planes_are_found_again(variant: str) -> None:
     x, y = two_planes(3000)
     fresh, seconds = two_planes(1000, seed=1, noise=0)
-    tree = ModelTreeRegressor(flavour, smoothing=0.0).fit(x, y)
+    tree = ModelTreeRegressor(variant, smoothing=0.0).fit(x, y)
     away = np.abs(fresh[:, 0] - 0.3) > 0.05
     assert np.abs(tree.predict(fresh) - seconds)[away].mean() < 0.03
-    if flavour == "linear":
+    if variant == "linear":
         assert abs(tree.tree_.splits.threshold[0] - 0.3) < 0.05
 
 
