@@ -29,16 +29,16 @@ class ExecutiveConfig:
     zoo: str = ""  # folder of action models; empty: those that ship
 
 
-def build_context(order: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0) -> Context:
-    """The context of an order.
+def build_context(config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0) -> Context:
+    """Build the context of a configuration.
 
     Raises:
       UsageError: Unknown domain or scenario, a PDDL error, a missing or altered model.
     """
-    domain = domains.load(order.domain)
-    scenario, _ = domains.seeded_scenario(order.domain, order.scenario, order.settings.seed)
-    models = load_models(domain.robot, order.zoo, order.settings.refinement.gate)
-    return make_context(domain, scenario, models, order.settings, sender, stamp_offset_ns)
+    domain = domains.load(config.domain)
+    scenario, _ = domains.seeded_scenario(config.domain, config.scenario, config.settings.seed)
+    models = load_models(domain.robot, config.zoo, config.settings.refinement.gate)
+    return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns)
 
 
 def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
@@ -70,33 +70,33 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
     return ranges
 
 
-def provenance(order: ExecutiveConfig, context: Context) -> dict[str, Any]:
+def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
     """All that it takes to compose the same context again, and the cards of the models it used."""
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
     if context.models.gate is not None:
         models[GATE] = context.models.gate
     return {
-        "order": dataclasses.asdict(order),
+        "config": dataclasses.asdict(config),
         "sender": context.sender,
         "stamp_offset_ns": context.stamp_offset_ns,
         "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
     }
 
 
-def without_gate(order: ExecutiveConfig) -> ExecutiveConfig:
-    """The order of a run that always refines."""
-    refinement = dataclasses.replace(order.settings.refinement, gate=False)
-    return dataclasses.replace(order, settings=dataclasses.replace(order.settings, refinement=refinement))
+def without_gate(config: ExecutiveConfig) -> ExecutiveConfig:
+    """The configuration of a run that always refines."""
+    refinement = dataclasses.replace(config.settings.refinement, gate=False)
+    return dataclasses.replace(config, settings=dataclasses.replace(config.settings, refinement=refinement))
 
 
 def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
     _check(recorded)
-    order = from_table(ExecutiveConfig, recorded["order"], "recording's provenance")
+    config = from_table(ExecutiveConfig, recorded["config"], "recording's provenance")
     if GATE not in recorded["models"]:  # the run had no refinement gate, whatever is installed here
-        order = without_gate(order)
-    context = build_context(order, recorded["sender"], recorded["stamp_offset_ns"])
-    here = provenance(order, context)["models"]
+        config = without_gate(config)
+    context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"])
+    here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():
         if here.get(name) != sha256:
             found = str(here.get(name, "missing"))[:12]
@@ -108,7 +108,7 @@ def _check(recorded: Mapping[str, Any]) -> None:
     """Whether a provenance has what `rebuild_context` needs: it comes from a file."""
     if not recorded:
         raise UsageError("the recording does not say what the executive was made of, expected exec/provenance in it")
-    kinds = {"order": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}
+    kinds = {"config": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}
     for name, kind in kinds.items():
         found = recorded.get(name, {} if name == "machine" else None)  # nothing was said of machines once
         if not isinstance(found, kind):

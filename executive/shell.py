@@ -66,7 +66,7 @@ class Shell:
 
     def _tick(self, turn: Period, goal: str, stopping: bool) -> None:
         samples = (*self._inbox.drain(turn.now_ns), *self._planner_answer(turn))
-        inputs = Inputs(samples, self._asked_goal() or goal, turn.skipped, stopping)
+        inputs = Inputs(samples, self._requested_goal() or goal, turn.skipped, stopping)
         self._state, outputs = control(self._context, self._state, turn.now_ns, inputs)
         self._publish(outputs)
         control_ns = self._clock.now_ns() - turn.now_ns
@@ -76,17 +76,17 @@ class Shell:
         self._publish(outputs)
         self._report(turn, inputs, control_ns, budget.granted)
 
-    def _asked_goal(self) -> str:
-        """A goal that somebody asked for and that can be accepted; the others are told why not."""
-        question = self._goals.poll()
-        if question is None:
+    def _requested_goal(self) -> str:
+        """An accepted goal of this tick's request, "" without one; an invalid goal is refused with its cause."""
+        request = self._goals.poll()
+        if request is None:
             return ""
-        goal = question.text.strip() or self._context.problem.goal_text
-        why_not = check_goal(self._context, goal)
-        if why_not:
-            question.refuse(why_not)
+        goal = request.text.strip() or self._context.problem.goal_text
+        refusal = check_goal(self._context, goal)
+        if refusal is not None:
+            request.refuse(str(refusal))
             return ""
-        question.accept()
+        request.accept()
         return goal
 
     def _planner_answer(self, turn: Period) -> tuple[Sample, ...]:

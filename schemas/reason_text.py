@@ -6,3 +6,8 @@ from __future__ import annotations
 def reason_text(reason: str, detail: str) -> str:
     """The reason for people, e.g. `reason_text("driver fault", "motor 2") == "driver fault: motor 2"`."""
     return f"{reason}: {detail}" if detail else reason
+
+
+def result_text(result: str, reason: str, detail: str) -> str:
+    """The result of a task for people, e.g. "achieved" or "failed: no subgoal: approachBall"; "" while it is open."""
+    return reason_text(result, reason_text(reason, detail))

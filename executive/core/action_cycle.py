@@ -9,8 +9,8 @@ from tailor.executive.core.command_guard import at_rest, checked
 from tailor.executive.core.context import Context
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import State, Task
-from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
@@ -30,29 +30,32 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     if running is None:
         coast = state.coasted < context.settings.coast_ticks
         return replace(state, command=state.command if coast else zero, coasted=state.coasted + 1), None
-    running, control = control_step(running, state.now_ns, state.belief)
-    command, wrong = checked(control.command, context.domain.axes)
-    if wrong:
-        control = replace(control, outcome="failed", detail=wrong)
+    running, control, failure = control_step(running, state.now_ns, state.belief)
+    command, rejection = checked(control.command, context.domain.axes)
     state = replace(state, command=command, task=replace(state.task, running=running))
+    cause = rejection or failure
+    if cause is not None:
+        return _failed(context, state, running, cause)
     if control.outcome == "running":
         return state, None
-    return _ended(context, state, running, control)
+    return _done(context, state, running)
 
 
 def finished_message(
-    context: Context, state: State, index: int, running: Running, how: tuple[str, str]
+    context: Context, state: State, index: int, running: Running, end: tuple[str, Cause | None]
 ) -> ActionFinished:
-    """Report of the task's action number `index` that ends in this tick; `how` is outcome and reason."""
+    """Report of the task's action number `index` that ends in this tick; `end` is its outcome with the cause."""
+    outcome, cause = end
     return ActionFinished(
         stamp_ns=context.stamp(state.now_ns),
         tick=state.tick,
         action=running.action.name,
         action_index=index,
-        outcome=how[0],
-        reason=how[1],
+        outcome=outcome,
+        reason=str(cause.reason) if cause is not None else "",
         predicted_s=running.predicted_s,
         actual_s=running.elapsed_s(state.now_ns),
+        detail=cause.detail if cause is not None else "",
     )
 
 
@@ -76,18 +79,27 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
     return None
 
 
-def _ended(context: Context, state: State, running: Running, control: Control) -> tuple[State, ActionFinished | None]:
-    task = replace(state.task, running=None, decision=None, finished=state.task.finished + 1)
-    finished = finished_message(context, state, state.task.finished, running, (control.outcome, control.detail))
-    state = replace(state, deliberation=None, coasted=0)
-    if control.outcome == "done":
-        return replace(state, task=_with_effects(context, replace(task, failures=()), running)), finished
-    failures = (*task.failures, f"{running.action.name}: {control.detail}")
-    task = replace(task, failures=failures, plan=None, done=frozenset())
-    zero = at_rest(context.domain.axes)
-    fault = failures[-1] if failures.count(failures[-1]) >= context.settings.replan_failures else ""
-    state = replace(state, task=task, fault=fault, command=zero, coasted=context.settings.coast_ticks)
-    return state, finished
+def _done(context: Context, state: State, running: Running) -> tuple[State, ActionFinished]:
+    finished = finished_message(context, state, state.task.finished, running, ("done", None))
+    task = _with_effects(context, replace(_after_action(state.task), failures=()), running)
+    return replace(state, task=task, deliberation=None, coasted=0), finished
+
+
+def _failed(context: Context, state: State, running: Running, cause: Cause) -> tuple[State, ActionFinished]:
+    """Zero command, no plan; a fault if the action has failed so before."""
+    finished = finished_message(context, state, state.task.finished, running, ("failed", cause))
+    failure = (running.action.name, cause)
+    failures = (*state.task.failures, failure)
+    fault = None
+    if failures.count(failure) >= context.settings.replan_failures:
+        fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
+    task = replace(_after_action(state.task), failures=failures, plan=None, done=frozenset())
+    zero, coasted = at_rest(context.domain.axes), context.settings.coast_ticks
+    return replace(state, task=task, deliberation=None, fault=fault, command=zero, coasted=coasted), finished
+
+
+def _after_action(task: Task) -> Task:
+    return replace(task, running=None, decision=None, finished=task.finished + 1)
 
 
 def _with_effects(context: Context, task: Task, running: Running) -> Task:

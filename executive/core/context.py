@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from tailor.executive import planning
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -90,13 +91,13 @@ def make_context(
     return Context(domain, scenario, models, pddl_domain, problem, settings, sender, stamp_offset_ns)
 
 
-def check_goal(context: Context, goal: str) -> str:
-    """Why a PDDL goal cannot be accepted, or "" if it can."""
+def check_goal(context: Context, goal: str) -> Cause | None:
+    """Cause for which a PDDL goal is refused; None if it is accepted."""
     length = len(goal.encode(errors="replace"))
     if length > MAX_GOAL_BYTES:
-        return f"the goal has {length} bytes, expected at most {MAX_GOAL_BYTES}"
+        return Cause(Reason.GOAL_TOO_LONG, f"{length} bytes, expected at most {MAX_GOAL_BYTES}")
     try:
         context.problem.with_goal(goal)
     except planning.PddlError as error:
-        return str(error)
-    return ""
+        return Cause(Reason.GOAL_INVALID, str(error))
+    return None

@@ -10,6 +10,7 @@ import numpy as np
 from tailor.executive import planning
 from tailor.executive.core.context import Context
 from tailor.executive.core.plan_source import PlanFound, PlanSource
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
@@ -47,7 +48,7 @@ class Deliberation:
         """
         self.number = number
         self.stage: Stage = "planning"
-        self.reason = ""
+        self.failure: Cause | None = None
         self.source = source
         self.plan_results: tuple[PlanFound, ...] = ()  # of the source; the last one counts
         self.sequence: ActionSequence | None = None
@@ -100,7 +101,7 @@ class Deliberation:
         if result.status == "failed":  # the external planner; the built-in search follows
             return
         if result.plan is None:
-            self._fail(f"no plan: {result.reason or result.status}")
+            self._fail(result.refusal)
             return
         if not result.plan.steps:
             self.stage = "decided"
@@ -111,7 +112,7 @@ class Deliberation:
         self._pattern = Pattern(plan, self._context.domain, self._context.scenario)
         sequence = self._pattern.sequence(self._belief)
         if isinstance(sequence, Failure):
-            self._fail(f"cannot instantiate: {sequence.reason}")
+            self._fail(Cause(Reason.NOT_INSTANTIABLE, sequence.reason))
             return
         settings = self._context.settings.refinement
         self._assertion = Assertion(sequence, self._context.models, settings, self._rng)
@@ -124,7 +125,7 @@ class Deliberation:
         if sequence is None:
             return
         if isinstance(sequence, Failure):
-            self._fail(f"no subgoal helps: {sequence.reason}")
+            self._fail(Cause(Reason.NO_SUBGOAL, sequence.reason))
             return
         self.sequence = sequence
         self._watch = BeliefMonitor(self._pattern, sequence)
@@ -140,10 +141,10 @@ class Deliberation:
             return
         choice = self.refinement.choice
         if choice is None or not choice.valid:
-            self._fail("no valid subgoal: every choice of the free parameters is predicted to fail")
+            self._fail(Cause(Reason.NO_VALID_CHOICE))
             return
         self.stage = "decided"
 
-    def _fail(self, reason: str) -> None:
+    def _fail(self, cause: Cause | None) -> None:
         self.stage = "failed"
-        self.reason = reason
+        self.failure = cause

@@ -11,6 +11,7 @@ from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.plan_reuse import Improvement, reusable
 from tailor.executive.core.plan_source import PlanSource, current_problem, request_for
+from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
 from tailor.executive.interfaces.budget import Budget
 from tailor.schemas.messages import PlanAnswer, PlanRequest
@@ -43,10 +44,10 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
-        return _with_failure(state, deliberation.reason)
+        return _with_failure(state, deliberation.failure)
     if deliberation.nothing_to_do():
         finished = state.task.finished + (state.task.running is not None)
-        task = replace(state.task, active=False, result="achieved", running=None, decision=None, finished=finished)
+        task = replace(state.task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
         return replace(state, task=task)
     decision = deliberation.decision()
     if decision is not None:
@@ -88,11 +89,12 @@ def _with_planner_failure(state: State, deliberation: Deliberation) -> State:
     return replace(state, task=replace(state.task, external_failed=True))
 
 
-def _with_failure(state: State, reason: str) -> State:
+def _with_failure(state: State, cause: Cause | None) -> State:
     """Without a decision a running action continues; otherwise the task has failed."""
     if state.task.running is not None:
         return state
-    return replace(state, task=replace(state.task, active=False, result=f"failed: {reason}", decision=None))
+    task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
+    return replace(state, task=task)
 
 
 def _adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.core.deliberation import Decision
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.action import Action, Control
 from tailor.executive.interfaces.values import Array, Belief
 
@@ -34,13 +35,18 @@ class Running:
         return max(self.action.time_limit_floor_s, self.action.time_limit_factor * predicted)
 
 
-def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running, Control]:
-    """One step of the action's controller; an action beyond its time limit has failed."""
+def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running, Control, Cause | None]:
+    """One step of the action's controller; an action beyond its time limit has failed.
+
+    Returns:
+      The running action with its next controller state, the control, and the cause of a failure.
+    """
     control = running.action.controller(running.controller_state, now_ns, belief, controller_arguments(running))
+    cause = Cause(Reason.CONTROLLER_FAILED, control.detail) if control.outcome == "failed" else None
     if control.outcome == "running" and running.elapsed_s(now_ns) > running.time_limit_s():
-        reason = f"{running.action.name} took longer than {running.time_limit_s():.1f} s"
-        control = replace(control, outcome="failed", detail=reason)
-    return replace(running, controller_state=control.state), control
+        control = replace(control, outcome="failed")
+        cause = Cause(Reason.ACTION_TIMEOUT, f"{running.time_limit_s():.1f} s")
+    return replace(running, controller_state=control.state), control, cause
 
 
 def controller_arguments(running: Running) -> Array:

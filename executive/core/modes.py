@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tailor.executive.core.reasons import Cause
+
 
 class Mode(StrEnum):
     """Mode of the executive; only EXECUTING moves the robot."""
@@ -18,27 +20,27 @@ class Mode(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """One snapshot of all that decides the mode; an empty string means that the condition does not hold."""
+    """Conditions that decide the mode, from one snapshot; None: the condition does not hold."""
 
-    fault: str = ""
-    disarmed: str = ""
-    hold: str = ""
+    fault: Cause | None = None
+    disarmed: Cause | None = None
+    hold: Cause | None = None
     goal_active: bool = False
 
 
-def next_mode(mode: Mode, now: Conditions) -> tuple[Mode, str]:
-    """The mode that follows from the present one and a snapshot of conditions, with the reason for it.
+def next_mode(mode: Mode, now: Conditions) -> tuple[Mode, Cause | None]:
+    """The mode that follows from the present one and a snapshot of conditions, with its cause.
 
     The rows stand in order of precedence; the first that applies decides.
     """
-    rows: tuple[tuple[bool, Mode, str], ...] = (
-        (bool(now.fault), Mode.FAULT, now.fault),
-        (mode is Mode.FAULT, Mode.FAULT, ""),
-        (bool(now.disarmed), Mode.DISARMED, now.disarmed),
-        (bool(now.hold) and now.goal_active, Mode.HOLDING, now.hold),
-        (now.goal_active, Mode.EXECUTING, ""),
+    rows: tuple[tuple[bool, Mode, Cause | None], ...] = (
+        (now.fault is not None, Mode.FAULT, now.fault),
+        (mode is Mode.FAULT, Mode.FAULT, None),
+        (now.disarmed is not None, Mode.DISARMED, now.disarmed),
+        (now.hold is not None and now.goal_active, Mode.HOLDING, now.hold),
+        (now.goal_active, Mode.EXECUTING, None),
     )
-    for applies, following, reason in rows:
+    for applies, following, cause in rows:
         if applies:
-            return following, reason
-    return Mode.READY, ""
+            return following, cause
+    return Mode.READY, None

@@ -7,6 +7,7 @@ from dataclasses import replace
 from tailor.executive.core.context import Context
 from tailor.executive.core.freshness import newest_arrivals, stale_topics
 from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Arming, Inputs, State, Task
 from tailor.schemas.messages import DriverState
 from tailor.schemas.reason_text import reason_text
@@ -35,19 +36,19 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
         state = _with_goal(context, state, inputs.goal)
     if inputs.stopping:
         state = replace(state, task=replace(state.task, active=False, running=None, decision=None), deliberation=None)
-    return _with_mode(context, state, "the clock went backward" if backward else "")
+    return _with_mode(context, state, Cause(Reason.CLOCK_BACKWARD) if backward else None)
 
 
-def disarmed(context: Context, state: State) -> str:
-    """Why the driver does not obey this executive, or "" if it does."""
-    driver = state.arming.driver
-    if driver is None or stale_topics(("driver",), context.domain.robot, state.arrivals, state.now_ns):
-        return f"no word from the driver of {context.domain.robot}"
+def disarmed(context: Context, state: State) -> Cause | None:
+    """Cause for which the driver does not obey this executive; None if it does."""
+    driver, robot = state.arming.driver, context.domain.robot
+    if driver is None or stale_topics(("driver",), robot, state.arrivals, state.now_ns):
+        return Cause(Reason.DRIVER_SILENT, robot)
     if driver.mode != "armed":
-        return f"driver is {driver.mode}" + (f": {reason_text(driver.reason, driver.detail)}" if driver.reason else "")
+        return Cause(Reason.DRIVER_NOT_ARMED, reason_text(driver.mode, reason_text(driver.reason, driver.detail)))
     if driver.armed_sender != context.sender:
-        return f"driver obeys another executive ({driver.armed_sender[:8]})"
-    return ""
+        return Cause(Reason.DRIVER_OBEYS_ANOTHER, driver.armed_sender[:8])
+    return None
 
 
 def _driver_of(context: Context, arming: Arming, inputs: Inputs) -> Arming:
@@ -60,11 +61,12 @@ def _driver_of(context: Context, arming: Arming, inputs: Inputs) -> Arming:
 
 def _with_goal(context: Context, state: State, goal: str) -> State:
     facts = state.task.facts or frozenset(context.problem.initial)
-    return replace(state, task=Task(goal=goal, active=True, facts=facts), deliberation=None, fault="", mode=Mode.READY)
+    task = Task(goal=goal, active=True, facts=facts)
+    return replace(state, task=task, deliberation=None, fault=None, mode=Mode.READY)
 
 
-def _with_mode(context: Context, state: State, clock_fault: str) -> State:
-    mode, reason = next_mode(
+def _with_mode(context: Context, state: State, clock_fault: Cause | None) -> State:
+    mode, cause = next_mode(
         state.mode,
         Conditions(
             fault=state.fault,
@@ -75,15 +77,15 @@ def _with_mode(context: Context, state: State, clock_fault: str) -> State:
     )
     if mode is Mode.DISARMED and state.task.running is not None:
         state = replace(state, task=replace(state.task, running=None, decision=None, plan=None), deliberation=None)
-    return replace(state, mode=mode, reason=reason)
+    return replace(state, mode=mode, cause=cause)
 
 
-def _hold(context: Context, state: State) -> str:
+def _hold(context: Context, state: State) -> Cause | None:
     stale = stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
     if stale:
-        return f"stale: {', '.join(stale)}"
+        return Cause(Reason.INPUT_STALE, ", ".join(stale))
     if not context.domain.ready(state.belief):
-        return "waiting for the first percepts"
+        return Cause(Reason.BELIEF_NOT_READY)
     if len(state.overruns_ns) >= context.settings.overruns_to_hold:
-        return f"{len(state.overruns_ns)} overruns in a second"
-    return ""
+        return Cause(Reason.OVERRUNS, f"{len(state.overruns_ns)} in a second")
+    return None

@@ -104,7 +104,7 @@ def reusable(
     found = improvement.plan_from(problem) if improvement is not None else None
     if found is not None and found.plan is not None and (left is None or better(found.plan, left)):
         return found
-    return PlanFound("solved", "suffix", left, 0, 0, "") if left is not None else None
+    return PlanFound("solved", "suffix", left, 0, 0) if left is not None else None
 
 
 def _suffix(

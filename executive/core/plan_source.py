@@ -10,6 +10,7 @@ from typing import Literal
 
 from tailor.executive import planning
 from tailor.executive.core.context import Context
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
@@ -18,17 +19,26 @@ GRACE_S = 2.0  # beyond the planner's own limit; after that the process that run
 
 Way = Literal["searched", "suffix", "improved", "external"]
 
+_REFUSALS = {
+    "unsolvable": Reason.UNSOLVABLE,
+    "limit": Reason.SEARCH_LIMIT,
+    "unsupported": Reason.PDDL_UNSUPPORTED,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class PlanFound:
-    """Result of one source; `status` as in planning.Result, or "failed" for an external planner."""
+    """Result of one source; `status` as in planning.Result, or "failed" for an external planner.
+
+    `refusal` is the cause for which there is no plan; None if there is one.
+    """
 
     status: str
     way: Way
     plan: planning.Plan | None
     generated: int
     visited: int
-    reason: str
+    refusal: Cause | None = None
 
 
 class PlanSource:
@@ -90,11 +100,12 @@ class PlanSource:
 
 def validated(result: planning.Result, way: Way, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
     """Result of the built-in search; without its plan if that is unsound from the problem's initial state."""
-    plan, reason = result.plan, result.reason
-    if plan is not None:
-        reason = planning.validate(plan, domain, problem)
-        plan = plan if not reason else None
-    return PlanFound(result.status, way, plan, result.generated, result.visited, reason)
+    refusal = _REFUSALS.get(result.status)
+    cause = Cause(refusal, result.reason) if refusal is not None else None
+    plan = result.plan
+    if plan is not None and (fault := planning.validate(plan, domain, problem)):
+        plan, cause = None, Cause(Reason.PLAN_UNSOUND, fault)
+    return PlanFound(result.status, way, plan, result.generated, result.visited, cause)
 
 
 def request_for(context: Context, problem: planning.Problem, number: int, now_ns: int) -> PlanRequest:
@@ -111,16 +122,16 @@ def current_problem(context: Context, facts: frozenset[Fact], goal: str) -> plan
 def _from_answer(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
     plan = _parsed(answer, domain, problem)
     if isinstance(plan, planning.Plan):
-        return PlanFound("solved", "external", plan, 0, 0, "")
-    return PlanFound("failed", "external", None, 0, 0, f"{plan}; our own planner takes over")
+        return PlanFound("solved", "external", plan, 0, 0)
+    return PlanFound("failed", "external", None, 0, 0, plan)
 
 
-def _parsed(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Plan | str:
-    """The plan of an answer, or why there is none."""
+def _parsed(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Plan | Cause:
+    """The plan of an answer, or the cause for which there is none."""
     if answer.outcome != "answered":
-        return f"{answer.outcome}: {answer.reason}"
+        return Cause(Reason.PLANNER_FAILED, f"{answer.outcome}: {answer.reason}")
     try:
         plan = planning.completed(planning.parse_plan(answer.output), domain, problem)
     except planning.PlanTextError as error:
-        return f"{answer.reason}; {error}"
-    return plan if isinstance(plan, planning.Plan) else f"its plan is unsound: {plan}"
+        return Cause(Reason.PLAN_UNREADABLE, f"{answer.reason}; {error}")
+    return plan if isinstance(plan, planning.Plan) else Cause(Reason.PLAN_UNSOUND, plan)

@@ -11,6 +11,7 @@ from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.plan_source import PlanFound
+from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Output, State
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m
@@ -47,8 +48,8 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
     """The messages about this tick, the status last."""
     outputs: list[Output] = []
     if published.running is not None and state.task.finished > published.finished:
-        how = _overtaken(context, state, published.plan, published.running)
-        outputs.append(Output("finished", finished_message(context, state, published.finished, published.running, how)))
+        end = _overtaken(context, state, published.plan, published.running)
+        outputs.append(Output("finished", finished_message(context, state, published.finished, published.running, end)))
     deliberation = state.deliberation
     if deliberation is not None:
         fresh = deliberation is not published.deliberation
@@ -63,14 +64,14 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
     return (*outputs, Output("status", _status(context, state)))
 
 
-def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, str]:
+def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, Cause]:
     """Outcome of an action that the new decision does not begin with: its effects hold, or others come first."""
     steps = plan.steps if plan is not None and not running.asserted else ()
     action = next((step.action for step in steps if step.id == running.step), None)
     facts = state.task.facts
     if action is not None and planning.apply_action(context.pddl_domain, context.problem, facts, action) <= facts:
-        return "done", "its effects hold already"
-    return "aborted", "another action comes first now"
+        return "done", Cause(Reason.EFFECTS_HOLD)
+    return "aborted", Cause(Reason.SUPERSEDED)
 
 
 def _searched(deliberation: Deliberation | None) -> tuple[int, float]:
@@ -82,9 +83,17 @@ def _searched(deliberation: Deliberation | None) -> tuple[int, float]:
 
 
 def _plan(context: Context, state: State, result: PlanFound) -> m.PlanReport:
-    text = planning.format_links(result.plan) if result.plan is not None else ""
-    stamp_ns = context.stamp(state.now_ns)
-    return m.PlanReport(stamp_ns, result.status, result.way, text, result.generated, result.visited, result.reason)
+    reason, detail = _texts(result.refusal)
+    return m.PlanReport(
+        stamp_ns=context.stamp(state.now_ns),
+        status=result.status,
+        way=result.way,
+        plan=planning.format_links(result.plan) if result.plan is not None else "",
+        generated=result.generated,
+        visited=result.visited,
+        reason=reason,
+        detail=detail,
+    )
 
 
 def _finite(value_s: float) -> float:
@@ -156,19 +165,28 @@ def _parameter(name: str, variable: Variable, decision: Decision) -> m.Parameter
 
 
 def _status(context: Context, state: State) -> m.ExecStatus:
-    running = state.task.running
+    task, running = state.task, state.task.running
+    reason, detail = _texts(state.cause)
+    result_reason, result_detail = _texts(task.result_cause)
     return m.ExecStatus(
         stamp_ns=context.stamp(state.now_ns),
         tick=state.tick,
         mode=str(state.mode),
-        reason=state.reason,
+        reason=reason,
         scenario=context.scenario.name,
-        goal=state.task.goal,
-        result=state.task.result,
+        goal=task.goal,
+        result=str(task.result),
         action=running.action.name if running else "",
-        action_index=state.task.finished,
+        action_index=task.finished,
         action_elapsed_s=running.elapsed_s(state.now_ns) if running else 0.0,
         action_predicted_s=running.predicted_s if running else 0.0,
         belief=context.domain.belief_values(state.belief),
         sender=context.sender,
+        detail=detail,
+        result_reason=result_reason,
+        result_detail=result_detail,
     )
+
+
+def _texts(cause: Cause | None) -> tuple[str, str]:
+    return (str(cause.reason), cause.detail) if cause is not None else ("", "")

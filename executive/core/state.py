@@ -11,9 +11,11 @@ from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.plan_reuse import Improvement
+from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.interfaces.values import Belief, Fact
 from tailor.executive.planning import GroundCache, Plan
 from tailor.schemas.messages import DriverState, Message, Sample
+from tailor.schemas.reason_text import reason_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +51,21 @@ class Task:
 
     goal: str = ""
     active: bool = False
-    result: str = ""  # "", "achieved", "failed: why"
+    result: Result = Result.OPEN
+    result_cause: Cause | None = None  # of a failed task
     facts: frozenset[Fact] = frozenset()  # the remembered abstract state
     plan: Plan | None = None
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
-    failures: tuple[str, ...] = ()  # failures since the last success
+    failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since the last success
     running: Running | None = None
     decision: Decision | None = None  # of the last deliberation
     external_failed: bool = False  # the external planner gets no more requests for this goal
+
+    @property
+    def result_text(self) -> str:
+        """The result for people, e.g. "achieved" or "failed: unsolvable: dead end"; "" while it is open."""
+        return reason_text(self.result, str(self.result_cause) if self.result_cause is not None else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +81,8 @@ class State:
     tick: int = 0
     now_ns: int = 0
     mode: Mode = Mode.DISARMED
-    reason: str = ""
-    fault: str = ""
+    cause: Cause | None = None  # of the mode
+    fault: Cause | None = None
     arrivals: Mapping[str, int] = field(default_factory=dict)
     overruns_ns: tuple[int, ...] = ()  # ticks of the last second before which whole periods were lost
     arming: Arming = field(default_factory=Arming)

@@ -27,7 +27,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     receive_answers(context, state, inputs)
     state, finished = act(context, state)
     outputs: list[Output] = []
-    if not disarmed(context, state):
+    if disarmed(context, state) is None:
         command = context.domain.message(state.command, context.stamp(state.now_ns))
         outputs.append(Output(context.domain.command_topic, command))
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
@@ -83,6 +83,6 @@ def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | No
 def _disarm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:
     """Request to disarm, if the driver obeys this executive."""
     driver = state.arming.driver
-    if driver is None or disarmed(context, state):
+    if driver is None or disarmed(context, state) is not None:
         return state, None
     return state, ArmRequest(arm=False, reset=False, sender=context.sender, epoch=driver.epoch)

@@ -73,5 +73,5 @@ class FailureDetector:
         before, self._modes[raw.key] = self._modes.get(raw.key), state.mode
         if before is None or state.mode == before or state.mode not in bad:
             return ""
-        cause = reason_text(state.reason, state.detail) if isinstance(state, DriverState) else state.reason
+        cause = reason_text(state.reason, state.detail)
         return f"{raw.key}: {state.mode}: {cause}"

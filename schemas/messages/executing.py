@@ -1,4 +1,4 @@
-"""What the executive does: its state after each tick, and how its actions ended."""
+"""State of the executive after each tick, and the outcomes of its actions."""
 
 from __future__ import annotations
 
@@ -14,27 +14,31 @@ class ExecStatus(Message):
     stamp_ns: int
     tick: int
     mode: str  # DISARMED READY EXECUTING HOLDING FAULT
-    reason: str
+    reason: str  # of the mode, see docs/reasons.md
     scenario: str
     goal: str
-    result: str  # "", "achieved", "failed: why"
+    result: str  # "", "achieved", "failed"
     action: str  # e.g. "goToPose", empty between actions
     action_index: int
     action_elapsed_s: float
     action_predicted_s: float
     belief: tuple[float, ...] = ()  # in the order of the domain's belief_names
     sender: str = ""  # this executive's sender id, 32 hex digits
+    detail: str = ""  # of the reason
+    result_reason: str = ""  # of a failed task
+    result_detail: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class ActionFinished(Message):
-    """One action ended: how, and how long it took against what was predicted."""
+    """Outcome of an action, with its actual and its predicted duration."""
 
     stamp_ns: int
     tick: int
     action: str
     action_index: int
     outcome: str  # "done", "failed", "aborted"
-    reason: str
+    reason: str  # empty if the controller ended it with "done"
     predicted_s: float
     actual_s: float
+    detail: str = ""  # of the reason

@@ -17,7 +17,8 @@ class PlanReport(Message):
     plan: str
     generated: int
     visited: int
-    reason: str
+    reason: str  # empty if there is a plan
+    detail: str = ""  # of the reason
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,8 +95,8 @@ def test_verify_names_the_first_tick_that_differs(recording):
 
     runs = RecordedRuns(recording)
     run = runs.runs[0]
-    other = {**run.provenance, "order": json.loads(json.dumps(run.provenance["order"]))}
-    other["order"]["settings"]["refinement"]["horizon"] = 1
+    other = {**run.provenance, "config": json.loads(json.dumps(run.provenance["config"]))}
+    other["config"]["settings"]["refinement"]["horizon"] = 1
     difference = verify(runs, run, rebuild_context(other)).difference
     assert difference is not None
     assert difference.key in ("exec/refinement", "exec/subgoals")

@@ -62,7 +62,7 @@ def with_provenance(change):
 
 
 def other_horizon(made_of):
-    made_of["order"]["settings"]["refinement"]["horizon"] = 1
+    made_of["config"]["settings"]["refinement"]["horizon"] = 1
 
 
 def other_machine(made_of):

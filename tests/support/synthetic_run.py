@@ -105,7 +105,7 @@ def arm_run(seed: int = 1) -> Iterator[Published]:
 def order(domain: str, seed: int) -> dict[str, object]:
     """A provenance as the executive writes it, as far as it matters here."""
     settings = {"seed": seed, "refinement": {"horizon": 2}}
-    return {"order": {"domain": domain, "scenario": "approach-dribble", "settings": settings, "zoo": ""}}
+    return {"config": {"domain": domain, "scenario": "approach-dribble", "settings": settings, "zoo": ""}}
 
 
 def subgoals(tick: int, sequence, choice, done: int) -> m.Subgoals:

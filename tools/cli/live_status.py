@@ -12,6 +12,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, Subgoals, TickReport
+from tailor.schemas.reason_text import reason_text, result_text
 
 
 class Screen(Protocol):
@@ -69,7 +70,7 @@ class _Panel:
         if status is None:
             grid.add_row("waiting for the executive")
             return grid
-        grid.add_row("mode", f"{status.mode} {status.reason}".strip())
+        grid.add_row("mode", f"{status.mode} {reason_text(status.reason, status.detail)}".strip())
         predicted = max(status.action_predicted_s, 0.1)
         if status.action:
             bar = ProgressBar(total=predicted, completed=min(status.action_elapsed_s, predicted), width=30)
@@ -96,14 +97,15 @@ def screen() -> Iterator[Screen]:
 def _summary(message: Message) -> str:
     if isinstance(message, ActionFinished):
         duration = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
-        reason = f" ({message.reason})" if message.reason else ""
+        reason = f" ({reason_text(message.reason, message.detail)})" if message.reason else ""
         return f"  {message.action} {message.outcome}{reason}: {duration}"
     if isinstance(message, PlanReport) and message.status == "failed":
-        return f"  planner failed: {message.reason}"
+        return f"  planner failed: {reason_text(message.reason, message.detail)}"
     if isinstance(message, ExecStatus):
         if message.result or message.action:
-            return f"  {message.result or message.action}"
-        return f"  {message.mode} {message.reason}".rstrip() if message.reason else ""
+            result = result_text(message.result, message.result_reason, message.result_detail)
+            return f"  {result or message.action}"
+        return f"  {message.mode} {reason_text(message.reason, message.detail)}" if message.reason else ""
     if isinstance(message, Subgoals) and message.actions:
         chosen = [f"{p.name} {p.value:.2f}" for p in message.actions[0].parameters if not p.bound]
         return f"  {message.actions[0].action} with {', '.join(chosen)}" if chosen else ""

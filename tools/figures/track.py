@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
+from tailor.schemas.reason_text import result_text
 from tailor.tools.viewer.planar_scene import TRUTH_TYPES, PlanarScene, Position, scene_of_message
 
 
@@ -57,7 +58,7 @@ def track_of(title: str, messages: Iterable[Message]) -> Track:
     for message in messages:
         if isinstance(message, ExecStatus):
             status = message
-            track.result = message.result or track.result
+            track.result = result_text(message.result, message.result_reason, message.result_detail) or track.result
         elif isinstance(message, ActionFinished):
             track.finished.append(message)
         elif isinstance(message, Subgoals):

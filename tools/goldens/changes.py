@@ -63,7 +63,7 @@ def _made_of(before: dict[str, Any], now: dict[str, Any]) -> Iterator[str]:
     models = [name for name in names if before["models"].get(name) != now["models"].get(name)]
     if models:
         yield f"models    others: {', '.join(models)}"
-    was, is_now = _leaves(before["order"]), _leaves(now["order"])
+    was, is_now = _leaves(before["config"]), _leaves(now["config"])
     for name, value in was.items():
         if is_now.get(name) != value:
             yield f"settings  {name} was {value}, now {is_now.get(name, 'gone')}"

@@ -19,7 +19,7 @@ from tailor.runtime.processes.supervisor import ProcessSpec, Supervisor
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, ExecStatus
-from tailor.schemas.reason_text import reason_text
+from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.launch.own_executive import OwnExecutive
 
@@ -95,7 +95,8 @@ def _watch(plan: LaunchConfig, inbox: Inbox, supervisor: Supervisor, screen: Scr
                 supervisor.report_alive("executive", turn.now_ns)
                 screen.show(sample.message)
                 if isinstance(sample.message, ExecStatus):
-                    result = sample.message.result
+                    status = sample.message
+                    result = result_text(status.result, status.result_reason, status.result_detail)
         supervisor.poll(turn.now_ns)
         ended = _ended(supervisor) or (plan.once and (result or stopped))
         if ended:

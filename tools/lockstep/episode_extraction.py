@@ -17,6 +17,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Message, Subgoals
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.lockstep.action_run import TaskSampler, sampler_of
 
 MIN_TICKS = 3
@@ -129,7 +130,7 @@ class EpisodeExtractor:
         if run is None or len(run.ticks) < MIN_TICKS or finished.outcome == "aborted":
             return
         done = finished.outcome == "done"
-        failure = "" if done else finished.reason
+        failure = "" if done else reason_text(finished.reason, finished.detail)
         observed = bool(run.action.success_model) and run.start is not None
         failure = run.failure or failure if observed else failure or UNOBSERVED
         ticks = np.stack(run.ticks)

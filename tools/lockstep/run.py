@@ -95,7 +95,7 @@ def run_lockstep(
         goal = ""
         _add(run, state, outputs, now_ns / 1e9)
         if not state.task.active:
-            run.result = state.task.result
+            run.result = state.task.result_text
             break
         link.send(outputs, now_ns, tick)
         samples = link.advance(now_ns, run)

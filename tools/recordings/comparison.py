@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, PlanReport, Subgoals
+from tailor.schemas.reason_text import result_text
 from tailor.schemas.topics import TOPICS
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
 
@@ -41,7 +42,7 @@ def compared_run(path: Path) -> ComparedRun:
     """
     run = RecordedRuns(path).runs[0]
     status = _said(run, "status", ExecStatus)
-    results = [message.result for message in status if message.result]
+    results = [result_text(s.result, s.result_reason, s.result_detail) for s in status if s.result]
     return ComparedRun(
         name=path.stem,
         actions=tuple(_said(run, "finished", ActionFinished)),

@@ -11,7 +11,7 @@ from tailor.runtime.recordings.recording import Recorded, Recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, TickReport
-from tailor.schemas.reason_text import reason_text
+from tailor.schemas.reason_text import reason_text, result_text
 from tailor.schemas.typesystem import type_of
 
 
@@ -107,9 +107,10 @@ def _percentile(known: list[float], q: int) -> float:
 def _status(found: Survey, key: str, message: ExecStatus) -> None:
     found.modes[message.mode] += 1
     if message.mode == "FAULT" and found._mode.get(key) != "FAULT":
-        found.faults.append(message.reason)
+        found.faults.append(reason_text(message.reason, message.detail))
     if message.result and message.result != found._result:
-        found.results.append((message.goal, message.result))
+        result = result_text(message.result, message.result_reason, message.result_detail)
+        found.results.append((message.goal, result))
     found._mode[key], found._result = message.mode, message.result
 
 

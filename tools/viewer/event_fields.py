@@ -74,7 +74,7 @@ def finished(message: m.ActionFinished) -> Fields:
         "action": message.action,
         "index": message.action_index,
         "outcome": message.outcome,
-        "reason": message.reason,
+        "reason": reason_text(message.reason, message.detail),
         "predicted": number(message.predicted_s),
         "actual": number(message.actual_s),
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tailor.executive import planning
 from tailor.schemas.messages import PlanReport
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.viewer.event_fields import Fields
 
 
@@ -12,7 +13,7 @@ def plan_graph(message: PlanReport) -> Fields:
     fields: Fields = {
         "status": message.status,
         "way": message.way,
-        "reason": message.reason,
+        "reason": reason_text(message.reason, message.detail),
         "generated": message.generated,
         "visited": message.visited,
         "text": message.plan,

@@ -14,11 +14,11 @@ TIMES_MS = {"period": 100, "budget": 60, "end": 80}
 
 def run_facts(provenance: str) -> Fields:
     """Facts of the page from the JSON of a `Provenance` message; missing ones are left out."""
-    order = _table(_loads(provenance).get("order"))
-    settings = _table(order.get("settings"))
+    config = _table(_loads(provenance).get("config"))
+    settings = _table(config.get("settings"))
     facts = {
-        "domain": order.get("domain"),
-        "scenario": order.get("scenario"),
+        "domain": config.get("domain"),
+        "scenario": config.get("scenario"),
         "seed": settings.get("seed"),
         "horizon": _table(settings.get("refinement")).get("horizon"),
     }

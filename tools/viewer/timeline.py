@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
+from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.viewer import event_fields
 from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
@@ -111,7 +112,13 @@ class RunTimeline:
         return [("about", facts)]
 
     def _status(self, at_s: float, message: m.ExecStatus) -> Rows:
-        state = {name: getattr(message, name) for name in ("mode", "reason", "scenario", "goal", "result")}
+        state: Fields = {
+            "mode": message.mode,
+            "reason": reason_text(message.reason, message.detail),
+            "scenario": message.scenario,
+            "goal": message.goal,
+            "result": result_text(message.result, message.result_reason, message.result_detail),
+        }
         rows = self._changed("state", state)
         action = (message.action_index if message.action else -1, message.action)
         self._action = action

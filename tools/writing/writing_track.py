@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tailor.executive.domains.arm.letters import font
 from tailor.executive.domains.arm.robot import JOINTS
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, MotorCurrents, Subgoals
+from tailor.schemas.reason_text import result_text
 
 Array = NDArray[np.float64]
 PERIOD_S = 0.1  # an action is done one period before its waypoint
@@ -75,7 +76,7 @@ def writing_track(title: str, text: str, messages: Iterable[Message]) -> Writing
     return WritingTrack(
         title=title,
         text=text,
-        result=next((s.result for s in reversed(statuses) if s.result), ""),
+        result=next(filter(None, (_result(status) for status in reversed(statuses))), ""),
         times_s=np.array([(state.stamp_ns - begun_ns) * 1e-9 for state in states]),
         angles=_joints(states, "positions"),
         velocities=_joints(states, "velocities"),
@@ -84,6 +85,10 @@ def writing_track(title: str, text: str, messages: Iterable[Message]) -> Writing
         predicted_s=np.array([f.predicted_s for f in finished]),
         peak_current_a=max((max(m.peak_amperes) for m in currents), default=0.0),
     )
+
+
+def _result(status: ExecStatus) -> str:
+    return result_text(status.result, status.result_reason, status.result_detail)
 
 
 def _joints(states: list[JointState], field: str) -> Array:

@@ -11,6 +11,7 @@ from tailor.executive import planning
 from tailor.executive.core.command_guard import checked
 from tailor.executive.core.context import MAX_GOAL_BYTES, Settings, check_goal
 from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.reasons import Cause, Reason, Result
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
@@ -31,6 +32,8 @@ from tests.support.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, 
 
 TICK = 100_000_000
 GOAL = "(and (visited a) (visited b) (at b))"
+HOLD, DISARMED = Cause(Reason.INPUT_STALE, "odom"), Cause(Reason.DRIVER_NOT_ARMED, "stopped")
+FAULT = Cause(Reason.REPEATED_FAILURE, "slide")
 
 
 def drive(context, goal=GOAL, ticks=100, checks=200, world=None):
@@ -77,6 +80,15 @@ def test_same_inputs_and_checks_give_the_same_outputs():
     assert first == [outputs for _, outputs, _ in drive(line_context(), checks=7)]
 
 
+def test_a_step_consumes_its_state_for_the_deliberation_is_resumed_in_place():
+    context = line_context()
+    before, _ = step(context, initial_state(context), TICK, inputs(TICK, 0.0, GOAL), CheckBudget(0))
+    stage = before.deliberation.stage
+    after, _ = step(context, before, 2 * TICK, inputs(2 * TICK, 0.0), CheckBudget(200))
+    assert after.deliberation is before.deliberation
+    assert before.deliberation.stage != stage
+
+
 def test_starved_budget_only_delays_and_never_moves_without_a_decision():
     run = list(drive(line_context(), checks=1, ticks=300))
     assert run[0][0].command == (0.0,)
@@ -104,7 +116,7 @@ def test_commands_go_out_only_while_the_driver_obeys_this_executive():
 
     run = list(drive(line_context(), world=other, ticks=10))
     assert messages(run, VelocityCommand) == []
-    assert run[-1][0].reason.startswith("driver obeys another executive")
+    assert run[-1][0].cause == Cause(Reason.DRIVER_OBEYS_ANOTHER, "ff" * 4)
 
 
 def test_driver_is_asked_to_arm_once_and_never_again_after_it_stopped_or_restarted():
@@ -124,9 +136,9 @@ def test_failing_action_is_replanned_once_and_then_a_fault():
     context = line_context(places={"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}})
     run = list(drive(context, goal="(visited a)", ticks=20))
     finished = messages(run, ActionFinished)
-    assert [(f.outcome, f.reason) for f in finished] == [("failed", "too far")] * 2
+    assert [(f.outcome, f.reason, f.detail) for f in finished] == [("failed", Reason.CONTROLLER_FAILED, "too far")] * 2
     assert run[-1][0].mode is Mode.FAULT
-    assert run[-1][0].reason == "slide: too far"
+    assert run[-1][0].cause == Cause(Reason.REPEATED_FAILURE, "slide: controller failed: too far")
     assert run[-1][0].command == (0.0,)
 
 
@@ -136,12 +148,13 @@ def test_action_that_never_ends_is_given_up_at_its_time_limit():
 
     finished = messages(list(drive(line_context(), world=stuck, ticks=130)), ActionFinished)
     assert finished[0].outcome == "failed"
-    assert finished[0].reason == "slide took longer than 10.0 s"
+    assert (finished[0].reason, finished[0].detail) == (Reason.ACTION_TIMEOUT, "10.0 s")
 
 
 def test_unsolvable_goal_is_told_once_and_nothing_moves():
     run = list(drive(line_context(), goal="(visited home)", ticks=10))
-    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert run[-1][0].task.result is Result.FAILED
+    assert run[-1][0].task.result_cause.reason is Reason.UNSOLVABLE
     assert all(state.command == (0.0,) for state, _, _ in run)
     assert len(messages(run, PlanReport)) == 1
 
@@ -149,8 +162,8 @@ def test_unsolvable_goal_is_told_once_and_nothing_moves():
 def test_a_goal_too_long_to_be_told_is_refused_and_the_longest_one_is_told():
     context = line_context()
     longest = GOAL + " " * (MAX_GOAL_BYTES - len(GOAL))
-    assert check_goal(context, longest) == ""
-    assert check_goal(context, longest + " ") == "the goal has 8001 bytes, expected at most 8000"
+    assert check_goal(context, longest) is None
+    assert check_goal(context, longest + " ") == Cause(Reason.GOAL_TOO_LONG, "8001 bytes, expected at most 8000")
     run = drive(context, goal=longest, ticks=5)
     told = messages(run, ExecStatus)
     assert [codec.decode(TOPICS["status"], codec.encode(status)) for status in told] == told
@@ -187,7 +200,7 @@ def test_three_overruns_in_a_second_hold_the_robot():
 
     run = list(drive(line_context(), world=world, ticks=60))
     assert run[6][0].mode is Mode.HOLDING
-    assert run[6][0].reason == "3 overruns in a second"
+    assert run[6][0].cause == Cause(Reason.OVERRUNS, "3 in a second")
     assert run[-1][0].task.result == "achieved"
 
 
@@ -206,14 +219,14 @@ def test_clock_that_goes_back_holds_for_that_tick():
 @pytest.mark.parametrize(
     ("mode", "now", "expected"),
     [
-        (Mode.READY, Conditions(goal_active=True), (Mode.EXECUTING, "")),
-        (Mode.EXECUTING, Conditions(hold="stale: odom", goal_active=True), (Mode.HOLDING, "stale: odom")),
-        (Mode.READY, Conditions(hold="stale: odom"), (Mode.READY, "")),
-        (Mode.HOLDING, Conditions(goal_active=True), (Mode.EXECUTING, "")),
-        (Mode.EXECUTING, Conditions(disarmed="stopped", hold="x", goal_active=True), (Mode.DISARMED, "stopped")),
-        (Mode.EXECUTING, Conditions(fault="f", disarmed="d"), (Mode.FAULT, "f")),
-        (Mode.FAULT, Conditions(goal_active=True), (Mode.FAULT, "")),
-        (Mode.EXECUTING, Conditions(), (Mode.READY, "")),
+        (Mode.READY, Conditions(goal_active=True), (Mode.EXECUTING, None)),
+        (Mode.EXECUTING, Conditions(hold=HOLD, goal_active=True), (Mode.HOLDING, HOLD)),
+        (Mode.READY, Conditions(hold=HOLD), (Mode.READY, None)),
+        (Mode.HOLDING, Conditions(goal_active=True), (Mode.EXECUTING, None)),
+        (Mode.EXECUTING, Conditions(disarmed=DISARMED, hold=HOLD, goal_active=True), (Mode.DISARMED, DISARMED)),
+        (Mode.EXECUTING, Conditions(fault=FAULT, disarmed=DISARMED), (Mode.FAULT, FAULT)),
+        (Mode.FAULT, Conditions(goal_active=True), (Mode.FAULT, None)),
+        (Mode.EXECUTING, Conditions(), (Mode.READY, None)),
     ],
 )
 def test_mode_table(mode, now, expected):
@@ -266,7 +279,7 @@ def test_action_whose_effects_hold_already_is_done_and_not_aborted():
 
     run = list(drive(context, goal="(visited a)", world=world, ticks=10))
     ended = messages(run, ActionFinished)
-    assert [(f.outcome, f.reason) for f in ended] == [("done", "its effects hold already")]
+    assert [(f.outcome, f.reason) for f in ended] == [("done", Reason.EFFECTS_HOLD)]
     assert run[-1][0].task.result == "achieved"
 
 
@@ -320,7 +333,7 @@ def test_action_whose_support_is_gone_does_not_start():
     run = list(drive(line_context(), world=world, ticks=6))
     assert run[0][0].task.decision is not None
     assert all(state.task.running is None for state, _, _ in run)
-    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert run[-1][0].task.result_cause.reason is Reason.UNSOLVABLE
 
 
 def test_a_better_subgoal_is_adopted_while_the_action_runs_only_if_it_gains_enough():
@@ -333,7 +346,8 @@ def test_a_better_subgoal_is_adopted_while_the_action_runs_only_if_it_gains_enou
 def test_command_that_is_not_finite_fails_the_action_and_is_never_sent():
     context = line_context(places={"home": {"x": 0.0}, "a": {"x": -6.0}, "b": {"x": 1.0}})
     run = list(drive(context, goal="(visited a)", ticks=12))
-    assert [f.reason for f in messages(run, ActionFinished)] == ["command for v is nan"] * 2
+    ends = [(f.reason, f.detail) for f in messages(run, ActionFinished)]
+    assert ends == [(Reason.COMMAND_INVALID, "v is nan")] * 2
     assert all(command.v == 0.0 for command in messages(run, VelocityCommand))
 
 
@@ -348,7 +362,8 @@ def test_unsound_plan_is_not_executed(monkeypatch):
 
     monkeypatch.setattr(planning, "Search", Broken)
     run = list(drive(line_context(), ticks=5))
-    assert run[-1][0].task.result.startswith("failed: no plan")
+    assert run[-1][0].task.result is Result.FAILED
+    assert run[-1][0].task.result_cause.reason is Reason.PLAN_UNSOUND
     assert all(state.command == (0.0,) for state, _, _ in run)
 
 

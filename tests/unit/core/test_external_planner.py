@@ -10,6 +10,7 @@ import pytest
 from tailor.executive.core.context import PlannerCommand, Settings
 from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.plan_source import GRACE_S
+from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
@@ -107,23 +108,24 @@ def test_nothing_moves_while_the_planner_is_asked_and_no_tick_works_for_it():
 
 
 @pytest.mark.parametrize(
-    ("answer", "reason"),
+    ("answer", "reason", "detail"),
     [
-        (lambda r: answer_of(r, well, "timeout"), "timeout: the planner timeout"),
-        (lambda r: answer_of(r, well, "flood"), "flood"),
-        (lambda r: answer_of(r, well, "crashed"), "crashed"),
-        (lambda r: answer_of(r, well, "missing"), "missing"),
-        (lambda r: answer_of(r, lambda _: ""), "there is no plan"),
-        (lambda r: answer_of(r, lambda _: "\0\ufffd(((" * 99), "plan text, line 1"),
-        (lambda r: answer_of(r, unsoundly), "unsound"),
+        (lambda r: answer_of(r, well, "timeout"), Reason.PLANNER_FAILED, "timeout: the planner timeout"),
+        (lambda r: answer_of(r, well, "flood"), Reason.PLANNER_FAILED, "flood"),
+        (lambda r: answer_of(r, well, "crashed"), Reason.PLANNER_FAILED, "crashed"),
+        (lambda r: answer_of(r, well, "missing"), Reason.PLANNER_FAILED, "missing"),
+        (lambda r: answer_of(r, lambda _: ""), Reason.PLAN_UNREADABLE, "there is no plan"),
+        (lambda r: answer_of(r, lambda _: "\0\ufffd(((" * 99), Reason.PLAN_UNREADABLE, "plan text, line 1"),
+        (lambda r: answer_of(r, unsoundly), Reason.PLAN_UNSOUND, ""),
     ],
 )
-def test_a_failed_planner_is_told_once_and_our_own_takes_over(answer, reason):
+def test_a_failed_planner_is_told_once_and_our_own_takes_over(answer, reason, detail):
     run = Run(answer).go()
     reports = [report for _, report in run.messages(PlanReport)]
     assert (reports[0].status, reports[0].way, reports[0].plan) == ("failed", "external", "")
-    assert reason in reports[0].reason
-    assert reports[0].reason.endswith("; our own planner takes over")
+    assert reports[0].reason == reason
+    assert detail in reports[0].detail
+    assert reports[0].detail
     assert (reports[1].status, reports[1].way) == ("solved", "searched")
     assert sum(report.status == "failed" for report in reports) == 1
     assert run.state.task.result == "achieved"
@@ -142,7 +144,7 @@ def test_after_a_failure_it_is_asked_again_only_for_a_new_goal():
 def test_an_answer_that_never_comes_does_not_hold_the_robot_for_ever():
     run = Run(None).go(ticks=120)
     (failed,) = [(n, r) for n, r in run.messages(PlanReport) if r.status == "failed"]
-    assert "no answer within 3.5 s" in failed[1].reason
+    assert "no answer within 3.5 s" in failed[1].detail
     assert failed[0] == pytest.approx(1 + 10 * (LIMIT_S + GRACE_S), abs=1)
     assert run.state.task.result == "achieved"
 

@@ -214,7 +214,7 @@ def test_a_run_s_provenance_names_its_tree_and_a_run_without_is_made_again_witho
     assert with_tree["models"]["refinement/benefit"] == read_card(card_path(tree_of(zoo)))["sha256"]
     assert rebuild_context(with_tree).models.gate is not None
     assert rebuild_context(without).models.gate is None
-    del without["order"]["settings"]["refinement"]["gate"]  # recorded before there were trees
+    del without["config"]["settings"]["refinement"]["gate"]  # recorded before there were trees
     assert rebuild_context(without).models.gate is None
     remove_gate(zoo, "agilo")
     with pytest.raises(UsageError, match="refinement/benefit is missing"):

@@ -125,14 +125,14 @@ def with_provenance(monkeypatch, text):
     monkeypatch.setattr(recorded_run, "open_recording", lambda path: whole)
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", "[" * 100_000, "{}", '{"order": 5}', None])
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", "[" * 100_000, "{}", '{"config": 5}', None])
 def test_a_run_that_does_not_say_what_it_was_made_of_is_refused_in_one_line(monkeypatch, text):
     with_provenance(monkeypatch, text)
     with pytest.raises(UsageError, match="provenance"):
         rebuild_context(RecordedRuns(GOLDEN).runs[0].provenance)
 
 
-@pytest.mark.parametrize("name", ["order", "sender", "stamp_offset_ns", "models", "machine"])
+@pytest.mark.parametrize("name", ["config", "sender", "stamp_offset_ns", "models", "machine"])
 @pytest.mark.parametrize("value", [None, "x", 1.5, []])
 def test_every_part_of_a_provenance_is_checked(name, value):
     said = RecordedRuns(GOLDEN).runs[0].provenance

@@ -14,6 +14,7 @@ from rich.table import Table
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, PlanReport
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.comparison import ComparedRun, chosen, commands_apart, compared_run
 
@@ -103,7 +104,9 @@ def _changes(run: ComparedRun) -> list[str]:
 def _steps(plan: PlanReport) -> str:
     """The steps of a plan in VHPOP's form, in its order, or why there is none."""
     steps = re.findall(r"^Step \d+\s*: (\(.*\))", plan.plan, flags=re.MULTILINE)
-    return " ".join(steps) or (f"{plan.status}: {plan.reason}" if plan.reason else "nothing left to do")
+    return " ".join(steps) or (
+        f"{plan.status}: {reason_text(plan.reason, plan.detail)}" if plan.reason else "nothing left to do"
+    )
 
 
 def _distinct(texts: list[str]) -> list[str]:

@@ -55,7 +55,7 @@ def _goal(context: Context, arguments: argparse.Namespace) -> str:
     if arguments.wait:
         return ""
     goal: str = arguments.goal or context.problem.goal_text
-    problem = check_goal(context, goal)
-    if problem:
-        raise UsageError(f"--goal {goal}: {problem}")
+    refusal = check_goal(context, goal)
+    if refusal is not None:
+        raise UsageError(f"--goal {goal}: {refusal}")
     return goal

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from tailor.executive.core.reasons import Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
@@ -103,5 +104,5 @@ def summary(blind: dict[int, Outcome], asserted: dict[int, Outcome]) -> dict[str
         "predicted_fail_observed_success_pct": 100 * count(lambda _, now: now.asserted and succeeded(now)) / n,
         "predicted_success_observed_fail_pct": 100 * count(lambda _, now: not now.asserted and not succeeded(now)) / n,
         "predicted_success_observed_success_pct": 100 * count(lambda _, now: not now.asserted and succeeded(now)) / n,
-        "no_subgoal_found": count(lambda _, now: "no subgoal helps" in now.result),
+        "no_subgoal_found": count(lambda _, now: Reason.NO_SUBGOAL in now.result),
     }
