@@ -1,4 +1,4 @@
-"""A body without physics for tests of the bus: a unicycle that does at once what it is told."""
+"""A body without physics for tests of the bus: a unicycle that follows commands at once."""
 
 import math
 

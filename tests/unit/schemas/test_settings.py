@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 
 import pytest
 
@@ -41,22 +42,18 @@ def test_nested_tables_become_nested_settings():
         ),
     ],
 )
-def test_mistake_is_told_with_its_key_and_what_was_expected(table, expected):
+def test_a_mistake_is_reported_with_its_key_and_the_expected_value(table, expected):
     with pytest.raises(UsageError) as caught:
         from_table(Deployment, table, "f.toml")
     assert str(caught.value) == expected
 
 
-def test_all_mistakes_are_told_at_once():
+def test_all_mistakes_are_reported_at_once():
     with pytest.raises(UsageError) as caught:
         from_table(Deployment, {"colour": 1, "executive": {"seeds": 1, "coast_ticks": 1.5}}, "f.toml")
-    assert [key in str(caught.value) for key in ("'colour'", "'executive.seeds'", "'executive.coast_ticks'")] == [
-        True
-    ] * 3
+    assert all(key in str(caught.value) for key in ("'colour'", "'executive.seeds'", "'executive.coast_ticks'"))
 
 
-def test_an_order_survives_its_way_through_json():
-    import dataclasses
-
-    order = ExecutiveConfig("soccer", "approach-dribble")
-    assert from_table(ExecutiveConfig, json.loads(json.dumps(dataclasses.asdict(order))), "x") == order
+def test_a_configuration_survives_its_way_through_json():
+    config = ExecutiveConfig("soccer", "approach-dribble")
+    assert from_table(ExecutiveConfig, json.loads(json.dumps(asdict(config))), "x") == config

@@ -197,13 +197,13 @@ def test_pose_noise_has_its_declared_size_and_is_correlated():
 
 
 @pytest.mark.parametrize(
-    ("ball", "seen"), [((1.0, 0.0), True), ((-1.0, 0.0), False), ((1.0, 1.5), False), ((9.0, 0.0), False)]
+    ("ball", "visible"), [((1.0, 0.0), True), ((-1.0, 0.0), False), ((1.0, 1.5), False), ((9.0, 0.0), False)]
 )
-def test_the_ball_is_measured_only_in_view(ball, seen):
+def test_the_ball_is_measured_only_in_view(ball, visible):
     _, readings = driven((0.0, 0.0), 20, {"ball_x": ball[0], "ball_y": ball[1]})
     percepts = [r.message for r in readings if r.topic == "ball"]
-    assert bool(percepts) is seen
-    if seen:
+    assert bool(percepts) is visible
+    if visible:
         assert np.mean([p.x for p in percepts]) == pytest.approx(1.0, abs=0.06)
 
 

@@ -1,0 +1,77 @@
+"""Services of the simulator without a bus."""
+
+import json
+
+import pytest
+
+from tailor.simnodes.services import Services
+from tailor.simnodes.world import World
+from tests.support.stand_ins.body import FakeBody
+
+
+class Request:
+    def __init__(self, text):
+        self.text, self.reply = text, None
+
+    def accept(self, text):
+        self.reply = (True, text)
+
+    def refuse(self, reason):
+        self.reply = (False, reason)
+
+
+class Server:
+    def __init__(self, *requests):
+        self.waiting = list(requests)
+
+    def poll(self):
+        return self.waiting.pop(0) if self.waiting else None
+
+
+def call(name, text, paused=False):
+    resets = []
+    request = Request(text)
+    services = Services(World(FakeBody(), {"x": 2.0}, 3), {name: Server(request)}, on_reset=lambda: resets.append(1))
+    services.paused = paused
+    services.answer()
+    return services, request.reply, resets
+
+
+def test_services_execute_legal_requests():
+    services, reply, resets = call("reset", json.dumps({"seed": 9, "start": {"x": 5}}))
+    assert (reply, resets, services._world.body.state["x"]) == ((True, "reset"), [1], 5.0)
+    assert call("reset", "")[1] == (True, "reset")
+    services, reply, _ = call("place", '{"ball_x": 4}')
+    assert (reply, services._world.body.state["ball_x"]) == ((True, "placed"), 4.0)
+    assert call("pause", "true")[0].paused
+    services, reply, _ = call("step", "25", paused=True)
+    assert (reply, services.steps_due) == ((True, "25 periods"), 25)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("reset", "[]"),
+        ("reset", '{"sed": 1}'),
+        ("reset", '{"seed": -1}'),
+        ("reset", '{"seed": true}'),
+        ("reset", '{"start": {"x": NaN}}'),
+        ("place", "3"),
+        ("place", '{"x": "1"}'),
+        ("place", '{"x": Infinity}'),
+        ("pause", "1"),
+        ("step", "0"),
+        ("step", "1000000"),
+        ("step", "1.5"),
+        ("step", "not json"),
+        ("place", "[" * 100_000),
+    ],
+)
+def test_services_refuse_senseless_requests(name, text):
+    services, reply, resets = call(name, text, paused=True)
+    assert reply[0] is False
+    assert (resets, services.steps_due) == ([], 0)
+
+
+def test_stepping_needs_a_pause():
+    assert call("step", "1")[1] == (False, "step: pause first")

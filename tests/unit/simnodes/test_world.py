@@ -1,0 +1,43 @@
+"""The simulated world and its scheduled events."""
+
+import numpy as np
+import pytest
+
+from tailor.simnodes.world import Event, World
+from tests.support.stand_ins.body import FakeBody
+
+MS = 1_000_000
+
+
+def make_world(*events):
+    return World(FakeBody(), {"x": 2.0}, 3, events)
+
+
+def test_events_count_from_the_first_accepted_command():
+    world = make_world(Event(0.05, {"ball_x": 9.0}))
+    world.advance(500 * MS)
+    world.begin()
+    world.advance(50 * MS)
+    assert world.body.state["ball_x"] == 1.0
+    world.begin()
+    world.advance(10 * MS)
+    assert world.body.state["ball_x"] == 9.0
+
+
+def test_a_reset_brings_back_start_noise_and_events():
+    world = make_world(Event(0.0, {"ball_x": 9.0}))
+    first = world.body.noise
+    world.begin()
+    world.advance(50 * MS)
+    world.reset()
+    assert (world.body.noise, world.time_ns, world.body.state["x"], world.body.state["ball_x"]) == (first, 0, 2.0, 1.0)
+    world.advance(50 * MS)
+    assert world.body.state["ball_x"] == 1.0
+    world.reset(seed=4, start={"x": 1.0})
+    assert world.body.noise == np.random.default_rng([4, 1]).normal()
+    assert world.body.state["x"] == 1.0
+
+
+def test_a_world_steps_in_whole_body_steps():
+    with pytest.raises(ValueError, match="multiple"):
+        make_world().advance(1)
