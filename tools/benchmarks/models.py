@@ -7,9 +7,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from tailor.executive.interfaces.values import Array
 from tailor.models.cards.card import Card
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.features import SPACES
@@ -18,7 +20,7 @@ from tailor.models.runtime import load_robot, open_session
 from tailor.models.training import learners
 from tailor.models.trees.model_tree import BaggedModelTrees
 
-Predict = Callable[[Any], Any]  # arguments, shape (n, k), to predictions
+Predict = Callable[[Array], object]  # of arguments, shape (n, k)
 BATCHES = (1, 50, 250, 1000)
 LEARNERS: Mapping[str, Callable[[], Any]] = {
     "one tree": lambda: learners.make_learner("duration", "linear", 1),
@@ -58,7 +60,7 @@ def _times(predict: Predict, card: Card, quick: bool) -> list[str]:
     return cells
 
 
-def _examples(count: int) -> tuple[Any, Any, Any]:
+def _examples(count: int) -> tuple[NDArray[np.float32], Array, NDArray[np.intp]]:
     """Features, seconds and episode numbers of a synthetic task: waves and a fold, which need many leaves."""
     rng = np.random.default_rng(0)
     features = rng.uniform([0, 0, 0, 0, -3], [0.6, 0.6, 6, 3, 3], (count, 5)).astype(np.float32)

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.objective.settings import SolverName
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks import certificates
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
@@ -20,6 +21,7 @@ from tailor.tools.benchmarks.refine_cases import Case, cases
 from tailor.tools.benchmarks.refine_runners import Progress, ours, runners
 
 MOMENTS_MS = (5, 20, 60, 80)
+REFERENCES: tuple[SolverName, ...] = ("chain", "differential")
 LONG_MS = 1500  # the search for the best known value
 
 
@@ -37,7 +39,7 @@ def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
     """By solver, the gap to the best known value at each moment, in percent."""
     limit_ms = MOMENTS_MS[-1]
     progress = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
-    references = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in ("chain", "differential")]
+    references = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in REFERENCES]
     best = min(_at(one, LONG_MS) for one in [*references, *progress.values()])
     if not np.isfinite(best):
         raise NoMeasurement(f"no solver has found a valid choice for {task.name}")
@@ -61,6 +63,11 @@ def _at(progress: Progress, moment_ms: float) -> float:
     return min((value for at, value in progress if at <= moment_ms), default=float("inf"))
 
 
+def _percent(value: object) -> str:
+    """A gap in percent; a dash if a task had no valid choice at that moment."""
+    return f"{value:.2f}" if isinstance(value, float) and np.isfinite(value) else "—"
+
+
 def run(console: Console, quick: bool) -> None:
     """Print the tables of the solvers and of the proofs.
 
@@ -69,14 +76,14 @@ def run(console: Console, quick: bool) -> None:
     """
     table = Table(
         *(Column(name, no_wrap=True) for name in ("case", "solver")),
-        title="refinement: mean gap to the best known value after CPU time",
+        title="refinement: mean gap in % to the best known value after CPU time",
     )
     for moment in MOMENTS_MS:
-        table.add_column(f"{moment} ms", justify="right")
+        table.add_column(f"{moment} ms", justify="right", no_wrap=True)
     table.add_column("worst at 60 ms", justify="right")
     for row in rows(quick):
-        gaps = [f"{row[f'gap_pct_at_{moment}_ms']:.2f} %" for moment in MOMENTS_MS]
-        table.add_row(str(row["case"]), str(row["solver"]), *gaps, f"{row['worst_pct_at_60_ms']:.2f} %")
+        columns = [*(f"gap_pct_at_{moment}_ms" for moment in MOMENTS_MS), "worst_pct_at_60_ms"]
+        table.add_row(str(row["case"]), str(row["solver"]), *(_percent(row[column]) for column in columns))
     console.print(table)
     if importlib.util.find_spec("cma") is None:
         console.print("CMA-ES is omitted: package cma is not installed (extra `test`)")

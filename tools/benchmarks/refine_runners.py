@@ -11,10 +11,10 @@ import numpy as np
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
-from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.objective.settings import RefinementSettings, SolverName
 from tailor.executive.refinement.solvers.selection import solver_for
 
-OURS = ("chain", "genetic", "differential")
+OURS: tuple[SolverName, ...] = ("chain", "genetic", "differential")
 
 Progress = list[tuple[float, float]]  # (CPU milliseconds of this process, best value so far), in order of time
 Starts = Sequence[Mapping[int, float]]  # initial candidates; external optimisers do not use them
@@ -33,11 +33,11 @@ def runners() -> Iterator[tuple[str, Runner]]:
     yield "CMA-ES", _cma
 
 
-def ours(name: str) -> Runner:
+def ours(name: SolverName) -> Runner:
     """One of the executive's own solvers."""
 
     def run(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
-        settings = RefinementSettings(solver=name, patience=10**6, checks_max=10**6)  # type: ignore[arg-type]
+        settings = RefinementSettings(solver=name, patience=10**6, checks_max=10**6)
         rng = np.random.default_rng(seed)
         began, progress = time.process_time(), []
         solver = solver_for(objective, settings, rng, objective.vectors(starts))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.ranges import Ranges
@@ -31,9 +31,9 @@ class Boxes:
         """Shape (n, d)."""
         return (self.lower + self.upper) / 2
 
-    def part(self, index: Any) -> Boxes:
-        """Subset of the boxes, by anything that indexes an array."""
-        return Boxes(self.lower[index], self.upper[index])
+    def part(self, indices: NDArray[np.intp]) -> Boxes:
+        """Subset of the boxes."""
+        return Boxes(self.lower[indices], self.upper[indices])
 
     def halves(self, weight: Array) -> Boxes:
         """Each box bisected along its longest side by `weight`, (d,): all lower halves, then all upper ones."""
