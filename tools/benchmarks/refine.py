@@ -77,6 +77,7 @@ def run(console: Console, quick: bool) -> None:
     table = Table(
         *(Column(name, no_wrap=True) for name in ("case", "solver")),
         title="refinement: mean gap in % to the best known value after CPU time",
+        box=None,
     )
     for moment in MOMENTS_MS:
         table.add_column(f"{moment} ms", justify="right", no_wrap=True)
