@@ -25,7 +25,7 @@ class SubgoalComparison:
       with_subgoal: The same with a subgoal asserted at `position`.
       position: Index in `direct` of the action that may fail.
       models: Loaded models.
-      settings: `risk_cost_s` is the price of a failure, `weighing_checks` the effort on each side.
+      settings: `risk_cost_s` is the price of a failure, `comparison_checks` the effort on each side.
       rng: The only source of randomness.
     """
 
@@ -38,7 +38,7 @@ class SubgoalComparison:
         settings: RefinementSettings,
         rng: np.random.Generator,
     ) -> None:
-        limited = replace(settings, checks_max=settings.weighing_checks)
+        limited = replace(settings, checks_max=settings.comparison_checks)
         arrival_ids = frozenset(direct.actions[position - 1].variables) if position else frozenset()
         sides = (
             (with_accepted_risk(direct, position, 1.0), position + 1),

@@ -8,7 +8,7 @@ from typing import Literal
 
 from tailor.schemas.errors import UsageError
 
-COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "weighing_checks")
+COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "comparison_checks")
 NOT_NEGATIVE = (
     "k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
     "certify_gap_pct",
@@ -49,7 +49,7 @@ class RefinementSettings:
     assertion_depth: int = 2  # asserted subgoals in a row before one action
     assertion_samples: int = 1024  # values of the free parameters that must all fail before a subgoal is asserted
     compare_subgoals: bool = True  # assert only at a lower expected cost, with a failure priced at risk_cost_s
-    weighing_checks: int = 40  # batches for each side of that comparison
+    comparison_checks: int = 40  # batches for each side of that comparison
     certify_checks: int = 100  # of about 1 ms, for the proof of the optimality gap of the final choice; 0: no proof
     certify_gap_pct: float = 1.0  # optimality gap at which the proof stops
 
