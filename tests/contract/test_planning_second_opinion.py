@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tailor.executive import domains
 from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
 from tests.support.planning_problems import DATA, OWN, SHARED, read, solve
-from tests.unit.planning.test_language import IRON, TIMED, WORKSHOP
+from tests.unit.executive.planning.test_language import IRON, TIMED, WORKSHOP
 
 kairos = pytest.importorskip("kairos", reason="kairos-planner is not installed: no second opinion")
 

@@ -10,7 +10,7 @@ import pytest
 from tailor.executive.planning import parse_plan, validate
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own, printed
-from tests.unit.planning.test_language import LAMPS, SWITCHES
+from tests.unit.executive.planning.test_language import LAMPS, SWITCHES
 
 OWN = DATA / "own"
 SVG = "{http://www.w3.org/2000/svg}"

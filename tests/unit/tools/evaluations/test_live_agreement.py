@@ -14,7 +14,7 @@ from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Task, Variant, outcome_of
 from tailor.tools.evaluations.task_runs import run_task
-from tests.unit.evaluations.test_refinement_evaluations import DONE
+from tests.unit.tools.evaluations.test_refinement_evaluations import DONE
 
 MARGIN_PCT = 5.0
 

@@ -1,11 +1,11 @@
 """docs/reasons.md lists the executive's reasons completely."""
 
 import re
-from pathlib import Path
 
 from tailor.executive.core.reasons import REASONS, Reason, Result
+from tests.support.bus_system import ROOT
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "reasons.md"
+PAGE = ROOT / "docs" / "reasons.md"
 ROW = re.compile(r"^\| `(\w+)` \| (?:`([^`]+)`|\*\(empty\)\*) \| (.*?) ?\|$", re.MULTILINE)
 
 

@@ -20,7 +20,7 @@ from tailor.tools.evaluations.refinement.sweep import sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
 from tailor.tools.evaluations.traced_runs import trace_run
 from tailor.tools.figures.track import Point, Track
-from tests.unit.evaluations.test_refinement_evaluations import DONE
+from tests.unit.tools.evaluations.test_refinement_evaluations import DONE
 
 TRAINING_SEED = 700_000  # evaluation seeds begin at a million
 FORESEEN = (("goToPose", True, 2.0), ("approachBall", False, 3.0), ("dribbleBall", False, 4.0))

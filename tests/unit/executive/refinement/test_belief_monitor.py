@@ -14,7 +14,7 @@ from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import Pattern, instantiate
 from tailor.executive.refinement.objective.sequence import Failure, InstantiatedAction
 from tests.support.synthetic_models import LIBRARY
-from tests.unit.refinement.test_instantiation import paper_plan
+from tests.unit.executive.refinement.test_instantiation import paper_plan
 
 TOLERANCES = {"x": 0.1, "y": 0.1, "phi": 0.2, "xg": 0.1, "yg": 0.1}
 
