@@ -14,29 +14,13 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap_writer import McapWriter
-from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import MESSAGES, STANDARD, ros_type
+from tests.support.filled import filled
 
 OWN = [kind for kind in MESSAGES if kind not in STANDARD]
 NPM = ["@mcap/core@2", "@foxglove/rosmsg@5", "@foxglove/rosmsg2-serialization@3", "fzstd"]
-
-
-def filled(kind, depth=0):
-    """A message with a telling value in every field."""
-    values = []
-    for number, field in enumerate(fields(kind), start=1):
-        hint = str(field.type)
-        one = {"int": number, "float": number + 0.25, "str": f"text {number}", "bool": True}
-        if hint in one:
-            values.append(one[hint])
-        elif hint.removeprefix("tuple[").split(",")[0] in one:
-            item = one[hint.removeprefix("tuple[").split(",")[0]]
-            values.append((item, item))
-        else:
-            values.append((filled(getattr(m, hint.removeprefix("tuple[").split(",")[0]), depth + 1),) * 2)
-    return kind(*values)
 
 
 @pytest.fixture(scope="module")

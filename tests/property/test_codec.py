@@ -65,10 +65,10 @@ def test_command_and_estop_survive_their_bytes_exactly(message):
 @settings(deadline=None)
 def test_poses_survive_with_their_angle_within_rounding(message, phi):
     message = replace(message, phi=phi)
-    found = decode(type(message), encode(message))
-    assert isinstance(found, type(message))
-    assert abs(math.remainder(found.phi - phi, math.tau)) < 1e-12
-    assert replace(found, phi=phi) == message
+    decoded = decode(type(message), encode(message))
+    assert isinstance(decoded, type(message))
+    assert abs(math.remainder(decoded.phi - phi, math.tau)) < 1e-12
+    assert replace(decoded, phi=phi) == message
 
 
 @given(st.sampled_from(MESSAGES), st.binary(max_size=400))
@@ -98,8 +98,8 @@ def test_mutated_bytes_never_raise(message, data):
 @given(any_message, st.integers(0, 12))
 @settings(deadline=None)
 def test_up_to_seven_trailing_bytes_are_padding(message, count):
-    found = decode(type(message), encode(message) + bytes(count))
-    assert (found == Rejected("trailing bytes")) == (count > 7)
+    decoded = decode(type(message), encode(message) + bytes(count))
+    assert (decoded == Rejected("trailing bytes")) == (count > 7)
 
 
 def put_float(name, value):
@@ -129,8 +129,8 @@ FLOAT_FIELDS = [
 def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
     if path == "phi" and kind in STANDARD and math.isinf(bad):
         pytest.skip("an infinite angle has no quaternion to write")
-    found = decode(kind, encode(put(example(kind), bad)))
-    assert found == Rejected("not finite")
+    decoded = decode(kind, encode(put(example(kind), bad)))
+    assert decoded == Rejected("not finite")
 
 
 @pytest.mark.parametrize(("kind", "path", "put"), FLOAT_FIELDS)
