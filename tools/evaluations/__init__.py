@@ -1,1 +1,1 @@
-"""The evaluations that reproduce the paper's tables and figures, one module each, with `configure` and `run`."""
+"""Evaluations that reproduce the paper's tables and figures: one module each, with `configure` and `run`."""

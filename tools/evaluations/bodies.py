@@ -1,4 +1,4 @@
-"""The bodies that evaluations run on: as gathered from, or degraded, which stands in for the real robot."""
+"""Bodies of evaluations: the one that training used, or a degraded one in place of the real robot."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tailor.tools.lockstep.action_run import new_body
 
 @lru_cache(maxsize=4)
 def body_of(domain: str, profile: str) -> Body:
-    """A body for a domain's robot, made once a process; resetting it makes an episode independent of the last.
+    """A body of a domain's robot, made once a process. A reset makes a run independent of the last one.
 
     Args:
-      domain: By name.
-      profile: Of AGILO's, e.g. "degraded"; empty: as gathered from.
+      domain: Name of the domain.
+      profile: Name of the body's profile, e.g. "degraded"; empty: the one that training used.
 
     Raises:
       UsageError: The robot has no such profile.

@@ -1,4 +1,4 @@
-"""Finished episodes on disk, so that an evaluation that was broken off goes on where it stopped."""
+"""Finished runs on disk, from which an interrupted evaluation resumes."""
 
 from __future__ import annotations
 
@@ -12,35 +12,45 @@ from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 
 
 class Journal:
-    """The finished episodes of one variant, a line of JSON each, in a file named by what they depend on."""
+    """Finished runs of one variant, one line of JSON each. The file name contains a hash of all that they depend on.
 
-    def __init__(self, folder: Path | None, task: Task, variant: Variant, models: list[str]) -> None:
+    Args:
+      folder: Of all journals; None stores nothing.
+      task: Scenario of the runs.
+      variant: Settings of the runs.
+      dependencies: Hashes of models and source code.
+
+    Attributes:
+      known: Stored outcomes by seed.
+    """
+
+    def __init__(self, folder: Path | None, task: Task, variant: Variant, dependencies: list[str]) -> None:
         self.known: dict[int, Outcome] = {}
         self._path: Path | None = None
         if folder is None:
             return
-        said = json.dumps([dataclasses.asdict(task), dataclasses.asdict(variant), models], sort_keys=True)
-        name = f"{task.domain}-{task.scenario}-{variant.name}-{hashlib.sha256(said.encode()).hexdigest()[:12]}.jsonl"
+        key = json.dumps([dataclasses.asdict(task), dataclasses.asdict(variant), dependencies], sort_keys=True)
+        name = f"{task.domain}-{task.scenario}-{variant.name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.jsonl"
         folder.mkdir(parents=True, exist_ok=True)
         self._path = folder / name
         if self._path.exists():
             text = self._path.read_text(errors="replace")
             if text and not text.endswith("\n"):
-                self._path.write_text(text + "\n")  # a line was cut off; the next one shall not hang on to it
+                self._path.write_text(text + "\n")  # ends a truncated line
             for line in text.splitlines():
                 outcome = _read(line)
                 if outcome is not None:
                     self.known[outcome.seed] = outcome
 
     def note(self, outcome: Outcome) -> None:
-        """Keep an outcome."""
+        """Store an outcome."""
         if self._path is not None:
             with self._path.open("a") as file:
                 file.write(json.dumps(dataclasses.asdict(outcome)) + "\n")
 
 
 def _read(line: str) -> Outcome | None:
-    """An outcome from its line; None for a line that was cut off or damaged: its episode is run again."""
+    """The outcome of a line; None for a truncated or damaged line, whose run is repeated."""
     try:
         return Outcome(**{key: _frozen(value) for key, value in json.loads(line).items()})
     except (ValueError, TypeError, AttributeError):

@@ -1,4 +1,4 @@
-"""The report's first page: every evaluation that has been run, its main figures, and the way to its own page."""
+"""First page of the report: all evaluations that were run, with their main figures and links."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from tailor.tools.evaluations.report import shown
 from tailor.tools.figures.report_page import page, table
 
 ROWS_MAX = 6
-# What an evaluation is judged by, of all that its page tells.
+# Main columns of all evaluations, in order.
 MAIN = (
-    "scenario", "domain", "robot", "action", "model", "run", "start", "hand", "space", "learner", "learned from",
+    "scenario", "domain", "robot", "action", "model", "run", "start", "mode", "space", "learner", "training_data",
     "horizon", "n", "episodes", "mae_s", "mae_ci95", "floor_s", "accuracy_pct", "mean_greedy_s", "mean_refined_s",
     "mean_lockstep_s", "mean_s", "duration_s", "improvement_pct", "gated_pct", "ci95", "p_value", "slower_pct",
     "oracle_pct", "regret_pct", "correlation", "success_before_pct", "success_after_pct", "needless_pct",
@@ -24,15 +24,15 @@ MAIN = (
 
 
 def page_is_there(folder: Path, name: str) -> bool:
-    """Whether an evaluation has told its result there, whole."""
+    """Whether the folder holds the complete result of an evaluation."""
     return (folder / f"{name}.json").exists() and (folder / f"{name}.html").exists()
 
 
 def write_overview(folder: Path, names: Sequence[str]) -> Path:
-    """Write index.html with a section for each evaluation that has a page; others are named as missing.
+    """Write index.html: a section for each evaluation with a page, and a list of the missing ones.
 
     Args:
-      folder: Where the pages are; made if it is not there.
+      folder: Folder of the pages; created if missing.
       names: All evaluations, in order.
     """
     there = [name for name in names if page_is_there(folder, name)]
@@ -47,13 +47,13 @@ def write_overview(folder: Path, names: Sequence[str]) -> Path:
 
 
 def _section(folder: Path, name: str) -> str:
-    """Title with a link, when it was run, the main figures of the first rows."""
+    """Title with a link, time of the run, main figures of the first rows."""
     file = folder / f"{name}.json"
-    said = json.loads(file.read_text())
+    report = json.loads(file.read_text())
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(file.stat().st_mtime))
-    every: list[dict[str, Any]] = said["rows"]
+    every: list[dict[str, Any]] = report["rows"]
     rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
     columns = [column for column in MAIN if any(column in row for row in rows)]
     cells = [["" if row.get(column) is None else shown(row[column]) for column in columns] for row in rows]
-    heading = f'<h2><a href="{name}.html">{html.escape(said["title"])}</a></h2>'
+    heading = f'<h2><a href="{name}.html">{html.escape(report["title"])}</a></h2>'
     return f"{heading}{table(f'{name}, {when}', columns, cells)}"

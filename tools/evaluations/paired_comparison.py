@@ -1,4 +1,4 @@
-"""Paired comparison of durations: what the paper's Table 3 reports, with intervals and a rank test beside."""
+"""Paired comparison of durations as in the paper's Table 3, with intervals and a rank test."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two settings over the same episodes. Percentages are of the baseline; positive improvement is faster."""
+    """Two settings over the same starts. Percentages are of the baseline; positive improvement is faster."""
 
     n: int
     mean_baseline_s: float
@@ -29,23 +29,23 @@ class Comparison:
 
     @property
     def verdict(self) -> dict[str, Any]:
-        """What a table tells of the improvement, in the order of its columns."""
+        """Columns of a table about the improvement, in order."""
         return {
             name: getattr(self, name) for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")
         }
 
     @property
     def gain_of_means_pct(self) -> float:
-        """Improvement of the mean durations; less swayed by short episodes than the mean of ratios."""
+        """Improvement of the mean durations; less sensitive to short episodes than the mean of ratios."""
         return 100 * (1 - self.mean_s / self.mean_baseline_s)
 
 
 def compare(baseline_s: ArrayLike, refined_s: ArrayLike) -> Comparison:
-    """Compare durations of the same episodes, both of shape (n,), n >= 2.
+    """Compare durations in seconds of the same starts, both of shape (n,), n >= 2.
 
     Raises:
       UsageError: Fewer than two pairs.
-      ValueError: Lengths that differ.
+      ValueError: Different lengths.
     """
     first, second = np.asarray(baseline_s, dtype=np.float64), np.asarray(refined_s, dtype=np.float64)
     if first.shape != second.shape:

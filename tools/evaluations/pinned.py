@@ -1,4 +1,4 @@
-"""A domain in which some quantities of some labels are given: how an evaluation forces a choice upon the executive."""
+"""A domain with pinned quantities, by which an evaluation forces choices of the executive."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Pins = Mapping[tuple[str, str], float]  # (label, quantity) -> value
 
 
 class PinnedDomain:
-    """Another domain, but a pinned quantity has its pinned value wherever the predicates leave it free."""
+    """Wraps a domain: a pinned quantity has its value wherever the predicates leave it free."""
 
     def __init__(self, inner: Domain, pins: Pins) -> None:
         self._inner = inner
@@ -22,9 +22,9 @@ class PinnedDomain:
         return getattr(self._inner, name)
 
     def value(self, query: LabelQuery) -> Interval | None:
-        """The inner domain's answer, or the pin where that is no single value."""
-        said = self._inner.value(query)
+        """The inner domain's interval, or the pin if that is no single value."""
+        value = self._inner.value(query)
         pin = self._pins.get((query.label, query.quantity))
-        if pin is None or (said is not None and said.lower == said.upper):
-            return said
+        if pin is None or (value is not None and value.lower == value.upper):
+            return value
         return Interval(pin, pin)

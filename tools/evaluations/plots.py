@@ -1,4 +1,4 @@
-"""The plots of the evaluations' pages."""
+"""Plots of the evaluations' pages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ INK, ACCENT, PALE = "#2c3e50", "#2f8f6b", "#b8c4cc"
 
 
 def draw_pairs(greedy_s: Sequence[float], refined_s: Sequence[float], path: Path) -> Path:
-    """Each episode a dot: greedy across, refined up; below the diagonal refinement was faster."""
+    """Scatter plot of greedy and refined durations, and histogram of the improvement."""
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     top = 1.05 * max(*greedy_s, *refined_s)
@@ -42,7 +42,7 @@ def draw_horizons(rows: Sequence[dict[str, Any]], path: Path) -> Path:
 
 
 def draw_shares(row: dict[str, Any], path: Path) -> Path:
-    """Approaches that succeed before and after, and the four fields of the paper's table."""
+    """Success of approaches without and with assertion, and the confusion matrix."""
     figure = Figure(figsize=(9, 3.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     left.bar(
@@ -50,7 +50,8 @@ def draw_shares(row: dict[str, Any], path: Path) -> Path:
     )
     left.set(ylabel="approaches that succeed (%)", ylim=(0, 100))
     fields = [
-        [row[f"predicted_{said}_observed_{seen}_pct"] for seen in ("fail", "success")] for said in ("fail", "success")
+        [row[f"predicted_{predicted}_observed_{observed}_pct"] for observed in ("fail", "success")]
+        for predicted in ("fail", "success")
     ]
     right.imshow(fields, cmap="Greens", vmin=0, vmax=100)
     right.set_xticks([0, 1], ["observed: fail", "success"])

@@ -1,4 +1,4 @@
-"""How an evaluation is told: a table in the terminal, JSON for scripts, an HTML page with plots."""
+"""Reports of evaluations: a table in the terminal, JSON for scripts, an HTML page with plots."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tailor.tools.cli.number_checks import processes
 from tailor.tools.figures.report_page import image, page, table
 
 Row = Mapping[str, Any]
-WIDE = 9  # columns that still fit a screen
-MIN_WIDTH = 120  # a file or a pipe has no width of its own
+MAX_COLUMNS = 9  # that fit a screen
+MIN_WIDTH = 120  # characters; files and pipes have no width
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,20 +34,26 @@ class Report:
 
 
 def configure_report(parser: argparse.ArgumentParser) -> None:
-    """The flags that every evaluation has."""
+    """Declare the flags of every evaluation."""
     parser.add_argument("--jobs", type=processes, default=2, help="processes (default %(default)s)")
     parser.add_argument("--json", action="store_true", help="print the rows as JSON")
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots there")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into DIR")
     parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),
-                        help="keep finished episodes there, to go on after a break (default %(default)s)")  # fmt: skip
-    parser.add_argument("--zoo", default="", help="folder of action models (default: those that ship)")
-    parser.add_argument("--domain", default="", help="only where the evaluation is of that domain, e.g. soccer")
+                        help="store finished runs in DIR and resume from them (default %(default)s)")  # fmt: skip
+    parser.add_argument("--zoo", default="", help="folder of action models (default: the shipped ones)")
+    parser.add_argument("--domain", default="", help="run the evaluation only if it is of this domain, e.g. soccer")
 
 
 def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
-    """Print the report, and write its page when a folder is given."""
-    said = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
-    text = json.dumps({**said, "remarks": list(report.remarks)}, indent=1)
+    """Print the report, and write its page and its JSON if a folder is given.
+
+    Args:
+      report: Result of an evaluation.
+      as_json: Print JSON instead of a table.
+      folder: Of pages; created if missing.
+    """
+    content = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
+    text = json.dumps({**content, "remarks": list(report.remarks)}, indent=1)
     if as_json:
         print(text)
     else:
@@ -58,11 +64,11 @@ def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
         body += [f"<p>{html.escape(remark)}</p>" for remark in report.remarks]
         body += [image(path, description) for description, path in report.plots.items()]
         (folder / f"{report.name}.html").write_text(page(report.title, body))
-        (folder / f"{report.name}.json").write_text(text + "\n")  # last: where it is, the page is whole
+        (folder / f"{report.name}.json").write_text(text + "\n")  # last: marks a complete page
 
 
 def shown(value: object) -> str:
-    """A cell: figures with what they need of digits."""
+    """A cell as text; numbers with significant digits."""
     if isinstance(value, float):
         if value != 0 and abs(value) < 0.001:
             return f"{value:.1e}"
@@ -89,16 +95,16 @@ def _print(report: Report) -> None:
 
 
 def _tabled(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Head and cells. Rows of many figures stand side by side instead, a figure a line: no screen is so wide."""
+    """Head and cells; transposed if there are more columns than fit a screen."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
     lines = [columns, *([shown(row.get(column, "")) for column in columns] for row in rows)]
-    if len(columns) > WIDE and len(columns) > len(rows):
+    if len(columns) > MAX_COLUMNS and len(columns) > len(rows):
         lines = [list(line) for line in zip(*lines, strict=True)]
     return lines[0], lines[1:]
 
 
 def _plain(value: Any) -> Any:
-    """What JSON can hold of rows and cells: what is no number becomes null."""
+    """Rows and cells as JSON values: non-finite numbers become null."""
     if isinstance(value, Mapping):
         return {key: _plain(cell) for key, cell in value.items()}
     if isinstance(value, tuple | list):

@@ -1,6 +1,6 @@
-"""Episodes for evaluations: the same starts under several settings, in parallel, kept on disk as they finish.
+"""Runs of tasks for evaluations: equal starts under several settings, in parallel, stored as they finish.
 
-An episode is fixed by scenario, seed and variant, so a broken-off evaluation goes on where it stopped.
+Scenario, seed and variant determine a run, so an interrupted evaluation resumes.
 """
 
 from __future__ import annotations
@@ -41,12 +41,18 @@ def run_all(
     store: Path | None = None,
     title: str = "",
 ) -> dict[str, dict[int, Outcome]]:
-    """Every variant at every seed: outcomes by variant name and seed.
+    """Run every variant at every seed.
 
     Args:
+      task: Scenario to run.
+      variants: Settings, with unique names.
+      seeds: Of the starts.
       jobs: Processes.
-      store: Folder where finished episodes are kept and found again; None keeps nothing.
+      store: Folder of finished runs, which are not run again; None stores nothing.
       title: Shown beside the progress bar.
+
+    Returns:
+      Outcomes by name of the variant and seed.
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
     journals = {
@@ -72,22 +78,22 @@ def run_all(
 
 
 def run_one(task: Task, variant: Variant, seed: int) -> Outcome:
-    """One episode, in lock-step with the same core as live."""
+    """Outcome of one run in lock-step."""
     episode, context = run_task(task, variant, seed)
     return outcome_of(episode, context.domain, variant.name, seed)
 
 
 def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
-    """One episode with all that was said in it, and the context that it ran in.
+    """One run with all its messages, and its context.
 
-    The variant's `noise` is added to the seed of the body's noise alone: the same start, other luck.
+    The variant's `noise` changes only the seed of the body's noise; the start stays the same.
     """
     context, start = _context(task, variant, seed)
     return run_lockstep(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
 
 
 def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple[list[float], list[float]]:
-    """Durations of the episodes that reached their goal in both."""
+    """Durations at the seeds where both runs achieved the goal."""
     seeds = [seed for seed in sorted(first) if seed in second and first[seed].achieved and second[seed].achieved]
     return [first[seed].duration_s for seed in seeds], [second[seed].duration_s for seed in seeds]
 
@@ -99,7 +105,7 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     drawing = np.random.default_rng([seed, PIN_STREAM])
     pins |= {(label, quantity): float(drawing.uniform(lower, upper)) for label, quantity, lower, upper in task.drawn}
     pinned: Any = PinnedDomain(domain, pins)
-    # a proof of how good a choice is takes time and changes nothing that is measured
+    # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(variant.refinement, certify_checks=0))
     models = _models(domain.robot, task.zoo, variant.refinement.gate)
     context = make_context(pinned, scenario, models, settings, SENDER)
@@ -110,12 +116,12 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
 
 @lru_cache(maxsize=4)
 def _models(robot: str, zoo: str, gated: bool) -> Models:
-    """Loaded once a process."""
+    """Models, loaded once a process."""
     return load_models(robot, zoo, gated)
 
 
 def dependencies(task: Task, gated: bool = True) -> list[str]:
-    """What an episode depends on beside task, variant and seed: hashes of models and of mind's and body's source."""
+    """Hashes of models and source code, on which a run depends besides task, variant and seed."""
     models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
     loaded = [*models.durations.values(), *models.successes.values()]
     cards = [model.card["sha256"] for model in [*loaded, *([models.gate] if models.gate else [])]]
@@ -124,7 +130,7 @@ def dependencies(task: Task, gated: bool = True) -> list[str]:
 
 @lru_cache(maxsize=1)
 def source_sha256() -> str:
-    """SHA-256 over the source of mind and body: episodes of older code are not mixed with new ones."""
+    """SHA-256 over the source of executive and body, so that runs of older code are not reused."""
     digest = hashlib.sha256()
     for path in sorted(path for name in SOURCES for path in (ROOT / name).rglob("*") if path.suffix in SUFFIXES):
         digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())

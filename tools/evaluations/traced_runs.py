@@ -1,4 +1,4 @@
-"""Episodes watched closely, for figures that draw what happened: the track, what was said, and the outcome."""
+"""Runs with their tracks and subgoals, for figures that draw them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tailor.tools.figures.track import Track, track_of
 
 @dataclass(frozen=True, slots=True)
 class TracedRun:
-    """One episode: what came of it, its path, and the choices in the order in which they were made."""
+    """One run: outcome, track, and choices in order."""
 
     outcome: Outcome
     track: Track
@@ -25,24 +25,24 @@ class TracedRun:
 
 
 def trace_run(task: Task, variant: Variant, seed: int) -> tuple[TracedRun, Context]:
-    """Run an episode and keep what figures are drawn from."""
-    episode, context = run_task(task, variant, seed)
-    messages: Sequence[Message] = episode.messages
-    outcome = outcome_of(episode, context.domain, variant.name, seed)
-    return TracedRun(outcome, track_of(variant.name, messages), tuple(episode.subgoals)), context
+    """Run a task and keep track and subgoals."""
+    run, context = run_task(task, variant, seed)
+    messages: Sequence[Message] = run.messages
+    outcome = outcome_of(run, context.domain, variant.name, seed)
+    return TracedRun(outcome, track_of(variant.name, messages), tuple(run.subgoals)), context
 
 
 def trace_all(
     task: Task, variants: Sequence[Variant], seeds: Sequence[int], jobs: int, title: str
 ) -> dict[tuple[str, int], TracedRun]:
-    """Every variant at every seed, by name and seed."""
+    """Run every variant at every seed; runs by name of the variant and seed."""
     wanted = [(variant, seed) for seed in seeds for variant in variants]
     running = Parallel(n_jobs=jobs, return_as="generator")(
-        delayed(_watched)(task, variant, seed) for variant, seed in wanted
+        delayed(_traced)(task, variant, seed) for variant, seed in wanted
     )
-    found = track(running, title, total=len(wanted), transient=True)
-    return {(variant.name, seed): watched for (variant, seed), watched in zip(wanted, found, strict=True)}
+    traced_runs = track(running, title, total=len(wanted), transient=True)
+    return {(variant.name, seed): traced for (variant, seed), traced in zip(wanted, traced_runs, strict=True)}
 
 
-def _watched(task: Task, variant: Variant, seed: int) -> TracedRun:
+def _traced(task: Task, variant: Variant, seed: int) -> TracedRun:
     return trace_run(task, variant, seed)[0]

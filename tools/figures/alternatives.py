@@ -25,42 +25,42 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
       explanations: Titles and explanations.
       path: Where to; its folder is made.
     """
-    rows = [(title, said, of) for title, said in explanations for of in said.parameters]
-    columns = max((len(of.touched) + 1 for _, _, of in rows), default=1)
+    rows = [(title, explanation, free) for title, explanation in explanations for free in explanation.parameters]
+    columns = max((len(free.touched) + 1 for _, _, free in rows), default=1)
     figure = Figure(figsize=(SIZE_IN * columns, SIZE_IN * max(1, len(rows)) + 0.4), layout="constrained")
-    for row, (title, said, of) in enumerate(rows):
-        for column, (name, seconds, colour) in enumerate(_curves(said, of)):
+    for row, (title, explanation, free) in enumerate(rows):
+        for column, (name, seconds, colour) in enumerate(_curves(explanation, free)):
             place = row * columns + column + 1
-            shape = {"projection": "polar"} if of.variable.periodic else {}
+            shape = {"projection": "polar"} if free.variable.periodic else {}
             axis = figure.add_subplot(len(rows), columns, place, **shape)
-            _draw(axis, of, seconds, colour)
-            head = f"{title}\n{of.variable.quantity} at {of.variable.label}\n" if column == 0 else "\n\n"
+            _draw(axis, free, seconds, colour)
+            head = f"{title}\n{free.variable.quantity} at {free.variable.label}\n" if column == 0 else "\n\n"
             axis.set_title(f"{head}{name}", fontsize="small")
     figure.supxlabel(LEGEND, fontsize="small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=120)
 
 
-def _curves(said: Explanation, of: FreeParameter) -> list[tuple[str, Any, str]]:
-    seconds = of.alternatives.durations_s
-    actions = [(said.actions[i], seconds[i], COLOURS[i % len(COLOURS)]) for i in of.touched]
+def _curves(explanation: Explanation, free: FreeParameter) -> list[tuple[str, Any, str]]:
+    seconds = free.alternatives.durations_s
+    actions = [(explanation.actions[i], seconds[i], COLOURS[i % len(COLOURS)]) for i in free.touched]
     return [*actions, ("sum", seconds.sum(axis=0), SUM)]
 
 
-def _draw(axis: Any, of: FreeParameter, seconds: Any, colour: str) -> None:
+def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
     """One curve, pale where it is INVALID, with the chosen value (full line) and greedy's (dashed)."""
-    values = of.alternatives.values
-    valid = np.where(np.isfinite(of.alternatives.total_s), seconds, np.nan)
+    values = free.alternatives.values
+    valid = np.where(np.isfinite(free.alternatives.total_s), seconds, np.nan)
     axis.plot(values, seconds, color=colour, alpha=0.3, linewidth=1, linestyle=":")
     axis.plot(values, valid, color=colour, linewidth=1.8)
     axis.set_ylim(0, 1.08 * np.nanmax(seconds))
-    for value, style in ((of.greedy, "--"), (of.chosen, "-")):
+    for value, style in ((free.greedy, "--"), (free.chosen, "-")):
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
-    predicted = np.interp(of.chosen, values, seconds)
-    axis.plot([of.chosen], [predicted], "o", color="black", markersize=4)
-    unit = "" if of.variable.periodic else f"{of.variable.quantity} [{of.variable.unit}], "
+    predicted = np.interp(free.chosen, values, seconds)
+    axis.plot([free.chosen], [predicted], "o", color="black", markersize=4)
+    unit = "" if free.variable.periodic else f"{free.variable.quantity} [{free.variable.unit}], "
     axis.set_xlabel(f"{unit}chosen: {predicted:.1f} s", fontsize="small")
-    if not of.variable.periodic:
+    if not free.variable.periodic:
         axis.set_ylabel("time [s]", fontsize="small")
     axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

@@ -110,11 +110,11 @@ def flat_from(curve: Sequence[Sequence[float]], high: float) -> int:
 
 def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
     rows = success_examples([e for e in episodes if e.failure != UNOBSERVED], 1)
-    said, seen, count = zip(*model.card["test"].get("reliability", [(0.0, 0.0, 1)]), strict=True)
+    predicted, observed, count = zip(*model.card["test"].get("reliability", [(0.0, 0.0, 1)]), strict=True)
     probability = model.probability(rows.arguments)
     axes, right = figure.subplots(1, 2)
     axes.plot([0, 1], [0, 1], color="black", lw=1)
-    axes.scatter(said, seen, s=AREA * np.array(count) / max(count), zorder=3)
+    axes.scatter(predicted, observed, s=AREA * np.array(count) / max(count), zorder=3)
     axes.scatter([], [], s=AREA / 10, color="tab:blue", label="test episodes (area: how many)")
     fitted = scores.reliability(probability, rows.targets > 0.5)
     axes.plot([row[0] for row in fitted], [row[1] for row in fitted], color="tab:orange", label="episodes fitted to")

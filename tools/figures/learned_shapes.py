@@ -45,11 +45,11 @@ def figure7(figure: Any, model: OnnxDuration, region: Region) -> None:
     polar.set(ylim=(0, None), rlabel_position=112)
     polar.set_title(f"the same, {QUANTITY_NAMES[unit]} [{unit}] outwards", fontsize="medium")
     box = next(box for box in leaf_boxes(tree.splits, len(space.features)) if box.leaf == widest)
-    said = (
+    lines = (
         f"if {conditions(box, space.features)}",
         f"{QUANTITY_NAMES[unit]} = {formula(tree, widest, space.features, unit)}",
     )
-    figure.supxlabel("\n".join(line for part in said for line in wrap(part, WIDEST)), fontsize=7)
+    figure.supxlabel("\n".join(line for part in lines for line in wrap(part, WIDEST)), fontsize=7)
 
 
 def figure8(figure: Any, model: OnnxSuccess) -> None:

@@ -35,9 +35,9 @@ def draw_letters(rows: Sequence[Sequence[WritingTrack]], path: Path) -> None:
     figure = Figure(figsize=(CELL_INCHES * count + 1.2, CELL_INCHES * 1.3 * len(rows)), layout="constrained")
     axes = figure.subplots(len(rows), count, squeeze=False, sharex=True, sharey=True)
     for line, row in zip(axes, rows, strict=True):
-        for axis, said in zip(line, row, strict=True):
-            lines = _draw(axis, said, said.angles, said.waypoints)
-            axis.set_title(f"{said.duration_s:.1f} s", fontsize="medium")
+        for axis, track in zip(line, row, strict=True):
+            lines = _draw(axis, track, track.angles, track.waypoints)
+            axis.set_title(f"{track.duration_s:.1f} s", fontsize="medium")
         line[0].set_ylabel(f"{row[0].title}\nlift b (rad)")
     for axis in axes[-1]:
         axis.set_xlabel("pan a (rad)")
@@ -54,22 +54,22 @@ def draw_words(rows: Sequence[WritingTrack], path: Path, in_joints: bool = False
         figsize=(scale * (right - left) + 2.0, (scale * (high - low) + 0.4) * len(rows) + 0.4), layout="constrained"
     )
     axes = figure.subplots(len(rows), 1, squeeze=False, sharex=True, sharey=True)
-    for (axis,), said in zip(axes, rows, strict=True):
-        lines = _draw(axis, said, place(said.angles), place(said.waypoints))
-        axis.set_title(f"{said.title}: {said.duration_s:.1f} s", fontsize="medium")
+    for (axis,), track in zip(axes, rows, strict=True):
+        lines = _draw(axis, track, place(track.angles), place(track.waypoints))
+        axis.set_title(f"{track.title}: {track.duration_s:.1f} s", fontsize="medium")
         axis.set(ylabel=f"{'lift b' if in_joints else 'up'} ({unit})", xlim=(left, right), ylim=(low, high))
     axes[-1, 0].set_xlabel(f"{'pan a' if in_joints else 'right'} ({unit})")
     _finish(figure, axes, lines, path, GRID / 2)
 
 
-def _draw(axis: Any, said: WritingTrack, line: Array, points: Array) -> LineCollection:
+def _draw(axis: Any, track: WritingTrack, line: Array, points: Array) -> LineCollection:
     """One piece of writing on one axis; returns its line, for the scale of colours."""
-    speed = np.linalg.norm(said.velocities, axis=1)
+    speed = np.linalg.norm(track.velocities, axis=1)
     segments = np.stack((line[:-1], line[1:]), axis=1)
     drawn = LineCollection(list(segments), cmap=COLOURS, capstyle="round")
     drawn.set_array(0.5 * (speed[:-1] + speed[1:]))
     drawn.set_clim(0.0, MAX_RADPS)
-    drawn.set_linewidth(np.where(said.pen_down()[1:], 2.4, 0.5).tolist())
+    drawn.set_linewidth(np.where(track.pen_down()[1:], 2.4, 0.5).tolist())
     axis.add_collection(drawn)
     axis.autoscale_view()
     axis.plot(*points.T, "o", color="black", markersize=3, zorder=3)

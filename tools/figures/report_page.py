@@ -26,9 +26,10 @@ def table(caption: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> s
 
 
 def image(path: Path, description: str) -> str:
-    """An image that travels inside the page, with what it shows beneath it."""
-    data, said = base64.b64encode(path.read_bytes()).decode(), html.escape(description)
-    return f'<figure><img alt="{said}" src="data:image/png;base64,{data}"><figcaption>{said}</figcaption></figure>'
+    """An embedded image with its caption."""
+    data, caption = base64.b64encode(path.read_bytes()).decode(), html.escape(description)
+    source = f"data:image/png;base64,{data}"
+    return f'<figure><img alt="{caption}" src="{source}"><figcaption>{caption}</figcaption></figure>'
 
 
 def page(title: str, body: Sequence[str]) -> str:

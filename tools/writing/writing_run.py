@@ -32,28 +32,28 @@ class RecordedBody(PowerCubeBody):
 
     def __init__(self) -> None:
         super().__init__()
-        self.heard: list[Message] = []
+        self.readings: list[Message] = []
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
         """See Body.reset; forgets what was heard."""
         super().reset(rng, start)
-        self.heard = []
+        self.readings = []
 
     def advance(self, duration_ns: int) -> list[Reading]:
         """See Body.advance."""
         readings = super().advance(duration_ns)
-        self.heard += [reading.message for reading in readings if reading.topic in ("joint_states", "currents")]
+        self.readings += [reading.message for reading in readings if reading.topic in ("joint_states", "currents")]
         return readings
 
 
-def write(text: str, hand: WritingMode, models: Models, seed: int, body: RecordedBody) -> WritingTrack:
+def write(text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody) -> WritingTrack:
     """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
-    scenario, start = domains.seeded_scenario("arm", f"{'stops' if hand.stops else 'word'}-{text}", seed)
+    scenario, start = domains.seeded_scenario("arm", f"{'stops' if mode.stops else 'word'}-{text}", seed)
     # a proof of how good a choice is takes time and changes nothing that is measured
-    settings = Settings(seed=seed, refinement=replace(hand.refinement, certify_checks=0))
+    settings = Settings(seed=seed, refinement=replace(mode.refinement, certify_checks=0))
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
-    episode = run_lockstep(context, body, start, seed)
+    run = run_lockstep(context, body, start, seed)
     body.command((0.0, 0.0))
     body.advance(round(0.2e9))  # until the last state is out
-    told = [message for message in episode.messages if not isinstance(message, JointState)]  # the truth is one, too
-    return writing_track(hand.name, text, [*body.heard, *told])
+    outputs = [message for message in run.messages if not isinstance(message, JointState)]  # the truth is one, too
+    return writing_track(mode.name, text, [*body.readings, *outputs])

@@ -65,11 +65,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when refinement gains significantly."""
+    """Evaluate and publish the report; 0 if refinement gains significantly."""
     rows, plots = evaluate(arguments)
     remarks = [PAPER, "an oracle chooses by the controller's own duration instead of a learned model"]
     publish_report(Report("letters", "Table 3, arm: letters", rows, remarks, plots), arguments.json, arguments.report)
-    refined = next(row for row in rows if row["hand"] == "refined")
+    refined = next(row for row in rows if row["mode"] == "refined")
     return 0 if refined["p_value"] < 0.01 and refined["improvement_pct"] > 0 else 1
 
 
@@ -110,11 +110,11 @@ def table3_row(arguments: argparse.Namespace) -> tuple[dict[str, Any], tuple[lis
     With it the durations of greedy and refined letters.
     """
     seeds = max(1, arguments.episodes // len(font()))
-    asked = argparse.Namespace(
+    settings = argparse.Namespace(
         seeds=seeds, no_oracle=not arguments.oracle, jobs=arguments.jobs, zoo=arguments.zoo, report=None
     )
-    found = _write_all(asked)
-    rows = {row["hand"]: row for row in _rows(found)}
+    found = _write_all(settings)
+    rows = {row["mode"]: row for row in _rows(found)}
     greedy, refined = rows["greedy"], rows["refined"]
     row = {
         "scenario": "arm",
@@ -145,14 +145,14 @@ def _row(name: str, found: Found) -> dict[str, Any]:
     """One hand against the greedy one, over the letters that both finished."""
     keys = _both_achieved(name, found)
     mine, greedy = [found[name][key] for key in keys], [found["greedy"][key] for key in keys]
-    said = compare([figures.duration_s for figures in greedy], [figures.duration_s for figures in mine])
+    comparison = compare([figures.duration_s for figures in greedy], [figures.duration_s for figures in mine])
     stopping = [found["stopping"][key].duration_s for key in keys]
     return {
-        "hand": name,
-        "n": said.n,
+        "mode": name,
+        "n": comparison.n,
         "failed": len(found[name]) - sum(figures.achieved for figures in found[name].values()),
-        "mean_s": said.mean_s,
-        **said.verdict,
+        "mean_s": comparison.mean_s,
+        **comparison.verdict,
         "against_stopping_pct": compare(stopping, [figures.duration_s for figures in mine]).improvement_pct,
         "waypoint_mrad": _mean(mine, "waypoint_mrad"),
         "peak_current_a": _mean(mine, "peak_current_a"),
@@ -164,7 +164,7 @@ def _row(name: str, found: Found) -> dict[str, Any]:
 
 def _add_share(rows: Sequence[dict[str, Any]]) -> None:
     """How much of what could be gained over the model's greedy choice is gained, by mean durations."""
-    mean = {row["hand"]: row["mean_s"] for row in rows}
+    mean = {row["mode"]: row["mean_s"] for row in rows}
     ceiling_s = min(mean["oracle, all ahead"], mean["oracle, refined"])
     for row in rows:
         row["share_of_gain_pct"] = 100 * (mean["greedy"] - row["mean_s"]) / (mean["greedy"] - ceiling_s)
@@ -175,16 +175,16 @@ def _mean(some: Sequence[Figures], field: str) -> float:
 
 
 def _measured(hand: WritingMode, key: Key, zoo: str) -> Figures:
-    said = _write(hand, *key, zoo)
-    actual_s = np.diff(said.arrivals_s, prepend=0.0)
+    track = _write(hand, *key, zoo)
+    actual_s = np.diff(track.arrivals_s, prepend=0.0)
     return Figures(
-        said.result == "achieved",
-        said.duration_s,
-        1e3 * float(waypoint_errors_rad(said).max()),
-        said.peak_current_a,
-        rms_jerk(said),
-        roughness(said),
-        float((said.predicted_s - actual_s).mean() + 0.1),  # an action ends one period before its waypoint
+        track.result == "achieved",
+        track.duration_s,
+        1e3 * float(waypoint_errors_rad(track).max()),
+        track.peak_current_a,
+        rms_jerk(track),
+        roughness(track),
+        float((track.predicted_s - actual_s).mean() + 0.1),  # an action ends one period before its waypoint
     )
 
 

@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run, draw and tell; 0 when more approaches succeed with their subgoals than without."""
+    """Run, draw and publish the report; 0 if more approaches succeed with their subgoals than without."""
     task = assertion_task(arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     found = run_all(task, variants(), seeds, arguments.jobs, arguments.store, "figure 15")
@@ -86,8 +86,8 @@ def _looked_at(
     task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
 ) -> tuple[dict[str, Any], SubgoalMap | None]:
     """One start with a subgoal; the ground is None if two subgoals were asserted in a row."""
-    watched, context = trace_run(task, _asserting(), seed)
-    ground = subgoal_map_of(watched.subgoals[0], context)
+    traced, context = trace_run(task, _asserting(), seed)
+    ground = subgoal_map_of(traced.subgoals[0], context)
     before, after = found["blind"][seed], found["asserted"][seed]
     row = {
         "start": str(seed),
@@ -112,9 +112,9 @@ def _looked_at(
 def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     tracks = []
     for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
-        watched, _ = trace_run(task, variant, seed)
-        said = "succeeded" if succeeded(watched.outcome) else f"ball moved {watched.outcome.disturbance_m:.2f} m"
-        tracks.append(replace(watched.track, title=f"{title} ({said})"))
+        traced, _ = trace_run(task, variant, seed)
+        result = "succeeded" if succeeded(traced.outcome) else f"ball moved {traced.outcome.disturbance_m:.2f} m"
+        tracks.append(replace(traced.track, title=f"{title} ({result})"))
     first = tracks[0].points[0]
     draw_subgoal_map(ground, first.objects["ball"], tracks, f"start {seed}", path)
     return path

@@ -32,7 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when at least 98 % succeed and at most 10 % of the asserted subgoals were needless."""
+    """Evaluate and publish the report; 0 if at least 98 % succeed and at most 10 % have needless subgoals."""
     row = evaluate(arguments)
     plots = {}
     if arguments.report is not None:

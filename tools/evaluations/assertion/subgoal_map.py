@@ -112,7 +112,7 @@ def _decision(message: Subgoals, context: Context) -> _Decision | None:
 
 def _durations_s(decision: _Decision) -> tuple[float, float]:
     """Predicted for the subgoal as chosen: to it, and from it."""
-    first, second = (float(said.duration_s[0]) for said in decision.objective.predict(decision.chosen))
+    first, second = (float(prediction.duration_s[0]) for prediction in decision.objective.predict(decision.chosen))
     return first, second
 
 
@@ -121,7 +121,7 @@ def _best(decision: _Decision, places: Array) -> tuple[Array, Array, Array]:
     candidates, objective = _candidates(decision, places), decision.objective
     first, second = (stage.predict(candidates[:, stage.columns]) for stage in objective.stages)
     failure = second.worst_failure.reshape(len(places), -1)
-    first_s, second_s = (said.duration_s.reshape(len(places), -1) for said in (first, second))
+    first_s, second_s = (prediction.duration_s.reshape(len(places), -1) for prediction in (first, second))
     total = np.where(failure <= decision.limit, first_s + second_s, np.inf)
     rows, best = np.arange(len(places)), total.argmin(axis=1)
     valid = np.isfinite(total[rows, best])

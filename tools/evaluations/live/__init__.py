@@ -1,1 +1,1 @@
-"""Evaluations of live runs: do they agree with lock-step?"""
+"""Evaluation of live runs: agreement with lock-step."""

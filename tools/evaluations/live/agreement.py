@@ -58,20 +58,20 @@ def agreement(starts: Starts, margin_pct: float) -> dict[str, Any]:
     `within_range_expected_pct` says would be neither shorter nor longer than all lock-step runs of their start.
     """
     ratios, n = starts.log_ratio, len(starts.seeds)
-    said = equivalence(np.zeros(n), ratios, float(np.log1p(margin_pct / 100)))
+    test = equivalence(np.zeros(n), ratios, float(np.log1p(margin_pct / 100)))
     deviation = (starts.rank.mean() - 0.5) * np.sqrt(12 * n)
     inside = [r.min() <= s <= r.max() for s, r in zip(starts.run_s, starts.lockstep_s, strict=True)]
     return {
         "n": n,
         "mean_lockstep_s": float(np.mean([r.mean() for r in starts.lockstep_s])),
         "mean_s": float(starts.run_s.mean()),
-        "difference_pct": _percent(said.difference),
-        "ci95_pct": (_percent(said.ci95[0]), _percent(said.ci95[1])),
-        "p_value": said.p_different,
+        "difference_pct": _percent(test.difference),
+        "ci95_pct": (_percent(test.ci95[0]), _percent(test.ci95[1])),
+        "p_value": test.p_different,
         "p_rank": float(2 * stats.norm.sf(abs(deviation))),
         "margin_pct": margin_pct,
-        "p_equivalent": said.p_equivalent,
-        "equivalent": said.p_equivalent < 0.05,
+        "p_equivalent": test.p_equivalent,
+        "equivalent": test.p_equivalent < 0.05,
         "within_range_pct": 100 * float(np.mean(inside)),
         "within_range_expected_pct": 100 * float(np.mean([(len(r) - 1) / (len(r) + 1) for r in starts.lockstep_s])),
     }

@@ -67,7 +67,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run, compare and tell; 0 when live runs end as lock-step's and neither test finds a difference; 130: stopped."""
+    """Run, compare and publish the report.
+
+    Returns:
+      0 if live runs end like those in lock-step and neither test finds a difference, 130 if interrupted, else 1.
+    """
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     repeats = _lockstep(task, arguments, seeds)

@@ -40,8 +40,8 @@ def draw_agreement(pairs: Mapping[str, Starts], margin_pct: float, path: Path) -
     for number, (starts, colour) in enumerate(zip(pairs.values(), COLOURS, strict=True)):
         apart = 100 * np.expm1(starts.log_ratio)
         right.scatter(apart, np.full(len(apart), number + 0.12), s=18, color=colour, alpha=0.6)
-        said = agreement(starts, margin_pct)
-        mean, (low, high) = said["difference_pct"], said["ci95_pct"]
+        row = agreement(starts, margin_pct)
+        mean, (low, high) = row["difference_pct"], row["ci95_pct"]
         right.errorbar([mean], [number - 0.12], xerr=[[mean - low], [high - mean]], fmt="o", color=colour, capsize=5)
     right.set_yticks(range(len(pairs)), [name.replace(", ", ",\n") for name in pairs])
     right.set(ylim=(-0.6, len(pairs) - 0.4), xlabel="longer than the start's mean in lock-step (%)")

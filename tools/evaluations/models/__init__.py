@@ -1,1 +1,1 @@
-"""Evaluations of action models: how good are predictions?"""
+"""Evaluations of action models: accuracy of their predictions."""

@@ -30,7 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; exit code 0."""
+    """Evaluate and publish the report; exit code 0."""
     rows = [row for action in arguments.actions for row in _rows(action, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
     publish_report(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)

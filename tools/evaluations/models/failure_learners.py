@@ -25,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; exit code 0."""
+    """Evaluate and publish the report; exit code 0."""
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
     train = success_examples(fresh.training(*common, arguments.train, *more).episodes, 1)

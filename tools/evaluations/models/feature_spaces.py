@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when the order is the paper's: direct, relative, projective."""
+    """Evaluate and publish the report; 0 if the order is the paper's: direct, relative, projective."""
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
     train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)

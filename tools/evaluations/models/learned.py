@@ -21,7 +21,7 @@ def configure_train(parser: argparse.ArgumentParser) -> None:
 
 
 def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
-    """Robot, fresh episodes, seed, and how to tell the result."""
+    """Declare robot, number of fresh episodes, seed, and the flags of the report."""
     parser.add_argument("--robot", default="agilo", help="whose models (default %(default)s)")
     parser.add_argument(
         "--episodes", type=at_least(2, "--episodes"), default=episodes, help="fresh episodes (default %(default)s)"

@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Gather both rounds, compare, tell; exit code 0."""
+    """Gather both rounds, compare and publish the report; exit code 0."""
     domain = gathering.domain_of(arguments.robot)
     folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
     rows = [row for action in modelled_actions(domain) for row in _rows(action, folders, arguments)]
@@ -78,7 +78,7 @@ def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -
     for name, episodes, apart_chosen in kinds:
         judges = _Judges(unseen, apart_chosen, fresh.episodes)
         figures = _judged([e for e in episodes if e.finished], judges, arguments)
-        rows.append({"action": action, "learned from": name, "episodes": len(episodes), **figures})
+        rows.append({"action": action, "training_data": name, "episodes": len(episodes), **figures})
     return rows
 
 

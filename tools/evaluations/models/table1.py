@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when no action's relative error is worse than the paper's."""
+    """Evaluate and publish the report; 0 if no action's relative error is worse than the paper's."""
     loaded, _ = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
     models = [model for _, model in sorted(loaded.items()) if model.card["kind"] == "duration"]  # not energies
     rows = [row(model, arguments) for model in models]

@@ -25,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when at least 93 % are right and at most 1 % are failures that were missed."""
+    """Evaluate and publish the report; 0 if at least 93 % are right and at most 1 % are failures that were missed."""
     _, successes = load_robot(arguments.robot, Path(arguments.zoo) if arguments.zoo else None)
     if not successes:
         raise UsageError(f"{arguments.robot} has no failure model, expected ACTION/success.onnx in its zoo")

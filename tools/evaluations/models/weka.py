@@ -26,9 +26,9 @@ def installed() -> bool:
 def m5p(features: NDArray[Any], targets: NDArray[Any], fresh: NDArray[Any]) -> tuple[NDArray[np.float64], int, float]:
     """Predictions of M5P with its default settings, (n,), the number of its leaves, and seconds of the whole run."""
     started = time.perf_counter()
-    said = _run(["weka.classifiers.trees.M5P"], features, targets, fresh, "numeric")
-    count = re.search(r"Number of Rules\s*:\s*(\d+)", said)
-    return np.array(_predictions(said), np.float64), int(count[1]) if count else 0, time.perf_counter() - started
+    output = _run(["weka.classifiers.trees.M5P"], features, targets, fresh, "numeric")
+    count = re.search(r"Number of Rules\s*:\s*(\d+)", output)
+    return np.array(_predictions(output), np.float64), int(count[1]) if count else 0, time.perf_counter() - started
 
 
 def j48(
@@ -38,8 +38,8 @@ def j48(
     matrix = f"[0.0 {cost_ratio}; 1.0 0.0]"  # rows: observed fail, success
     inner = ["-W", "weka.classifiers.trees.J48"]
     command = ["weka.classifiers.meta.CostSensitiveClassifier", "-cost-matrix", matrix, *inner]
-    said = _run(command, features, np.where(success, "success", "fail"), fresh, "{fail,success}")
-    return np.array([value.endswith("success") for value in _predictions(said)])
+    output = _run(command, features, np.where(success, "success", "fail"), fresh, "{fail,success}")
+    return np.array([value.endswith("success") for value in _predictions(output)])
 
 
 def _run(command: Sequence[str], features: NDArray[Any], targets: NDArray[Any], fresh: NDArray[Any], kind: str) -> str:
@@ -64,7 +64,9 @@ def _write(path: Path, features: NDArray[Any], targets: NDArray[Any], kind: str)
     path.write_text("\n".join(["@relation action", *names, f"@attribute target {kind}", "@data", *rows, ""]))
 
 
-def _predictions(said: str) -> list[Any]:
+def _predictions(output: str) -> list[Any]:
     """Third column of the lines "number actual predicted ..." that WEKA prints."""
-    lines = re.findall(r"^\s*\d+\s+\S+\s+(\S+)", said.rsplit("Predictions on test data", maxsplit=1)[-1], re.MULTILINE)
+    lines = re.findall(
+        r"^\s*\d+\s+\S+\s+(\S+)", output.rsplit("Predictions on test data", maxsplit=1)[-1], re.MULTILINE
+    )
     return list(lines)

@@ -1,1 +1,1 @@
-"""Evaluations of refinement: what does it gain?"""
+"""Evaluations of refinement: improvement over greedy choices."""

@@ -1,6 +1,6 @@
-"""What a gain is to be judged by: greedy by the oracle, all zeros, the ceiling, and how far predictions are off.
+"""Baselines of an improvement: the oracle's greedy choice, all zeros, the ceiling, and the bias of predictions.
 
-A learned gain looks large where the learned greedy choice is bad; beside the ceiling it does not.
+An improvement over a poor greedy choice looks large; the ceiling puts it into proportion.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ Outcomes = Mapping[int, Outcome]  # by seed
 
 
 def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes) -> dict[str, float | int]:
-    """The baselines over the starts that the oracle simulated: mean durations, and gains over the greedy model.
+    """Baselines over the starts that the oracle simulated: mean durations, and improvements over the greedy model.
 
-    `oracle_pct` is of the best of all simulated runs, the ceiling, which owes something to luck; `oracle_again_pct` of
-    the same choices executed again with other noise.
+    `oracle_pct` is of the fastest simulated runs (the ceiling), which is biased by noise; `oracle_again_pct` is of the
+    same choices with other noise.
     """
     usable = [o for o in judged if np.isfinite(o.ceiling_s) and greedy[o.seed].achieved and refined[o.seed].achieved]
     greedy_s = np.array([greedy[o.seed].duration_s for o in usable])
@@ -42,7 +42,7 @@ def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes
 
 
 def bias_s(outcomes: Outcomes) -> float:
-    """Mean of predicted minus actual duration over all actions that were done."""
+    """Mean of predicted minus actual duration over all successful actions."""
     errors = [
         predicted - actual
         for outcome in outcomes.values()
@@ -53,5 +53,5 @@ def bias_s(outcomes: Outcomes) -> float:
 
 
 def _mean(seconds: np.ndarray) -> float:
-    """Of those that are known."""
+    """Mean of the finite values."""
     return float(np.nanmean(seconds)) if np.isfinite(seconds).any() else float("nan")

@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when the largest weight saves energy significantly."""
+    """Evaluate and publish the report; 0 if the largest weight saves energy significantly."""
     if len(arguments.weights) < 2:
         raise UsageError(f"--weights {arguments.weights}: expected at least two, the first to compare with")
     task = Task("soccer", arguments.scenario, "", arguments.zoo)

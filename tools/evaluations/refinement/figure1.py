@@ -40,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run, draw and tell; 0 when refined runs are faster in the mean."""
+    """Run, draw and publish the report; 0 if refined runs are faster in the mean."""
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     task = Task("soccer", "approach-dribble", "", arguments.zoo)
     variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]

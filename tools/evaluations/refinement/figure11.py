@@ -49,7 +49,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sweep, draw and tell; 0 when the model's best angle costs less than greedy's, simulated and in the mean."""
+    """Sweep, draw and publish the report; 0 if the model's best angle is faster than greedy's in simulation."""
     task = Task(*TASK, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     sweeps = [sweep for seed in seeds if (sweep := _swept(task, seed, arguments)) is not None]
@@ -69,8 +69,8 @@ def _swept(task: Task, seed: int, arguments: argparse.Namespace) -> Sweep | None
     """The sweep at one start; None where the angle was not free (the ball was there already) or nothing succeeded."""
     base = RefinementSettings()
     free = [Variant(name, replace(base, horizon=h)) for name, h in (("greedy", 1), ("refined", 2))]
-    said = run_all(task, free, [seed], 1, arguments.store, f"figure 11, start {seed}")
-    greedy, refined = said["greedy"][seed], said["refined"][seed]
+    outcomes = run_all(task, free, [seed], 1, arguments.store, f"figure 11, start {seed}")
+    greedy, refined = outcomes["greedy"][seed], outcomes["refined"][seed]
     chosen = {quantity: value for label, quantity, *_, value in refined.free if label == PLACE}
     if "phi" not in chosen or "v" not in chosen:
         return None

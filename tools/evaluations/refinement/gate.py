@@ -19,7 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
-from tailor.tools.evaluations.refinement.gate_ceiling import foreknown
+from tailor.tools.evaluations.refinement.gate_ceiling import ceiling_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.learning import gathering
@@ -34,18 +34,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--episodes", type=at_least(2, "--episodes"), default=300, help="fresh starts, each run three ways"
     )
     parser.add_argument(
-        "--luck", type=at_least(0, "--luck"), default=0, metavar="N",
-        help="run N starts five times with other noise, to tell what no gate can beat (default: %(default)s)",
+        "--repeated-starts", type=at_least(0, "--repeated-starts"), default=0, metavar="N",
+        help="run N starts five times with other noise, which bounds any gate (default: %(default)s)",
     )  # fmt: skip
     configure_report(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Judge and tell; 0 when the tree loses no time and leaves fewer episodes slower."""
+    """Evaluate and publish the report; 0 if the tree loses no time and leaves fewer episodes slower."""
     row = evaluate(arguments)
     remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
-    if arguments.luck:
-        remarks.append("foreknown: by one who knows how the same start went four times with other noise")
+    if arguments.repeated_starts:
+        remarks.append("ceiling: predicted from four runs of the same start with other noise")
     publish_report(Report("gate", "When not to refine", [row], remarks), arguments.json, arguments.report)
     better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
     return 0 if better else 1
@@ -72,8 +72,8 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "gate")
     starts = [(found["h1"][seed], found["h2"][seed], found["gated"][seed]) for seed in seeds]
     ceiling = {}
-    if arguments.luck:
-        ceiling = foreknown(task, plain, seeds[: arguments.luck], arguments.jobs, arguments.store)
+    if arguments.repeated_starts:
+        ceiling = ceiling_of(task, plain, seeds[: arguments.repeated_starts], arguments.jobs, arguments.store)
     return summary(starts, tree) | ceiling
 
 
@@ -107,11 +107,11 @@ def summary(starts: list[tuple[Outcome, Outcome, Outcome]], tree: RefinementGate
 
 
 def advised(refined: list[Outcome], tree: RefinementGate) -> NDArray[np.bool_]:
-    """Where the tree says to keep the greedy choice, shape (n,), from what it saw in runs without it."""
+    """Where the gate keeps the greedy choice, shape (n,), from the situations of runs without it."""
     kept = np.zeros(len(refined), np.bool_)
-    asked = [place for place, outcome in enumerate(refined) if outcome.situation]
-    if asked:
-        kept[asked] = tree.p_slowdown(np.array([refined[place].situation for place in asked])) > tree.threshold
+    reported = [place for place, outcome in enumerate(refined) if outcome.situation]
+    if reported:
+        kept[reported] = tree.p_slowdown(np.array([refined[place].situation for place in reported])) > tree.threshold
     return kept
 
 

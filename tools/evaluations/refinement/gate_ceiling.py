@@ -1,7 +1,7 @@
-"""What no gate can beat: starts run again and again with other noise, judged by one who knows the other runs.
+"""Upper bound of a refinement gate: each start is run several times, and the other runs predict each run.
 
-Whether refining slows an episode depends on the situation, and on luck. A gate sees the situation alone; one that knew
-how the same start went with other luck would know all that there is to know of it.
+A slowdown depends on the situation and on noise. A gate observes only the situation, so the majority of the other runs
+of the same start bounds its accuracy.
 """
 
 from __future__ import annotations
@@ -16,26 +16,30 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.task_runs import run_all
 
-LUCK = 10_000_000  # between the noise of one run and the next; far from all other seeds
-RUNS = 5  # of every start, both ways
+NOISE_STRIDE = 10_000_000  # between the noise seeds of two runs; far from all other seeds
+N_RUNS = 5  # of every start, greedy and refined
 
 
-def foreknown(
+def ceiling_of(
     task: Task, settings: RefinementSettings, seeds: range, jobs: int, store: Path | None
 ) -> dict[str, float | int]:
-    """How often one who knows the other runs of a start is right about this one, and what that gains.
+    """Accuracy and improvement of a gate that predicts each run from the other runs of its start.
 
     Args:
       task: The world.
       settings: Of refinement, without a gate.
       seeds: Of the starts.
       jobs: Processes.
-      store: Folder of finished episodes.
+      store: Folder of finished runs.
     """
-    variants = [Variant(f"h{h}-{k}", replace(settings, horizon=h), noise=k * LUCK) for k in range(RUNS) for h in (1, 2)]
-    found = run_all(task, variants, seeds, jobs, store, "other luck")
-    runs = np.full((2, len(seeds), RUNS), np.nan)
-    for k in range(RUNS):
+    variants = [
+        Variant(f"h{h}-{k}", replace(settings, horizon=h), noise=k * NOISE_STRIDE)
+        for k in range(N_RUNS)
+        for h in (1, 2)
+    ]
+    found = run_all(task, variants, seeds, jobs, store, "other noise")
+    runs = np.full((2, len(seeds), N_RUNS), np.nan)
+    for k in range(N_RUNS):
         for way, h in enumerate((1, 2)):
             for place, seed in enumerate(seeds):
                 outcome = found[f"h{h}-{k}"][seed]
@@ -45,16 +49,16 @@ def foreknown(
 
 
 def judged(greedy_s: NDArray[np.float64], refined_s: NDArray[np.float64]) -> dict[str, float | int]:
-    """Figures of durations of shape (starts, runs), run for run with the same noise."""
+    """Figures of durations, shape (starts, runs); runs of one column share their noise."""
     slower = refined_s > greedy_s
     others = (slower.sum(axis=1, keepdims=True) - slower) / (slower.shape[1] - 1)
     kept = others > 0.5
     taken_s = np.where(kept, greedy_s, refined_s)
     return {
-        "luck_starts": len(slower),
-        "foreknown_right_pct": 100 * float(np.mean(kept == slower)),
-        "luck_always_right_pct": 100 * float(np.mean(~slower)),
-        "foreknown_improvement_pct": 100 * float(np.mean(1 - taken_s / greedy_s)),
-        "luck_improvement_pct": 100 * float(np.mean(1 - refined_s / greedy_s)),
+        "repeated_starts": len(slower),
+        "ceiling_right_pct": 100 * float(np.mean(kept == slower)),
+        "repeated_always_right_pct": 100 * float(np.mean(~slower)),
+        "ceiling_improvement_pct": 100 * float(np.mean(1 - taken_s / greedy_s)),
+        "repeated_improvement_pct": 100 * float(np.mean(1 - refined_s / greedy_s)),
         "mostly_slower_starts_pct": 100 * float(np.mean(slower.mean(axis=1) > 0.5)),
     }

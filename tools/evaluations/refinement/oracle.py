@@ -1,7 +1,7 @@
-"""The oracle: every choice of the first subgoal is simulated, so that a learned choice can be judged by the best one.
+"""Oracle: simulates every choice of the first subgoal, as a bound on the improvement by learned models.
 
-It knows what the models are to predict. "Ceiling" is its best whole episode, "again" its choice with other noise,
-"greedy" the episode whose first action ends soonest, "zero" the choice of all zeros.
+"Ceiling" is its fastest episode, "again" the same choice with other noise, "greedy" the episode with the fastest first
+action, "zero" the choice of all zeros.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.task_runs import run_all
 
 Free = tuple[str, str, float, float]  # label, quantity, lower, upper
-AGAIN = 3  # times that the oracle's choice is executed again
+N_AGAIN = 3  # repetitions of the oracle's choice
 OTHER_NOISE = 500_000
 
 
 @dataclass(frozen=True, slots=True)
 class Oracle:
-    """Durations of one start in seconds; NaN where no choice reached the goal."""
+    """Durations of one start in seconds; NaN if no choice reached the goal."""
 
     seed: int
     ceiling_s: float
@@ -68,8 +68,8 @@ def simulate_choices(
 
 
 def _again_s(task: Task, best: Variant, seed: int, jobs: int, store: Path | None) -> float:
-    """The best of many noisy runs owes something to its luck; the choice itself is worth this."""
-    again = [replace(best, name=f"again-{k}-{best.name}", noise=k * OTHER_NOISE) for k in range(1, AGAIN + 1)]
+    """Mean duration of the best choice with other noise; the best of many noisy runs is biased."""
+    again = [replace(best, name=f"again-{k}-{best.name}", noise=k * OTHER_NOISE) for k in range(1, N_AGAIN + 1)]
     found = run_all(task, again, [seed], jobs, store, f"{task.scenario}: oracle again")
     reached = [found[v.name][seed].duration_s for v in again if found[v.name][seed].achieved]
     return float(np.mean(reached)) if reached else float("nan")

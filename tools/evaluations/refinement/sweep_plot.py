@@ -77,14 +77,14 @@ def _draw_minima(axis: Any, sweep: Sweep, number: int) -> None:
     """A line and a star at the least of both curves, and what they are in words."""
     predicted, simulated = sweep.predicted_s[number], sweep.simulated_s[number]
     top = 1.05 * float(np.nanmax([predicted, simulated]))
-    said = []
+    lines = []
     for name, seconds, colour in (("predicted", predicted, MODEL), ("simulated", simulated, SIMULATED)):
         best = int(np.nanargmin(seconds))
         axis.plot([sweep.angles[best]] * 2, [0, top], color=colour, linestyle="--", linewidth=1.2)
         axis.plot([sweep.angles[best]], [seconds[best]], "*", color=colour, markersize=13, markeredgecolor="white")
-        said.append(f"least {name}: {seconds[best]:.1f} s at {np.degrees(sweep.angles[best]):.0f}°")
+        lines.append(f"least {name}: {seconds[best]:.1f} s at {np.degrees(sweep.angles[best]):.0f}°")
     axis.set_ylim(0, top)
-    axis.set_xlabel("\n".join(said), fontsize="small")
+    axis.set_xlabel("\n".join(lines), fontsize="small")
 
 
 def _round(values: Array) -> Array:

@@ -57,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when every scenario improved significantly."""
+    """Evaluate and publish the report; 0 if every scenario improved significantly."""
     scenarios = arguments.scenarios or DOMAINS[arguments.domain or "soccer"]
     unknown = [name for name in scenarios if name not in SCENARIOS]
     if unknown:
@@ -83,8 +83,8 @@ def _of_other_models(name: str, arguments: argparse.Namespace) -> list[dict[str,
     rows = []
     for number in range(1, arguments.models + 1):
         zoo = replica(recipe, number, arguments.store, arguments.jobs)
-        asked = argparse.Namespace(**{**vars(arguments), "zoo": str(zoo), "oracle": 0})
-        rows.append({**evaluate(name, asked)[0], "model": f"trained anew, {number}"})
+        settings_of_model = argparse.Namespace(**{**vars(arguments), "zoo": str(zoo), "oracle": 0})
+        rows.append({**evaluate(name, settings_of_model)[0], "model": f"trained anew, {number}"})
     return [*rows, over_models(rows)] if rows else []
 
 
@@ -101,7 +101,7 @@ def evaluate(
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, name)
     greedy, refined = found["h1"], found["h2"]
-    row = {"scenario": name + (" (degraded)" if arguments.degraded else ""), **_told(greedy, refined)}
+    row = {"scenario": name + (" (degraded)" if arguments.degraded else ""), **_summary(greedy, refined)}
     if arguments.oracle:
         example = next(outcome for outcome in greedy.values() if outcome.achieved)
         judged = simulate_choices(
@@ -112,15 +112,15 @@ def evaluate(
     return row, paired(greedy, refined)
 
 
-def _told(greedy: Mapping[int, Outcome], refined: Mapping[int, Outcome]) -> dict[str, Any]:
+def _summary(greedy: Mapping[int, Outcome], refined: Mapping[int, Outcome]) -> dict[str, Any]:
     """The figures of one scenario, over the seeds at which both achieved the goal."""
-    said = compare(*paired(greedy, refined))
+    comparison = compare(*paired(greedy, refined))
     return {
         "horizon": 2,
-        "n": said.n,
-        "mean_greedy_s": said.mean_baseline_s,
-        "mean_refined_s": said.mean_s,
-        **said.verdict,
+        "n": comparison.n,
+        "mean_greedy_s": comparison.mean_baseline_s,
+        "mean_refined_s": comparison.mean_s,
+        **comparison.verdict,
         "failed_greedy": sum(not outcome.achieved for outcome in greedy.values()),
         "failed_refined": sum(not outcome.achieved for outcome in refined.values()),
         "bias_greedy_s": bias_s(greedy),

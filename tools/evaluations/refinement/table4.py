@@ -31,7 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and tell; 0 when looking two actions ahead is significantly faster and looking further no slower."""
+    """Evaluate and publish the report; 0 if h = 2 is significantly faster and longer horizons are not slower."""
     scenarios = arguments.scenarios or [arguments.domain or "soccer"]
     unknown = [name for name in scenarios if name not in SCENARIOS]
     if unknown:

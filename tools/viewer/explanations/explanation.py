@@ -91,8 +91,8 @@ def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSeq
     if not message.actions or any(a.action not in library for a in message.actions):
         return None
     table: dict[int, Variable] = {}
-    for told in message.actions:
-        for declared, parameter in zip(library[told.action].parameters, told.parameters, strict=True):
+    for instance in message.actions:
+        for declared, parameter in zip(library[instance.action].parameters, instance.parameters, strict=True):
             wide = parameter.upper - parameter.lower >= declared.upper - declared.lower
             table[parameter.id] = Variable(
                 parameter.id,
@@ -135,13 +135,13 @@ def accepted(
 
 
 def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, ...]:
-    return tuple(float(said.duration_s[0]) for said in objective.predict(candidate))
+    return tuple(float(prediction.duration_s[0]) for prediction in objective.predict(candidate))
 
 
 def _energies(objective: SequenceObjective, candidate: Array, settings: RefinementSettings) -> tuple[float, ...]:
     if settings.energy_weight == 0:
         return ()
-    return tuple(float(said.energy_j[0]) for said in objective.predict(candidate))
+    return tuple(float(prediction.energy_j[0]) for prediction in objective.predict(candidate))
 
 
 def _parameter(

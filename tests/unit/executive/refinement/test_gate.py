@@ -143,7 +143,7 @@ def test_foreknowledge_comes_from_the_other_runs_and_never_from_the_evaluated_on
     greedy_s = np.full((2, 5), 10.0)
     refined_s = np.array([[11.0, 11, 11, 11, 9], [9.0, 9, 9, 11, 9]])
     row = gate_ceiling.judged(greedy_s, refined_s)
-    assert row["foreknown_right_pct"] == 80.0  # the one run of each start that went otherwise is not foreseen
-    assert row["luck_always_right_pct"] == 50.0
-    assert row["foreknown_improvement_pct"] == pytest.approx((4 * 10 - 10) / 10)
+    assert row["ceiling_right_pct"] == 80.0  # the one run of each start that went otherwise is not foreseen
+    assert row["repeated_always_right_pct"] == 50.0
+    assert row["ceiling_improvement_pct"] == pytest.approx((4 * 10 - 10) / 10)
     assert row["mostly_slower_starts_pct"] == 50.0
