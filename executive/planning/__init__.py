@@ -1,6 +1,6 @@
 """Partial-order planning with PDDL and causal links, VHPOP-style (Younes & Simmons, JAIR 20, 2003).
 
-This is the public interface; other folders import from here only.
+The names below are the public interface.
 """
 
 from tailor.executive.planning.pddl.domain_reader import parse_domain

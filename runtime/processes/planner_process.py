@@ -1,6 +1,6 @@
-"""Runs an external planner (a real `vhpop`) as a child process: polled, never waited for, killed with its whole group.
+"""Runs an external planner such as `vhpop` as a child process: polled without blocking, killed with its group.
 
-Owns the child, its files and its limits of time, output and memory; reading the plan is the caller's business.
+Owns the child, its files and its limits of time, output and memory. Does not parse the plan.
 """
 
 from __future__ import annotations
@@ -23,10 +23,12 @@ from tailor.runtime.processes.child import bound_to_parent
 from tailor.schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
-MAX_MEMORY_BYTES = 2 << 30  # of address space; the robot's own processes share the machine with it
+MAX_MEMORY_BYTES = 2 << 30  # address space; the robot's own processes run on the same machine
 _CHUNK = 65536
-_REAP_S = 0.005  # a killed process is gone by then, but for a huge one; nobody waits longer
-vars(subprocess)["_USE_VFORK"] = False  # vfork holds up all threads until the child has begun (see subprocess's notes)
+_REAP_S = 0.005  # a killed process has ended by then, except a huge one; upper bound of the wait
+vars(subprocess)["_USE_VFORK"] = (
+    False  # vfork blocks all threads until the child has started (see the notes of subprocess)
+)
 
 
 Outcome = Literal["answered", "crashed", "timeout", "flood"]
@@ -34,7 +36,7 @@ Outcome = Literal["answered", "crashed", "timeout", "flood"]
 
 @dataclass(frozen=True, slots=True)
 class PlannerAnswer:
-    """How the child ended: by itself, by a signal of its own (crashed), or killed by us; and what it printed."""
+    """Outcome and output of a child: it exited, crashed by a signal, or was killed (timeout, flood)."""
 
     outcome: Outcome
     output: str
@@ -53,15 +55,15 @@ class PlannerProcess:
         max_bytes: int = MAX_OUTPUT_BYTES,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Starts the child as `command DOMAIN PROBLEM` in a process group of its own.
+        """Starts the child as `command DOMAIN PROBLEM` in its own process group.
 
         Args:
-          command: As in a shell, without one: "vhpop -g -f MW-Loc".
-          domain: PDDL text, handed over in a file.
-          problem: PDDL text, handed over in a file.
-          limit_s: Wall time after which the group is killed; vhpop's own -T only knows whole minutes.
-          max_bytes: Output after which the group is killed; a poll reads about 64 kB, a pipe holds no more.
-          clock: Seconds that only grow.
+          command: Program and arguments, quoted as in a shell but run without one: "vhpop -g -f MW-Loc".
+          domain: PDDL text, passed in a file.
+          problem: PDDL text, passed in a file.
+          limit_s: Wall time in seconds after which the group is killed; vhpop's own -T has a resolution of minutes.
+          max_bytes: Size of the output after which the group is killed; a poll reads about 64 kB, a full pipe.
+          clock: Monotonic clock in seconds.
 
         Raises:
           UsageError: The command cannot be started.
@@ -80,7 +82,7 @@ class PlannerProcess:
 
     def _start(self, command: str, paths: list[Path]) -> subprocess.Popen[bytes]:
         try:
-            words = words_of(command)
+            words = split_command(command)
             child = subprocess.Popen(
                 bound_to_parent([*words, *map(str, paths)]),
                 stdin=subprocess.DEVNULL,
@@ -94,7 +96,7 @@ class PlannerProcess:
         except UsageError:
             self._folder.cleanup()
             raise
-        with contextlib.suppress(OSError):  # it has ended already
+        with contextlib.suppress(OSError):  # it has already ended
             resource.prlimit(child.pid, resource.RLIMIT_AS, (MAX_MEMORY_BYTES, MAX_MEMORY_BYTES))
         assert child.stdout is not None
         os.set_blocking(child.stdout.fileno(), False)
@@ -102,11 +104,11 @@ class PlannerProcess:
 
     @property
     def pid(self) -> int:
-        """The child's process id, which is its group's as well."""
+        """Process id of the child, equal to its group id."""
         return self._child.pid
 
     def poll(self) -> PlannerAnswer | None:
-        """Reads what has been printed; the answer once there is one, None before. Never blocks."""
+        """Reads the output without blocking; returns the answer once the child has ended, None before."""
         if self._answer is not None:
             return self._answer
         ended = self._child.poll() is not None
@@ -139,7 +141,7 @@ class PlannerProcess:
 
     def _end(self, outcome: Outcome, reason: str) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._child.pid, signal.SIGKILL)  # a child that ended may have left children of its own
+            os.killpg(self._child.pid, signal.SIGKILL)  # a child that has ended may have left children
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(_REAP_S)
         assert self._child.stdout is not None
@@ -149,8 +151,8 @@ class PlannerProcess:
         self._answer = PlannerAnswer(outcome, text, reason)
 
 
-def words_of(command: str) -> list[str]:
-    """A planner's command as program and arguments; raises UsageError if there is no such program."""
+def split_command(command: str) -> list[str]:
+    """A planner's command as program and arguments; raises UsageError if the program does not exist."""
     try:
         words = shlex.split(command)
     except ValueError as error:
@@ -162,5 +164,5 @@ def words_of(command: str) -> list[str]:
     return words
 
 
-def _cannot_start(command: str, why: object) -> UsageError:
-    return UsageError(f"planner command '{command}': cannot be started: {why}")
+def _cannot_start(command: str, reason: object) -> UsageError:
+    return UsageError(f"planner command '{command}': cannot be started: {reason}")

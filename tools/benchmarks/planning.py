@@ -1,6 +1,6 @@
-"""The planner on the project's own problems beside the original VHPOP's counts, and what a plan weighs.
+"""Benchmark of the planner on the project's problems, with the counts of VHPOP and the memory per plan.
 
-Times are CPU milliseconds of the best of several runs, parsing and grounding included; the original's counts are from
+Times are CPU milliseconds of the best of several runs, parsing and grounding included. The counts of VHPOP are from
 tests/data/pddl/reference.csv (version 2.2.1, one flaw order: MW-Loc).
 """
 
@@ -26,18 +26,18 @@ RUNS = 15
 
 
 def names() -> list[str]:
-    """The problems at hand."""
+    """Names of the benchmark problems."""
     return sorted(path.stem for path in (DATA / "own").glob("*.pddl") if not path.stem.endswith("-domain"))
 
 
 def texts(name: str) -> tuple[str, str]:
-    """PDDL of domain and problem."""
+    """PDDL text of domain and problem."""
     folder = DATA / "own"
     return (folder / f"{name.rsplit('-', 1)[0]}-domain.pddl").read_text(), (folder / f"{name}.pddl").read_text()
 
 
 def plan(domain_text: str, problem_text: str) -> tuple[Result, float]:
-    """The result and the CPU milliseconds of its search alone, grounding included."""
+    """The result and the CPU milliseconds of grounding and search."""
     problem = read(domain_text, problem_text)
     started = time.process_time()
     result = Search(problem.domain, problem, MATCHING).advance(CheckBudget(UNLIMITED))
@@ -56,12 +56,12 @@ def rows(quick: bool = False) -> list[dict[str, object]]:
 
 
 def _row(name: str, runs: int) -> dict[str, object]:
-    given = texts(name)
+    domain_and_problem = texts(name)
     times = []
     searches = []
     for _ in range(runs):
         started = time.process_time()
-        result, search_ms = plan(*given)
+        result, search_ms = plan(*domain_and_problem)
         times.append((time.process_time() - started) * 1e3)
         searches.append(search_ms)
     original = _original(name)
@@ -86,7 +86,7 @@ def _original(name: str) -> dict[str, str]:
 
 
 def bytes_per_plan(name: str = "kitchen-s3", limit: int = 20_000) -> float:
-    """The memory that a search holds after `limit` generated plans, per plan; the goal is made unreachable in time."""
+    """Memory per plan that a search holds after `limit` generated plans; the goal cannot be reached by then."""
     problem = read(*texts(name))
     endless = problem.with_goal("(and (holding cup1) (holding cup2))")  # one hand: no plan, no proof
     search = Search(problem.domain, endless, replace(MATCHING, node_limit=limit))
@@ -95,9 +95,9 @@ def bytes_per_plan(name: str = "kitchen-s3", limit: int = 20_000) -> float:
     while search.counts[0] < limit - 100:  # the queue is dropped with the result: measure just before
         assert search.advance(CheckBudget(10)) is None
     gc.collect()
-    held, _ = tracemalloc.get_traced_memory()
+    memory, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    return held / search.counts[0]
+    return memory / search.counts[0]
 
 
 def run(console: Console, quick: bool) -> None:
@@ -106,9 +106,9 @@ def run(console: Console, quick: bool) -> None:
     Raises:
       NoMeasurement: The problems are not installed: they are test data.
     """
-    table = Table(title="planning: CPU time with parsing and grounding; counts beside VHPOP 2.2.1's", box=None)
+    table = Table(title="planning: CPU time with parsing and grounding; counts of VHPOP 2.2.1 for comparison", box=None)
     table.add_column("problem", no_wrap=True, min_width=19)
-    for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "its gen.", "its vis."):
+    for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "VHPOP gen.", "VHPOP vis."):
         table.add_column(column, justify="right", no_wrap=True)
     measured = rows(quick)
     if not measured:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.core.context import PlannerCommand, Settings
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
-from tailor.runtime.processes.planner_process import words_of
+from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 
@@ -60,6 +60,6 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
     scenario = deployment.scenario or domains.scenarios(domain)[0]
     settings = deployment.executive
     if deployment.planner.command:
-        words_of(deployment.planner.command)
+        split_command(deployment.planner.command)
         settings = replace(settings, external=deployment.planner)
     return ExecutiveConfig(domain, scenario, settings, deployment.zoo)

@@ -1,4 +1,4 @@
-"""Draws a plan's partial order: causal links with their literals, and the orderings that no link explains."""
+"""Draws a plan's partial order: causal links with their literals, and orderings that no link implies."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from html import escape
 from tailor.executive.planning import GOAL, Plan
 from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 
-_COLUMN, _ROW, _WIDTH, _HEIGHT, _MARGIN = 330, 84, 190, 40, 30  # pixels; literals stand between the columns
+_COLUMN, _ROW, _WIDTH, _HEIGHT, _MARGIN = 330, 84, 190, 40, 30  # pixels; literals are between the columns
 _LINE = 11  # pixels from one literal to the next
 _START = 0
 
@@ -37,7 +37,14 @@ def _labels(plan: Plan) -> dict[int, str]:
 
 
 def to_dot(plan: Plan) -> str:
-    """The plan as a Graphviz graph: solid arrows are causal links, dashed ones orderings."""
+    """The plan as a Graphviz graph: solid arrows are causal links, dashed ones orderings.
+
+    Args:
+      plan: A finished plan.
+
+    Returns:
+      Text in the DOT language.
+    """
 
     def name(step: int) -> str:
         return "goal" if step == GOAL else f"s{step}"
@@ -52,13 +59,20 @@ def to_dot(plan: Plan) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A string of Graphviz, whatever characters the names have."""
+    """A Graphviz string; escapes special characters."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 # --- SVG -----------------------------------------------------------------------------------------
 def to_svg(plan: Plan) -> str:
-    """The plan as a picture of its own: a column per start time, links solid, orderings dashed."""
+    """The plan as an SVG image: one column per start time, links solid, orderings dashed.
+
+    Args:
+      plan: A finished plan.
+
+    Returns:
+      A complete SVG document.
+    """
     places = _places(plan)
     arrows = [_Arrow(*_ends(places, *ends), tuple(literals)) for ends, literals in _links(plan).items()]
     arrows += [_Arrow(*_ends(places, *ends), (f"{ends[0]} before {ends[1]}",), True) for ends in bare_orderings(plan)]
@@ -78,7 +92,7 @@ def to_svg(plan: Plan) -> str:
                 _box(*places[step], label, f"t = {times[step]}" if step in times else "")
                 for step, label in _labels(plan).items()
             ),
-            *(arrow.words() for arrow in arrows if not arrow.dashed),  # last, lest a box hides them
+            *(arrow.labels() for arrow in arrows if not arrow.dashed),  # last, so that no box hides them
             "</svg>\n",
         ]
     )
@@ -113,7 +127,7 @@ def _box(x: int, y: int, label: str, time: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Arrow:
-    """A curve with a word or two about it; it hangs the lower the more columns it skips."""
+    """A curve with labels; it hangs lower the more columns it skips."""
 
     x1: int
     y1: int
@@ -124,7 +138,7 @@ class _Arrow:
 
     @property
     def middle(self) -> float:
-        """The height of its middle: half-way, or between two rows of boxes where it skips columns."""
+        """Height of the middle: half-way, or between two rows of boxes if it skips columns."""
         skipped = (self.x2 - self.x1) // _COLUMN
         if skipped < 1:
             return (self.y1 + self.y2) / 2
@@ -132,26 +146,26 @@ class _Arrow:
 
     @property
     def top(self) -> float:
-        """Where the first of its words stands."""
+        """Height of the first label."""
         return self.middle - 4 - _LINE * (len(self.lines) - 1)
 
     @property
     def bottom(self) -> float:
-        """Nothing of it stands lower."""
+        """Height of the lowest point."""
         return max(self.y1, self.y2, self.middle) + _LINE
 
     def curve(self) -> str:
-        """The line, with its words for whoever points at it."""
+        """The line, with its labels as tooltip."""
         style = 'stroke="#999999" stroke-dasharray="5 4"' if self.dashed else 'stroke="#2266aa"'
-        bow = (self.middle - (self.y1 + self.y2) / 2) / 0.75  # how much lower the curve's two handles are
+        bow = (self.middle - (self.y1 + self.y2) / 2) / 0.75  # offset of the two control points
         x, y1, y2 = (self.x1 + self.x2) / 2, self.y1 + bow, self.y2 + bow
         return (
             f'<path d="M{self.x1} {self.y1} C{x} {y1:g} {x} {y2:g} {self.x2} {self.y2}" fill="none" {style} '
             f'marker-end="url(#tip)"><title>{escape(" ".join(self.lines))}</title></path>'
         )
 
-    def words(self) -> str:
-        """The literals, one above the other, on the line's middle; a white rim keeps lines out of them."""
+    def labels(self) -> str:
+        """The literals, one above the other, at the middle of the line, with a white outline."""
         return "".join(
             f'<text x="{(self.x1 + self.x2) / 2}" y="{self.top + n * _LINE:g}" font-size="9" fill="#2266aa" '
             f'text-anchor="middle" stroke="#ffffff" stroke-width="3" paint-order="stroke">{escape(line)}</text>'

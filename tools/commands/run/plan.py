@@ -1,7 +1,7 @@
-"""Plans with PDDL files, in VHPOP's manner: a partial-order plan with causal links.
+"""Find a partial-order plan with causal links for a PDDL problem, VHPOP-style.
 
-Prints the plan's plain form, START:(action args)[duration]. Options have the letters and names of VHPOP. Exit codes:
-0 a plan, 1 no plan (unsolvable or a limit), 2 bad input.
+Prints the plan in plain form, START:(action args)[duration]. Options have the letters and names of VHPOP. Exit codes:
+0 plan found, 1 no plan (unsolvable, or a limit reached), 2 bad input.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.figures.plan_drawing import to_dot, to_svg
 
 MAX_BYTES = 4 * MAX_CHARACTERS
-MAX_PLANS = 1_000_000  # a search that gets there has used about 1 GB
-_POLL_S = 0.002  # how often a child planner is looked at
+MAX_PLANS = 1_000_000  # about 1 GB of memory
+_POLL_S = 0.002  # period of polling an external planner
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Adds the arguments; -h is VHPOP's ranking here, help is --help only."""
+    """Adds the arguments; -h is the ranking as in VHPOP, so help is --help only."""
     parser.conflict_handler = "resolve"
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
@@ -62,9 +62,9 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("-h", "--heuristic", metavar="RANKING", default="",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
     add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
-        help="flaw order: a name or {n,s}LR/{l}MW_add; several take turns (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
+        help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
-        help="plans that the flaw order before it may generate, or 'unlimited'; without one: all")  # fmt: skip
+        help="maximum number of plans of the preceding flaw order (of the search if none), or 'unlimited'")  # fmt: skip
     add(
         "-s",
         "--search-algorithm",
@@ -74,36 +74,63 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
         type=lambda name: name.upper().removesuffix("*"),
         help="A* (default) or IDA*",
     )
-    add("-w", "--weight", type=float, default=1.0, help="weight of the heuristic (default 1)")
+    add(
+        "-w",
+        "--weight",
+        type=float,
+        default=1.0,
+        help="weight of the heuristic against the cost of the steps (default 1)",
+    )
     add("-a", "--action-cost", choices=("UNIT", "DURATION", "RELATIVE"), default="UNIT", type=str.upper,
-        help="what a step costs (default UNIT)")  # fmt: skip
-    add("-t", "--tolerance", type=float, default=0.01, metavar="S", help="one tick of a durative plan (default 0.01)")
+        help="cost of a step: 1, its duration, or that relative to the shortest (default UNIT)")  # fmt: skip
+    add(
+        "-t",
+        "--tolerance",
+        type=float,
+        default=0.01,
+        metavar="S",
+        help="tick of a durative plan in seconds (default 0.01)",
+    )
     add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
-    add("-S", "--seed", type=int, default=0, help="seed of everything random (default 0)")
-    add("-T", "--time-limit", type=_minutes, default=None, metavar="MINUTES", help="give up after that many minutes")
-    add("--planner", metavar="COMMAND", help="let a real vhpop plan instead, e.g. 'vhpop -g -f MW-Loc'")
+    add("-S", "--seed", type=int, default=0, help="random seed (default 0)")
+    add(
+        "-T",
+        "--time-limit",
+        type=_minutes,
+        default=None,
+        metavar="MINUTES",
+        help="time limit of the search in minutes, fractions allowed (default none)",
+    )
+    add(
+        "--planner",
+        metavar="COMMAND",
+        help="plan with an external vhpop binary, "
+        "in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc'",
+    )
 
 
 def _configure_output(group: argparse._ArgumentGroup) -> None:
     forms = group.add_mutually_exclusive_group()
-    forms.add_argument("--links", action="store_true", help="the causal-link form (the paper's Figure 10)")
-    forms.add_argument("--json", action="store_true", help="one JSON object, also when there is no plan")
-    forms.add_argument("--dot", action="store_true", help="the partial order as a Graphviz graph")
-    forms.add_argument("--svg", action="store_true", help="the partial order as an SVG picture")
-    group.add_argument("-v", "--verbose", action="store_true", help="say on stderr what the search cost (also -v1 ...)")
-    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(10)]  # VHPOP's: all say the same
+    forms.add_argument("--links", action="store_true", help="print causal links and orderings (Figure 10 of the paper)")
+    forms.add_argument("--json", action="store_true", help="print one JSON object, also if there is no plan")
+    forms.add_argument("--dot", action="store_true", help="print the partial order as a Graphviz graph")
+    forms.add_argument("--svg", action="store_true", help="print the partial order as an SVG image")
+    group.add_argument(
+        "-v", "--verbose", action="store_true", help="print the cost of the search on standard error (also -v1 ...)"
+    )
+    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(10)]
     group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)
 
 
 class _AppendOrder(argparse.Action):
-    """-f ORDER: one more flaw order."""
+    """-f ORDER: appends a flaw order."""
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
         namespace.orders = [*namespace.orders, FlawOrder(str(values))]
 
 
 class _LimitOrder(argparse.Action):
-    """-l N: the limit of the flaw order before it, or of the whole search when there is none."""
+    """-l N: limits the preceding flaw order, or the whole search if there is none."""
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
         limit = None if values == "unlimited" else _positive(values)
@@ -115,13 +142,13 @@ class _LimitOrder(argparse.Action):
 
 
 def _minutes(text: str) -> float:
-    """A time limit."""
+    """A time limit in minutes."""
     try:
         minutes = float(text)
     except ValueError:
         minutes = -1.0
     if not minutes >= 0:
-        raise UsageError(f"--time-limit: expected minutes from 0 on, found '{text}'")
+        raise UsageError(f"--time-limit: expected a number of minutes of at least 0, found '{text}'")
     return minutes
 
 
@@ -134,7 +161,7 @@ def _positive(text: str) -> int:
 # --- running -------------------------------------------------------------------------------------
 @dataclasses.dataclass(slots=True)
 class _TimeBudget:
-    """Grants work until a deadline of CPU-independent time."""
+    """Grants work until a deadline of wall time."""
 
     deadline: float
     granted: int = 0
@@ -146,17 +173,17 @@ class _TimeBudget:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Plans and prints; 0 with a plan, 1 without."""
+    """Plans and prints; returns exit code 0 with a plan, 1 without."""
     started = time.process_time()
     try:
-        texts = _read(args.domain), _read(args.problem)  # once: a pipe has nothing more to give
+        texts = _read(args.domain), _read(args.problem)  # read once: standard input cannot be read again
         domain = parse_domain(texts[0], str(args.domain))
         problem = parse_problem(texts[1], domain, str(args.problem))
     except Unsupported as feature:
         if args.json:
             print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
         raise
-    result = _ask(args, texts, domain, problem) if args.planner else _search(args, domain, problem)
+    result = _run_external(args, texts, domain, problem) if args.planner else _search(args, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if result.plan is not None:
         fault = validate(result.plan, domain, problem)
@@ -171,16 +198,16 @@ def run(args: argparse.Namespace) -> int:
 def _read(path: Path) -> str:
     try:
         with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size to look at
+            content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size
         if len(content) > MAX_BYTES:
-            raise UsageError(f"{path}: more than the {MAX_BYTES} bytes that a PDDL file may have")
+            raise UsageError(f"{path}: larger than {MAX_BYTES} bytes, the limit of a PDDL file")
         return content.decode("utf-8-sig")  # some editors begin a file with a byte order mark
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
 
 
 def settings_of(args: argparse.Namespace) -> Settings:
-    """The search settings that the options name."""
+    """The search settings of the options."""
     chosen: dict[str, Any] = {"flaw_orders": tuple(args.orders)} if args.orders else {}
     return Settings(
         rankings=tuple(args.heuristic.split("/")) if args.heuristic else (),
@@ -205,8 +232,8 @@ def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Resul
     return result
 
 
-def _ask(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
-    """Lets the external planner answer; its plan is parsed, and the causal links that it lacks are added."""
+def _run_external(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
+    """Runs the external planner; parses its plan and adds missing causal links."""
     limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
     child = PlannerProcess(args.planner, *texts, limit_s)
     try:
@@ -229,8 +256,8 @@ def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: f
     if args.json:
         print(json.dumps(_as_json(result, problem.name, cpu_ms)))
     elif plan is None:
-        told = "no plan exists" if result.status == "unsolvable" else "no plan found"
-        print(f"{problem.name}: {told}: {result.reason}", file=sys.stderr)
+        outcome = "no plan exists" if result.status == "unsolvable" else "no plan found"
+        print(f"{problem.name}: {outcome}: {result.reason}", file=sys.stderr)
     elif args.links:
         print(format_links(plan), end="")
     elif args.dot:
