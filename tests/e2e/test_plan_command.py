@@ -119,7 +119,10 @@ def test_verbose_stands_before_the_files_as_well(capsys):
 @pytest.mark.parametrize("minutes", ["-1", "nan", "soon"])
 def test_a_time_limit_is_a_number_of_minutes(capsys, minutes):
     code, _, err = plan(capsys, DOMAIN, PROBLEM, "-T", minutes)
-    assert (code, err) == (2, f"tailor plan: --time-limit: expected a number of minutes of at least 0, found '{minutes}'\n")
+    assert (code, err) == (
+        2,
+        f"tailor plan: --time-limit: expected a number of minutes of at least 0, found '{minutes}'\n",
+    )
 
 
 def test_lifted_planning_speaks_what_ground_planning_does(capsys, tmp_path):

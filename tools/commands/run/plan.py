@@ -200,7 +200,7 @@ def _read(path: Path) -> str:
         with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size
         if len(content) > MAX_BYTES:
-            raise UsageError(f"{path}: larger than {MAX_BYTES} bytes, the limit of a PDDL file")
+            raise UsageError(f"{path}: more than the {MAX_BYTES} bytes allowed in a PDDL file")
         return content.decode("utf-8-sig")  # some editors begin a file with a byte order mark
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
