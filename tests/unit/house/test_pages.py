@@ -37,5 +37,10 @@ def test_the_readme_lists_the_folders_of_the_table() -> None:
     assert [row for row in rows if row in OURS] == list(ROOMS["."])
 
 
+def test_the_readme_links_every_page() -> None:
+    links = LINK.findall((ROOT / "README.md").read_text())
+    assert set(PAGES) - {"README.md"} <= set(links)
+
+
 def test_the_citation_names_the_version() -> None:
     assert re.findall(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE) == [tailor.__version__]
