@@ -1,4 +1,4 @@
-"""Puts a context together from names and settings, and writes down what it was made of so that it can be made again."""
+"""Builds a context from names and settings, and its provenance, from which the same context can be rebuilt."""
 
 from __future__ import annotations
 
@@ -21,16 +21,28 @@ PLACE_UNIT = "m"
 
 @dataclass(frozen=True, slots=True)
 class ExecutiveConfig:
-    """What to run: a domain, one of its scenarios, and the settings of the executive."""
+    """Configuration of the executive: a domain, one of its scenarios, settings, models.
+
+    Attributes:
+      domain: Name, see tailor.executive.domains.DOMAINS.
+      scenario: Name of one of the domain's scenarios.
+      settings: Settings of the executive; their seed also draws the scenario.
+      zoo: Folder of action models; empty: the shipped ones.
+    """
 
     domain: str
     scenario: str
     settings: Settings = field(default_factory=Settings)
-    zoo: str = ""  # folder of action models; empty: those that ship
+    zoo: str = ""
 
 
 def build_context(config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0) -> Context:
     """Build the context of a configuration.
+
+    Args:
+      config: Names and settings.
+      sender: Sender id of this executive, 32 hex digits.
+      stamp_offset_ns: Added to the monotonic time for the stamps of messages.
 
     Raises:
       UsageError: Unknown domain or scenario, a PDDL error, a missing or altered model.
@@ -42,11 +54,11 @@ def build_context(config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0
 
 
 def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
-    """A robot's models, with its refinement gate if `gated` and there is one.
+    """Load a robot's action models, with its refinement gate if `gated` and there is one.
 
     Raises:
-      UsageError: A missing or altered model, one that has not seen what its action asks for, or a refinement gate that
-        was learned with others.
+      UsageError: A missing or altered model, one whose training range is smaller than its action's, or a refinement
+        gate that was learned with other models.
     """
     folder = Path(zoo) if zoo else None
     durations, successes = load_robot(robot, folder, required_ranges(robot))
@@ -55,23 +67,22 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
 
 
 def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
-    """Ranges that a robot's actions declare, by the folder of their models and argument.
+    """Ranges that a robot's actions declare, by the folder of their models and by parameter.
 
-    Places are left out: models know them by distance and direction, and how far apart two may be the arguments do not
-    say one by one.
+    Places are left out: models use their distance and direction, which single parameters do not bound.
     """
     ranges: dict[str, dict[str, tuple[float, float]]] = {}
     for domain in filter(lambda domain: domain.robot == robot, map(domains.load, domains.DOMAINS)):
         for action in domain.actions.values():
-            known = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
-            for asked in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
-                lower, upper = known.get(asked.name, (asked.lower, asked.upper))
-                known[asked.name] = min(lower, asked.lower), max(upper, asked.upper)
+            declared = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
+            for p in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
+                lower, upper = declared.get(p.name, (p.lower, p.upper))
+                declared[p.name] = min(lower, p.lower), max(upper, p.upper)
     return ranges
 
 
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
-    """All that it takes to compose the same context again, and the cards of the models it used."""
+    """Data from which `rebuild_context` builds the same context; models by the hash of their cards."""
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
     if context.models.gate is not None:
         models[GATE] = context.models.gate
@@ -90,7 +101,11 @@ def without_gate(config: ExecutiveConfig) -> ExecutiveConfig:
 
 
 def rebuild_context(recorded: Mapping[str, Any]) -> Context:
-    """The context that a recording's provenance describes; raises UsageError if the models here are not those."""
+    """Build the context that a recording's provenance describes.
+
+    Raises:
+      UsageError: The provenance is incomplete, or a model here differs from the recorded one.
+    """
     _check(recorded)
     config = from_table(ExecutiveConfig, recorded["config"], "recording's provenance")
     if GATE not in recorded["models"]:  # the run had no refinement gate, whatever is installed here
@@ -105,11 +120,11 @@ def rebuild_context(recorded: Mapping[str, Any]) -> Context:
 
 
 def _check(recorded: Mapping[str, Any]) -> None:
-    """Whether a provenance has what `rebuild_context` needs: it comes from a file."""
+    """Raise UsageError if a provenance, read from a file, lacks an entry that `rebuild_context` needs."""
     if not recorded:
-        raise UsageError("the recording does not say what the executive was made of, expected exec/provenance in it")
+        raise UsageError("the recording holds no exec/provenance, from which the executive is rebuilt")
     kinds = {"config": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}
     for name, kind in kinds.items():
-        found = recorded.get(name, {} if name == "machine" else None)  # nothing was said of machines once
-        if not isinstance(found, kind):
-            raise UsageError(f"recording's provenance: '{name}' is {found!s:.40}, expected {kind.__name__}")
+        value = recorded.get(name, {} if name == "machine" else None)  # older recordings lack the machine
+        if not isinstance(value, kind):
+            raise UsageError(f"recording's provenance: '{name}' is {value!s:.40}, expected {kind.__name__}")

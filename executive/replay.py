@@ -13,7 +13,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 
 @dataclass(frozen=True, slots=True)
 class RecordedTick:
-    """What one tick was given."""
+    """Inputs of one tick, and the number of checks that it was granted."""
 
     tick: int
     now_ns: int
@@ -22,7 +22,15 @@ class RecordedTick:
 
 
 def replay(context: Context, ticks: Iterable[RecordedTick]) -> Iterator[tuple[int, tuple[Output, ...]]]:
-    """The number and the outputs of every recorded tick, as today's core makes them."""
+    """Run recorded ticks through the core.
+
+    Args:
+      context: The recorded run's, see composition.rebuild_context.
+      ticks: All ticks of a run, from the first one.
+
+    Yields:
+      Number and outputs of each tick, as the present core computes them.
+    """
     state = initial_state(context)
     for tick in ticks:
         state, outputs = step(context, state, tick.now_ns, tick.inputs, CheckBudget(tick.checks))

@@ -1,4 +1,4 @@
-"""The live shell: waits for the deadline, drains the inbox, calls the core, publishes. Decides nothing itself."""
+"""The live shell: waits for the period, drains the inbox, calls the core, publishes. Contains no decisions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
-PROVENANCE_TICKS = 10  # once a second, so that a recorder that comes late gets it too
+PROVENANCE_TICKS = 10  # once a second, also for a recorder that starts late
 TOPICS = (
     "arm_request", "finished", "plan", "plan_request", "plan_answer", "subgoals", "refinement", "status", "tick",
     "provenance",
@@ -31,7 +31,14 @@ class Shell:
     """One executive on the bus."""
 
     def __init__(self, context: Context, session: Session, clock: Clock, provenance: Mapping[str, Any]) -> None:
-        """Subscribe and declare; nothing is published before `run`."""
+        """Create subscribers and publishers; nothing is published before `run`.
+
+        Args:
+          context: Configuration of the run; its sender is the session's.
+          session: Session on the bus.
+          clock: Monotonic clock.
+          provenance: Published once a second, so that the run can be repeated.
+        """
         domain = context.domain
         self._context = context
         self._clock = clock
@@ -45,18 +52,21 @@ class Shell:
         self._state = initial_state(context)
 
     def run(self, goal: str, until: Callable[[State], bool]) -> State:
-        """Tick until `until` says so; the last tick brings the robot to rest.
+        """Run ticks until `until` is True; the last tick brings the robot to rest.
 
         Args:
-          goal: A checked PDDL goal for the first tick; empty: wait for one.
-          until: Looked at before every tick.
+          goal: A goal that `check_goal` accepts, for the first tick; empty: wait for a request.
+          until: Called before every tick with the state.
+
+        Returns:
+          The state after the last tick.
         """
         loop = Loop(PERIOD_NS, self._clock)
         try:
             while True:
-                turn = loop.wait_for_next_period()
+                period = loop.wait_for_next_period()
                 stopping = until(self._state)
-                self._tick(turn, goal, stopping)
+                self._tick(period, goal, stopping)
                 goal = ""
                 if stopping:
                     return self._state
@@ -64,17 +74,17 @@ class Shell:
         finally:
             self._planner.close()
 
-    def _tick(self, turn: Period, goal: str, stopping: bool) -> None:
-        samples = (*self._inbox.drain(turn.now_ns), *self._planner_answer(turn))
-        inputs = Inputs(samples, self._requested_goal() or goal, turn.skipped, stopping)
-        self._state, outputs = control(self._context, self._state, turn.now_ns, inputs)
+    def _tick(self, period: Period, goal: str, stopping: bool) -> None:
+        samples = (*self._inbox.drain(period.now_ns), *self._planner_answer(period))
+        inputs = Inputs(samples, self._requested_goal() or goal, period.skipped, stopping)
+        self._state, outputs = control(self._context, self._state, period.now_ns, inputs)
         self._publish(outputs)
-        control_ns = self._clock.now_ns() - turn.now_ns
-        deadline_ns = min(turn.now_ns + DELIBERATION_NS, turn.deadline_ns + TICK_END_NS)
+        control_ns = self._clock.now_ns() - period.now_ns
+        deadline_ns = min(period.now_ns + DELIBERATION_NS, period.deadline_ns + TICK_END_NS)
         budget = ClockBudget(deadline_ns, self._clock.now_ns)
         self._state, outputs = deliberate(self._context, self._state, budget)
         self._publish(outputs)
-        self._report(turn, inputs, control_ns, budget.granted)
+        self._report(period, inputs, control_ns, budget.granted)
 
     def _requested_goal(self) -> str:
         """An accepted goal of this tick's request, "" without one; an invalid goal is refused with its cause."""
@@ -89,15 +99,15 @@ class Shell:
         request.accept()
         return goal
 
-    def _planner_answer(self, turn: Period) -> tuple[Sample, ...]:
+    def _planner_answer(self, period: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""
-        request, stamp_ns = pending_request(self._state), self._context.stamp(turn.now_ns)
+        request, stamp_ns = pending_request(self._state), self._context.stamp(period.now_ns)
         answer = self._planner.poll(request.id if request is not None else 0, stamp_ns)
         if answer is None:
             return ()
         publisher = self._publishers["plan_answer"]
         sequence = publisher.publish(answer)
-        return (Sample(publisher.key, answer, turn.now_ns, sequence, self._context.sender),)
+        return (Sample(publisher.key, answer, period.now_ns, sequence, self._context.sender),)
 
     def _publish(self, outputs: tuple[Output, ...]) -> None:
         for output in outputs:
@@ -105,27 +115,27 @@ class Shell:
             if isinstance(output.message, PlanRequest):
                 self._planner.request(output.message)
 
-    def _report(self, turn: Period, inputs: Inputs, control_ns: int, checks: int) -> None:
+    def _report(self, period: Period, inputs: Inputs, control_ns: int, checks: int) -> None:
         tick = self._state.tick
-        stamp_ns = self._context.stamp(turn.now_ns)
+        stamp_ns = self._context.stamp(period.now_ns)
         if tick % PROVENANCE_TICKS == 1:
             self._publishers["provenance"].publish(Provenance(stamp_ns, self._provenance))
-        work_ns = self._clock.now_ns() - turn.now_ns
-        self._publishers["tick"].publish(tick_report(stamp_ns, tick, turn, inputs, (control_ns, work_ns, checks)))
+        work_ns = self._clock.now_ns() - period.now_ns
+        self._publishers["tick"].publish(tick_report(stamp_ns, tick, period, inputs, (control_ns, work_ns, checks)))
 
 
-def tick_report(stamp_ns: int, tick: int, turn: Period, inputs: Inputs, spent: tuple[int, int, int]) -> TickReport:
-    """Timing of a tick and what it was given; `spent` is control time, work time (ns) and checks granted."""
+def tick_report(stamp_ns: int, tick: int, period: Period, inputs: Inputs, spent: tuple[int, int, int]) -> TickReport:
+    """Timing and inputs of a tick; `spent` is control time and work time (ns), and the number of granted checks."""
     control_ns, work_ns, checks = spent
     samples: tuple[Sample, ...] = inputs.samples
     return TickReport(
         stamp_ns=stamp_ns,
         tick=tick,
-        now_ns=turn.now_ns,
-        lateness_ns=turn.lateness_ns,
+        now_ns=period.now_ns,
+        lateness_ns=period.lateness_ns,
         control_ns=control_ns,
         work_ns=work_ns,
-        skipped=turn.skipped,
+        skipped=period.skipped,
         checks_granted=checks,
         goal=inputs.goal,
         stopping=inputs.stopping,

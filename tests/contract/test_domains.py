@@ -82,8 +82,8 @@ def test_driver_takes_what_the_domain_commands(name):
     assert declared.axes == tuple(axis.name for axis in domain.axes)
     for limit, axis in zip(declared.limits, domain.axes, strict=True):
         assert limit.lower <= axis.lower < axis.upper <= limit.upper
-    said = tomllib.loads((ROOT / "simnodes" / domain.robot / "driver.toml").read_text())
-    for topic, sensor in said["sensors"].items():
+    spec = tomllib.loads((ROOT / "simnodes" / domain.robot / "driver.toml").read_text())
+    for topic, sensor in spec["sensors"].items():
         assert TOPICS[topic].rate_hz == sensor["rate_hz"], topic
 
 

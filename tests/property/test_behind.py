@@ -1,4 +1,4 @@
-"""Poses behind the ball lie within what their interval form says."""
+"""Poses behind the ball lie within the bounds of their interval form."""
 
 from __future__ import annotations
 

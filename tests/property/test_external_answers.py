@@ -53,7 +53,7 @@ def test_3000_mutated_answers_are_sound_plans_or_reasons():
         found["unsound" if isinstance(plan, str) else "plan"] += 1
         if not isinstance(plan, str):
             assert validate(plan, *problem) == ""
-            if plan.durative == bool(plan.bounds):  # a durative plan that was linked anew is told without its times
+            if plan.durative == bool(plan.bounds):  # a durative plan that was linked anew has no times
                 assert validate(parse_plan(format_links(plan)), *problem) == ""
     assert min(found.values()) > 100, found
 

@@ -44,7 +44,7 @@ def test_poses_with_a_covariance_of_zeros_are_fused_and_not_divided_by():
     assert abs(belief.pose.x - 0.5) < 0.01
 
 
-def test_odometry_that_no_robot_could_drive_tells_nothing():
+def test_odometry_that_no_robot_could_drive_is_ignored():
     belief = soccer.unknown()
     for k, (v, omega) in enumerate([(0.2, 0.0), (1e9, 0.0), (0.0, 1e9)], start=1):
         odom = m.Odometry(k * 20_000_000, 0.0, 0.0, 0.0, v, omega)

@@ -38,9 +38,9 @@ def recorded_run(seed: int, ticks: int):
     for n in range(1, ticks):
         given_inputs = inputs(n * TICK, x + 0.01 * rng.standard_normal(), GOAL if n == 1 else "")
         budget = FickleBudget(rng)
-        state, said = step(context, state, n * TICK, given_inputs, budget)
+        state, published = step(context, state, n * TICK, given_inputs, budget)
         tape.append(RecordedTick(n, n * TICK, given_inputs, budget.granted))
-        outputs.append((n, said))
+        outputs.append((n, published))
         x += 0.1 * state.command[0]
     return tape, outputs
 

@@ -27,10 +27,10 @@ def written(text, hand, seed=3):
 @pytest.mark.parametrize("hand", [STOPPING, GREEDY, REFINED], ids=lambda hand: hand.name)
 @pytest.mark.parametrize("letter", "TFS")
 def test_a_letter_passes_every_waypoint_within_ten_milliradians(letter, hand):
-    said = written(letter, hand)
-    assert said.result == "achieved"
-    assert len(said.arrivals_s) == len(said.waypoints)
-    assert waypoint_errors_rad(said).max() < 0.010
+    track = written(letter, hand)
+    assert track.result == "achieved"
+    assert len(track.arrivals_s) == len(track.waypoints)
+    assert waypoint_errors_rad(track).max() < 0.010
 
 
 def test_a_refined_hand_is_faster_than_one_that_stops():
@@ -38,9 +38,9 @@ def test_a_refined_hand_is_faster_than_one_that_stops():
 
 
 def test_a_hand_that_stops_rests_at_its_waypoints_and_a_refined_one_does_not():
-    def fastest_passage(said):
-        speeds = np.linalg.norm(said.velocities, axis=1)
-        return max(np.interp(said.arrivals_s, said.times_s, speeds))
+    def fastest_passage(track):
+        speeds = np.linalg.norm(track.velocities, axis=1)
+        return max(np.interp(track.arrivals_s, track.times_s, speeds))
 
     assert fastest_passage(written("Z", STOPPING)) < 0.05
     assert fastest_passage(written("Z", REFINED)) > 0.2
@@ -53,9 +53,9 @@ def test_the_same_seed_writes_the_same_bits():
 
 
 def test_a_word_is_written_letter_by_letter():
-    said = written("IT", REFINED)
-    assert said.result == "achieved"
-    assert len(said.waypoints) == 8
-    down = said.pen_down().astype(int)
+    track = written("IT", REFINED)
+    assert track.result == "achieved"
+    assert len(track.waypoints) == 8
+    down = track.pen_down().astype(int)
     assert np.count_nonzero(np.diff(down) == 1) == 2, "the pen goes down once a letter"
-    assert waypoint_errors_rad(said).max() < 0.010
+    assert waypoint_errors_rad(track).max() < 0.010

@@ -1,4 +1,4 @@
-"""In a whole run left-over budget proves how near subgoals are to the models' optimum; a replay proves the same."""
+"""Left-over budget of a run proves optimality gaps of its subgoals; a replay proves the same gaps."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
 
-def told(outputs, kind):
+def messages_of(outputs, kind):
     return [output.message for tick in outputs for output in tick if isinstance(output.message, kind)]
 
 
@@ -41,8 +41,8 @@ def certified():
     return run(300)
 
 
-def test_gap_to_the_optimum_is_told_once_the_search_is_finished(certified):
-    reports = told(certified[2], RefinementReport)
+def test_optimality_gap_is_reported_once_the_search_is_finished(certified):
+    reports = messages_of(certified[2], RefinementReport)
     proven = [report for report in reports if report.gap_pct >= 0]
     assert proven
     assert all(report.finished for report in proven)
@@ -51,13 +51,13 @@ def test_gap_to_the_optimum_is_told_once_the_search_is_finished(certified):
     assert gaps == sorted(gaps, reverse=True)
 
 
-def test_replay_of_the_same_checks_tells_the_same_gaps(certified):
+def test_replay_of_the_same_checks_reports_the_same_gaps(certified):
     context, ticks, outputs = certified
-    again = [said for _, said in replay(context, iter(ticks))]
-    assert told(again, RefinementReport) == told(outputs, RefinementReport)
+    again = [published for _, published in replay(context, iter(ticks))]
+    assert messages_of(again, RefinementReport) == messages_of(outputs, RefinementReport)
 
 
 def test_proof_changes_no_decision(certified):
     _, _, unproven = run(0)
-    assert told(unproven, Subgoals) == told(certified[2], Subgoals)
-    assert all(report.gap_pct == -1.0 for report in told(unproven, RefinementReport))
+    assert messages_of(unproven, Subgoals) == messages_of(certified[2], Subgoals)
+    assert all(report.gap_pct == -1.0 for report in messages_of(unproven, RefinementReport))

@@ -55,14 +55,14 @@ def test_four_waypoints_are_passed_with_speeds_that_were_chosen(seed):
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_goal_is_reached_though_the_ball_was_moved_on_the_way(seed):
+def test_goal_is_reached_although_the_ball_was_moved_on_the_way(seed):
     episode = play("moved-ball", seed)
     assert episode.result == "achieved"
     assert len(plans(episode)) > len(plans(play("approach-dribble", seed))), "it had to think again"
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_goal_is_reached_though_the_ball_was_kicked_away(seed):
+def test_goal_is_reached_although_the_ball_was_kicked_away(seed):
     episode = play("kicked-ball", seed)
     assert episode.result == "achieved"
     speeds_mps = np.array([np.hypot(t.ball_vx, t.ball_vy) for t in episode.truth])
@@ -70,7 +70,7 @@ def test_goal_is_reached_though_the_ball_was_kicked_away(seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_asked_of_the_arrival_at_a_ball_is_kept_with_a_subgoal_where_it_needs_one(seed):
+def test_required_arrival_at_a_ball_is_kept_with_a_subgoal_where_it_needs_one(seed):
     episode = play("approach", seed)
     assert episode.result == "achieved"
     arrival = next(a for s in episode.subgoals for a in s.actions if a.action == "approachBall")

@@ -100,7 +100,7 @@ def _summary(message: Message) -> str:
         reason = f" ({reason_text(message.reason, message.detail)})" if message.reason else ""
         return f"  {message.action} {message.outcome}{reason}: {duration}"
     if isinstance(message, PlanReport) and message.status == "failed":
-        return f"  planner failed: {reason_text(message.reason, message.detail)}"
+        return f"  {reason_text(message.reason, message.detail)}"
     if isinstance(message, ExecStatus):
         if message.result or message.action:
             result = result_text(message.result, message.result_reason, message.result_detail)

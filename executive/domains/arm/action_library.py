@@ -7,18 +7,18 @@ import math
 from tailor.executive.actions.reach import Reach
 from tailor.executive.interfaces.action import Action, Parameter
 
-PAN_RAD = 1.3  # where waypoints may lie
+PAN_RAD = 1.3  # waypoints lie within these
 LIFT_RAD = 0.9
-PASSING_RADPS = 0.7  # fastest passage that is asked of a joint
+PASSING_RADPS = 0.7  # maximum velocity of a joint at a waypoint
 ACCELERATION_RADPS2 = 0.87  # a random reach then takes 2.9 s on average (paper Table 1)
 ACCELERATION_MAX_RADPS2 = 4.0  # the driver ramps at 5; hardly a reach needs more than 2.5
 
 
 def fastest_radps(distance_rad: float) -> float:
-    """How fast a joint may pass a waypoint whose nearer neighbour lies so far away.
+    """Maximum velocity (rad/s) of a joint at a waypoint whose nearer neighbour lies `distance_rad` away.
 
-    Up to there a reach's duration has one minimum. Beyond, rushing through and looping back can cost alike, and what is
-    best on paper turns out to be the other one.
+    Up to this velocity the duration of a reach has one minimum. Beyond it, passing fast and looping back can take
+    equally long, and the predicted optimum may be the wrong one.
     """
     return min(PASSING_RADPS, math.sqrt(ACCELERATION_RADPS2 * distance_rad))
 

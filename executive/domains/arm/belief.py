@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from tailor.executive.domains.arm.robot import JOINTS
 from tailor.schemas.messages import JointState, Sample
 
-MOTION_LIMIT_S = 0.5  # without encoders for longer, the last velocity says nothing
+MOTION_LIMIT_S = 0.5  # without encoder readings for longer, the last velocity is not extrapolated
 PERIOD_S = 0.1  # of the executive
 
 Joints = tuple[float, ...]  # in the order of JOINTS
@@ -15,9 +15,9 @@ Joints = tuple[float, ...]  # in the order of JOINTS
 
 @dataclass(frozen=True, slots=True)
 class ArmBelief:
-    """Angles (rad) and velocities (rad/s) at `time_ns`; `seen_ns` is when the encoders were last heard.
+    """Angles (rad) and velocities (rad/s) at `time_ns`; `seen_ns` is the arrival of the last encoder reading.
 
-    `command` (rad/s) is what was sent last, `acceleration` (rad/s²) what it changes from the one before.
+    `command` (rad/s) is the last published one, `acceleration` (rad/s²) its change from the one before.
     """
 
     time_ns: int = 0
@@ -29,7 +29,7 @@ class ArmBelief:
 
 
 def update(belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: Joints) -> ArmBelief:
-    """Take the newest joint state over, then predict to now at its velocities."""
+    """Adopt the newest joint state, then predict it to `now_ns` at its velocities."""
     for sample in samples:
         if isinstance(sample.message, JointState):
             belief = _read(belief, sample.arrival_ns, sample.message)
@@ -38,14 +38,14 @@ def update(belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command:
 
 
 def ahead(belief: ArmBelief) -> tuple[Joints, Joints]:
-    """Angles and velocities one period from now, if the arm goes on as it does: there the next action will begin."""
+    """Predict angles and velocities one period ahead, where the next action will begin."""
     rows = tuple(zip(belief.angles, belief.velocities, belief.acceleration, strict=True))
     angles = tuple(q + PERIOD_S * (v + 0.5 * PERIOD_S * a) for q, v, a in rows)
     return angles, tuple(v + PERIOD_S * a for _, v, a in rows)
 
 
 def _read(belief: ArmBelief, arrival_ns: int, state: JointState) -> ArmBelief:
-    """A state that lacks one of our joints, or is older than the last one, tells nothing."""
+    """Ignore a state that lacks one of the writing joints or is older than the last one."""
     if any(name not in state.names for name in JOINTS) or arrival_ns < (belief.seen_ns or 0):
         return belief
     at = [state.names.index(name) for name in JOINTS]

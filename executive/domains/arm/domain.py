@@ -1,4 +1,4 @@
-"""The arm domain: all that the executive is told about the PowerCube arm and its letters."""
+"""The arm domain: interface of the PowerCube arm and its letters."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ class ArmDomain:
     belief_names: tuple[str, ...] = ("a (rad)", "wa (rad/s)", "b (rad)", "wb (rad/s)")
 
     def initial_belief(self) -> ArmBelief:
-        """Nothing is known."""
+        """The belief before the first encoder reading."""
         return ArmBelief()
 
     def update(
         self, belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
     ) -> ArmBelief:
-        """Read the encoders, and what the arm was last told."""
+        """Estimate the joint state from encoders and the last command."""
         return believing.update(belief, now_ns, samples, command)
 
     def ready(self, belief: ArmBelief) -> bool:
-        """Whether the encoders have been heard."""
+        """Whether an encoder reading has been received."""
         return belief.seen_ns is not None
 
     def belief_values(self, belief: ArmBelief) -> tuple[float, ...]:
@@ -50,11 +50,11 @@ class ArmDomain:
         return tuple(predicates.named(belief.angles, belief.velocities).values())
 
     def anchor(self, belief: ArmBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-        """What was drawn cannot be seen: the abstract state is what is remembered."""
+        """The remembered abstract state: strokes on the page cannot be observed."""
         return remembered
 
     def value(self, query: LabelQuery) -> Interval | None:
-        """See arm.predicates."""
+        """Range of a joint state's quantity at a waypoint, see arm.predicates."""
         return predicates.value(query)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:

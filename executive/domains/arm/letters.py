@@ -26,16 +26,16 @@ WIDTH, HEIGHT = 1.0, 1.4  # of a capital in the font's units
 GAP = 0.45  # between two letters, in the same units
 PAGE_WIDTH_RAD = 2.3
 LETTER_RAD = 0.8  # a letter alone: one unit of the font
-SIZES = (0.9, 1.05)  # drawn by the seed: nobody writes a letter twice alike
+SIZES = (0.9, 1.05)  # range of the scale, drawn by the seed
 HOME = (-0.85, -0.7)  # where the arm rests before it writes
-HOME_SPREAD_RAD = 0.1
+HOME_RANGE_RAD = 0.1
 KINDS = ("letter", "word", "stops")
-MAX_LETTERS = 12  # a smaller hand could not be read
+MAX_LETTERS = 12  # with more, letters become too small to read
 
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """What is written: where the arm starts, and the stroke of each letter."""
+    """A text to write: the start of the arm, and the stroke of each letter."""
 
     text: str
     home: Point
@@ -50,17 +50,17 @@ def font() -> dict[str, tuple[Point, ...]]:
 
 
 def scenarios() -> list[str]:
-    """One scenario for each letter; words are not listed, there are too many."""
+    """Names of the scenarios of single letters; those of words are not listed."""
     return [f"letter-{letter}" for letter in sorted(font())]
 
 
 def is_word(text: str) -> bool:
-    """Whether a text can be written: capitals, not too many."""
+    """Whether a text can be written: 1 to MAX_LETTERS capitals."""
     return re.fullmatch(f"[A-Z]{{1,{MAX_LETTERS}}}", text) is not None
 
 
 def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
-    """The scenario with size and start drawn from `rng`, and the start state of the body.
+    """Load a scenario with size and start drawn from `rng`, and the start state of the body (rad, rad/s).
 
     Raises:
       UsageError: No such scenario.
@@ -78,7 +78,7 @@ def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, di
 
 def _laid_out(text: str, rng: np.random.Generator) -> Writing:
     """Letters side by side about the middle of the page, with the size and the start that `rng` draws."""
-    size, off_a, off_b = rng.uniform(*SIZES), *rng.uniform(-HOME_SPREAD_RAD, HOME_SPREAD_RAD, 2)
+    size, off_a, off_b = rng.uniform(*SIZES), *rng.uniform(-HOME_RANGE_RAD, HOME_RANGE_RAD, 2)
     wide = len(text) * WIDTH + (len(text) - 1) * GAP
     unit = float(size) * min(LETTER_RAD, PAGE_WIDTH_RAD / max(SIZES) / wide)
     strokes = []

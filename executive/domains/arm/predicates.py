@@ -1,4 +1,4 @@
-"""What the arm's predicates mean: the values that they give a waypoint (paper 6.1)."""
+"""Values of the arm's predicates: the joint state that they give a waypoint (paper 6.1)."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from tailor.executive.interfaces.values import Interval
 
 
 def value(query: LabelQuery) -> Interval | None:
-    """See tailor.executive.interfaces.domain.Domain.value.
+    """Range of a quantity of a waypoint in rad or rad/s; see tailor.executive.interfaces.domain.Domain.value.
 
-    `at` says where the arm will be when the next action begins, `next` where the scenario put the waypoint. The
-    velocities at a waypoint are free up to the fastest that its neighbours allow, unless the scenario names them, which
-    it does for the last.
+    `at` gives the joint state predicted for the start of the next action, `next` the waypoint of the scenario. The
+    velocities at a waypoint are free up to the maximum that its neighbours allow, unless the scenario gives them, as it
+    does for the last waypoint.
     """
-    known: Mapping[str, float] = {}
+    values: Mapping[str, float] = {}
     if ("at", query.label) in query.holds:
-        known = named(*ahead(query.belief))
+        values = named(*ahead(query.belief))
     elif any(fact[0] == "next" and fact[2] == query.label for fact in query.holds):
-        known = query.scenario.places[query.label]
-    if query.quantity in known:
-        exact = known[query.quantity]
+        values = query.scenario.places[query.label]
+    if query.quantity in values:
+        exact = values[query.quantity]
         return Interval(exact, exact)
-    return Interval(-known["fastest"], known["fastest"]) if "fastest" in known else None
+    return Interval(-values["fastest"], values["fastest"]) if "fastest" in values else None
 
 
 def named(angles: Joints, velocities: Joints) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""What the executive knows of the PowerCube arm: its writing joints and their limits. Radians, seconds."""
+"""Constants of the PowerCube arm: its writing joints and their limits. Radians, seconds."""
 
 from __future__ import annotations
 

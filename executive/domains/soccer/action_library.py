@@ -22,9 +22,9 @@ from tailor.executive.interfaces.action import Action, Parameter
 
 FIELD_X_M = 3.5
 FIELD_Y_M = 2.25
-PASSING_MPS = 0.6  # fastest arrival that is asked of goToPose
-AT_BALL_MPS = 0.3  # what `atball` allows (paper 6.1)
-# an approach is thought over when its goal has moved so far, two deviations of a ball seen from 3 m
+PASSING_MPS = 0.6  # maximum arrival speed of goToPose
+AT_BALL_MPS = 0.3  # maximum speed of `atball` (paper 6.1)
+# a running approach is deliberated anew when its goal has moved so far: two deviations of a ball seen from 3 m
 BALL_MOVED_M = 0.25
 
 

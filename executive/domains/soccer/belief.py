@@ -1,4 +1,4 @@
-"""The soccer robot's belief: where it is, how fast it goes, where the ball is (paper Table 5)."""
+"""The soccer robot's belief: pose and velocity of the robot, place of the ball (paper Table 5)."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.soccer import BallPercept
 
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
-POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts in a row err alike and count as one
-FIRST_POSES = 12  # percepts before the first one's error has been averaged enough to drive
-LOOKING_POSES = 25  # so long the robot looks for a ball before it sets out without
-LOST_JUMP_M = 0.6  # a pose this far off is not noise: the robot was put elsewhere
+POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts have one error and count as one
+FIRST_POSES = 12  # percepts that average the error of the first one enough to drive
+LOOKING_POSES = 25  # percepts during which the robot looks for a ball before it drives without one
+LOST_JUMP_M = 0.6  # a pose this far off is not noise: the robot was moved
 LOST_JUMP_RAD = 0.6
-LOST_POSES = 3  # so many such poses in a row, and they are believed
-CREDIBLE_MPS = 1.5  # a faster odometry has been restarted in between
+LOST_POSES = 3  # so many such poses in a row relocate the belief
+CREDIBLE_MPS = 1.5  # a faster odometry was restarted in between
 CREDIBLE_RADPS = 3.0
-# m² or rad². ROS nodes that know no covariance send zeros: none is surer than a millimetre. Beyond 5 m all is one
+# m² or rad². ROS nodes without a covariance send zeros: the minimum is a millimetre's, the maximum that of 5 m
 VARIANCES = (1e-6, 25.0)
-MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity says nothing
+MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity is not extrapolated
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class SoccerBelief:
     pose: Pose
     v: float
     omega: float
-    moved_ns: int  # when odometry last came
+    moved_ns: int  # arrival of the last odometry
     ball: BallTrack | None
     poses_seen: int
     poses_doubted: int = 0
@@ -62,13 +62,13 @@ def unknown() -> SoccerBelief:
 
 
 def ready(belief: SoccerBelief) -> bool:
-    """Enough to act on: the pose has settled, and the ball has been seen or is not there to be seen."""
+    """Whether the pose has settled and the ball has been seen or sought long enough."""
     needed = FIRST_POSES if belief.ball is not None else LOOKING_POSES
     return belief.poses_seen >= needed
 
 
 def in_cradle(ball: BallTrack) -> bool:
-    """Whether a ball there is held by the rail."""
+    """Whether the rail holds a ball at this place."""
     near, far = robot.CRADLE_AHEAD_M
     return near < ball.ahead < far and abs(ball.left) < robot.CRADLE_LEFT_M
 
@@ -87,7 +87,7 @@ def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...]) -> So
 
 
 def _advance(belief: SoccerBelief, to_ns: int) -> SoccerBelief:
-    """Predict to a time; never backwards."""
+    """Predict to a time; times before the belief's are ignored."""
     if to_ns <= belief.time_ns:
         return belief
     duration_s = 1e-9 * (to_ns - belief.time_ns) if belief.time_ns else 0.0
@@ -97,7 +97,7 @@ def _advance(belief: SoccerBelief, to_ns: int) -> SoccerBelief:
 
 
 def _drive(belief: SoccerBelief, to_ns: int, odom: Odometry) -> SoccerBelief:
-    """Odometry tells the mean velocity up to its arrival; speeds that the robot cannot have tell nothing."""
+    """Predict to the arrival of odometry with its mean velocity; odometry beyond the robot's speed is ignored."""
     if to_ns < belief.time_ns or abs(odom.v) > CREDIBLE_MPS or abs(odom.omega) > CREDIBLE_RADPS:
         return belief
     duration_s = 1e-9 * (to_ns - belief.time_ns) if belief.time_ns else 0.0
@@ -106,7 +106,7 @@ def _drive(belief: SoccerBelief, to_ns: int, odom: Odometry) -> SoccerBelief:
 
 
 def _mean_velocity(belief: SoccerBelief, odom: Odometry) -> tuple[float, float]:
-    """From the dead-reckoned poses, of which none is lost when messages are; else from the velocities."""
+    """From the dead-reckoned poses, which lost messages do not affect; otherwise from the velocities."""
     last = belief.odom
     if last is None:
         return 0.5 * odom.v, 0.5 * odom.omega
@@ -172,8 +172,8 @@ def _variances(seen: PoseEstimate) -> tuple[float, float, float]:
 
 
 def _bounded(variance: float) -> float:
-    least, most = VARIANCES
-    return min(most, max(least, variance))
+    lower, upper = VARIANCES
+    return min(upper, max(lower, variance))
 
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
@@ -188,7 +188,7 @@ def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
 
 
 def _sight(seen: BallPercept) -> Seen:
-    """A percept with a covariance that can be one, whatever was sent."""
+    """The percept with a valid covariance matrix, whatever was received."""
     var_ahead, var_left = _bounded(seen.var_x), _bounded(seen.var_y)
-    most = math.sqrt(var_ahead * var_left)
-    return Seen(seen.x, seen.y, var_ahead, var_left, min(most, max(-most, seen.cov_xy)))
+    limit = math.sqrt(var_ahead * var_left)
+    return Seen(seen.x, seen.y, var_ahead, var_left, min(limit, max(-limit, seen.cov_xy)))

@@ -1,4 +1,4 @@
-"""The soccer domain: all that the executive is told about the AGILO robot and its tasks."""
+"""The soccer domain: interface of the AGILO robot and its tasks."""
 
 from __future__ import annotations
 
@@ -45,21 +45,21 @@ class SoccerDomain:
     )
 
     def initial_belief(self) -> SoccerBelief:
-        """Nothing is known."""
+        """The belief before the first percept."""
         return believing.unknown()
 
     def update(
         self, belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
     ) -> SoccerBelief:
-        """Filter odometry, poses and ball percepts; the command is not needed."""
+        """Filter odometry, poses and ball percepts; the command is not used."""
         return believing.update(belief, now_ns, samples)
 
     def ready(self, belief: SoccerBelief) -> bool:
-        """Whether the pose has settled and the ball has been looked for."""
+        """Whether the pose has settled and the search for the ball has lasted long enough."""
         return believing.ready(belief)
 
     def belief_values(self, belief: SoccerBelief) -> tuple[float, ...]:
-        """As named in `belief_names`; a ball never seen is NaN-free: at the origin with a deviation of -1."""
+        """Values of `belief_names`; a ball never seen is at the origin with a standard deviation of -1."""
         pose = belief.pose
         ball_x, ball_y = belief.ball_xy or (0.0, 0.0)
         ball_sigma = belief.ball.variance**0.5 if belief.ball is not None else -1.0
@@ -67,11 +67,11 @@ class SoccerDomain:
         return pose.x, pose.y, pose.phi, belief.v, belief.omega, ball_x, ball_y, pose_sigma, ball_sigma
 
     def anchor(self, belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-        """See soccer.predicates."""
+        """The abstract state of now, see soccer.predicates."""
         return predicates.anchor(belief, scenario, remembered)
 
     def value(self, query: LabelQuery) -> Interval | None:
-        """See soccer.predicates."""
+        """Range of a quantity of a place, see soccer.predicates."""
         return predicates.value(query)
 
     def message(self, command: tuple[float, ...], stamp_ns: int) -> Message:

@@ -1,4 +1,4 @@
-"""What the soccer predicates mean: the values that they give a label, and which of them hold now (paper 6.1)."""
+"""Soccer's predicates: the values that they give a label, and which of them hold now (paper 6.1)."""
 
 from __future__ import annotations
 
@@ -71,9 +71,9 @@ def _intersected(query: LabelQuery, a: Interval, b: Interval) -> Interval:
 
 
 def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-    """The abstract state of now (see Domain.anchor).
+    """The abstract state of now; see tailor.executive.interfaces.domain.Domain.anchor.
 
-    Where a ball is in play, where it and the robot are is read off the belief; all else is remembered.
+    If a ball is in play, the places of ball and robot are observed in the belief; all other facts are remembered.
     Settings of the scenario: `robot_label` and `ball_label` name the places where they are unless they are together,
     or at the target.
     """
@@ -84,7 +84,7 @@ def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]
 
 
 def _observed(belief: SoccerBelief, scenario: Scenario) -> Iterator[Fact]:
-    """A ball at the target counts only when the robot has it: else it is to be approached where it really lies."""
+    """A ball is at the target only while the robot holds it: otherwise it is approached at its true place."""
     ball_label = str(scenario.settings["ball_label"])
     if not before_ball(belief):
         yield ("ball", ball_label)

@@ -1,4 +1,4 @@
-"""What the executive knows of the AGILO robot's body: its reach and its limits. Metres, seconds, radians."""
+"""Constants of the AGILO robot's body: its reach and its limits. Metres, seconds, radians."""
 
 from __future__ import annotations
 

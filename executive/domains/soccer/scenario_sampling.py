@@ -1,4 +1,4 @@
-"""Draws a soccer scenario: where robot, ball, target and waypoints are, and what befalls the ball on the way."""
+"""Draws a soccer scenario: places of robot, ball, target and waypoints, and events that move the ball."""
 
 from __future__ import annotations
 
@@ -11,17 +11,23 @@ import numpy as np
 from tailor.executive.belief.angles import wrap
 
 Point = tuple[float, float]
-TRIES = 10_000  # a declaration that fails so often contradicts itself
+MAX_TRIES = 10_000  # a declaration that fails so often is contradictory
 
 
 def sample_scenario(
     declared: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, dict[str, float]], tuple[dict[str, float], ...]]:
-    """Start state, places by label, and events, drawn uniformly from what a scenario file declares.
+    """Draw start state, places by label and events uniformly from the ranges of a scenario file.
 
     Args:
       declared: The scenario file: see scenarios/*.toml, which explain their own keys.
-      rng: Every draw comes from here.
+      rng: Source of every draw.
+
+    Returns:
+      Start state of robot and ball, places by label, and events; metres, radians, m/s, seconds, map frame.
+
+    Raises:
+      ValueError: The ranges are contradictory.
     """
     if "waypoints" in declared:
         start, places = _waypoints(declared, rng)
@@ -37,13 +43,13 @@ def _ball_and_target(
     declared: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
     field, apart = declared["field"], declared["apart"]
-    for _ in range(TRIES):
+    for _ in range(MAX_TRIES):
         robot, ball, target = _point(field, rng), _point(field, rng), _point(field, rng)
         near_enough = _within(robot, ball, apart["robot_ball_m"]) and _within(ball, target, apart["ball_target_m"])
         if near_enough and math.dist(robot, target) > apart["robot_target_min_m"] and _bent(robot, ball, target, apart):
             break
     else:
-        raise ValueError("the ranges of the scenario leave no room")
+        raise ValueError("the ranges of the scenario are contradictory")
     start = _looking(robot, ball, declared["robot"]["half_view_rad"], rng)
     aside = declared["target"]["aside_rad"]
     phi = _bearing(ball, target) + rng.uniform(-aside, aside)
@@ -54,24 +60,24 @@ def _ball_and_target(
 def _ball_alone(
     declared: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """A ball to approach; heading and speed there are asked for."""
+    """A ball to approach; heading and speed at the ball are required."""
     field, arrival = declared["field"], declared["arrival"]
     robot = ball = _point(field, rng)
     while not _within(robot, ball, declared["apart"]["robot_ball_m"]):
         ball = _point(field, rng)
     start = _looking(robot, ball, declared["robot"]["half_view_rad"], rng)
-    asked = {"phi": rng.uniform(*arrival["phi_rad"]), "v": rng.uniform(*arrival["v_mps"])}
-    return start, {declared["settings"]["ball_label"]: asked}
+    required = {"phi": rng.uniform(*arrival["phi_rad"]), "v": rng.uniform(*arrival["v_mps"])}
+    return start, {declared["settings"]["ball_label"]: required}
 
 
 def _looking(robot: Point, ball: Point, half_view: float, rng: np.random.Generator) -> dict[str, float]:
-    """A start at rest from which the ball can be seen."""
+    """A start at rest with the ball in view."""
     heading = _bearing(robot, ball) + rng.uniform(-half_view, half_view)
     return {"x": robot[0], "y": robot[1], "phi": wrap(heading), "v": 0.0, "ball_x": ball[0], "ball_y": ball[1]}
 
 
 def _bent(robot: Point, ball: Point, target: Point, apart: Mapping[str, Any]) -> bool:
-    """Whether the corner at the ball is within what is declared; a straight line has 0."""
+    """Whether the corner at the ball is within the declared maximum; a straight line has 0."""
     corner = abs(wrap(_bearing(ball, target) - _bearing(robot, ball)))
     return bool(corner <= apart.get("corner_max_rad", math.pi))
 
@@ -97,7 +103,7 @@ def _event(
     places: Mapping[str, Mapping[str, float]],
     rng: np.random.Generator,
 ) -> dict[str, float]:
-    """Moves put the ball aside of where it lay; kicks send it off aside of the way to the target."""
+    """An event: a move puts the ball aside of its place, a kick sends it off aside of the way to the target."""
     (target,) = places.values()
     ball = (start["ball_x"], start["ball_y"])
     side = rng.choice((-1.0, 1.0))

@@ -37,7 +37,7 @@ FAULT = Cause(Reason.REPEATED_FAILURE, "slide")
 
 
 def drive(context, goal=GOAL, ticks=100, checks=200, world=None):
-    """Run the core against a point on a line that does what it is told; yields (state, outputs, x) each tick."""
+    """Run the core against a point on a line that executes each command; yields (state, outputs, x) each tick."""
     state, x = initial_state(context), 0.0
     for n in range(1, ticks + 1):
         given = inputs(n * TICK, x, goal if n == 1 else "")
@@ -119,7 +119,7 @@ def test_commands_go_out_only_while_the_driver_obeys_this_executive():
     assert run[-1][0].cause == Cause(Reason.DRIVER_OBEYS_ANOTHER, "ff" * 4)
 
 
-def test_driver_is_asked_to_arm_once_and_never_again_after_it_stopped_or_restarted():
+def test_driver_is_requested_to_arm_once_and_never_again_after_it_stopped_or_restarted():
     def world(n, given, x):
         mode = "disarmed" if n <= 3 else "armed" if n < 10 else "stopped" if n < 20 else "disarmed"
         epoch = 7 if n < 20 else 8
@@ -142,7 +142,7 @@ def test_failing_action_is_replanned_once_and_then_a_fault():
     assert run[-1][0].command == (0.0,)
 
 
-def test_action_that_never_ends_is_given_up_at_its_time_limit():
+def test_action_that_never_ends_fails_at_its_time_limit():
     def stuck(n, given, x):
         return inputs(n * TICK, 0.0, given.goal)
 
@@ -151,7 +151,7 @@ def test_action_that_never_ends_is_given_up_at_its_time_limit():
     assert (finished[0].reason, finished[0].detail) == (Reason.ACTION_TIMEOUT, "10.0 s")
 
 
-def test_unsolvable_goal_is_told_once_and_nothing_moves():
+def test_unsolvable_goal_is_reported_once_and_nothing_moves():
     run = list(drive(line_context(), goal="(visited home)", ticks=10))
     assert run[-1][0].task.result is Result.FAILED
     assert run[-1][0].task.result_cause.reason is Reason.UNSOLVABLE
@@ -159,15 +159,15 @@ def test_unsolvable_goal_is_told_once_and_nothing_moves():
     assert len(messages(run, PlanReport)) == 1
 
 
-def test_a_goal_too_long_to_be_told_is_refused_and_the_longest_one_is_told():
+def test_a_goal_too_long_for_a_status_is_refused_and_the_longest_one_is_published():
     context = line_context()
     longest = GOAL + " " * (MAX_GOAL_BYTES - len(GOAL))
     assert check_goal(context, longest) is None
     assert check_goal(context, longest + " ") == Cause(Reason.GOAL_TOO_LONG, "8001 bytes, expected at most 8000")
     run = drive(context, goal=longest, ticks=5)
-    told = messages(run, ExecStatus)
-    assert [codec.decode(TOPICS["status"], codec.encode(status)) for status in told] == told
-    assert told[-1].goal == longest
+    statuses = messages(run, ExecStatus)
+    assert [codec.decode(TOPICS["status"], codec.encode(status)) for status in statuses] == statuses
+    assert statuses[-1].goal == longest
 
 
 def test_place_that_moves_redirects_the_running_action():
@@ -183,7 +183,7 @@ def test_place_that_moves_redirects_the_running_action():
     assert finished[0].actual_s > 1.5, "its clock goes on"
 
 
-def test_stopping_brings_a_zero_command_and_lets_the_driver_go():
+def test_stopping_publishes_a_zero_command_and_disarms_the_driver():
     def world(n, given, x):
         return dataclasses.replace(given, stopping=n == 6)
 
@@ -252,7 +252,7 @@ def test_settings_default_to_the_papers_horizon():
     assert Settings().refinement.horizon == 2
 
 
-def test_action_that_gives_way_to_another_one_is_told_as_aborted():
+def test_action_that_is_superseded_is_reported_as_aborted():
     """The place moves behind a wall: an action of another plan step has to come first."""
     settings = Settings()
     run = list(drive(line_context(settings), ticks=3))
@@ -283,7 +283,7 @@ def test_action_whose_effects_hold_already_is_done_and_not_aborted():
     assert run[-1][0].task.result == "achieved"
 
 
-def test_a_stopped_driver_gets_no_commands_though_it_names_us():
+def test_a_stopped_driver_gets_no_commands_although_it_names_this_executive():
     def world(n, given, x):
         state = dataclasses.replace(driver(n * TICK).message, mode="stopped")
         return Inputs((odometry(n * TICK, x, n), dataclasses.replace(driver(n * TICK), message=state)), given.goal)
@@ -291,7 +291,7 @@ def test_a_stopped_driver_gets_no_commands_though_it_names_us():
     assert messages(list(drive(line_context(), world=world, ticks=5)), VelocityCommand) == []
 
 
-def test_after_a_stop_the_plan_is_made_anew_from_where_the_robot_is():
+def test_after_a_stop_planning_starts_again_from_the_robots_place():
     def world(n, given, x):
         return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "stopped" if 6 <= n < 10 else "armed")), given.goal)
 
@@ -304,14 +304,16 @@ def test_after_a_stop_the_plan_is_made_anew_from_where_the_robot_is():
     assert run[-1][0].task.result == "achieved"
 
 
-def test_arming_is_asked_for_again_only_while_the_same_start_of_the_driver_stays_silent():
+def test_arming_is_requested_again_only_while_the_same_start_of_the_driver_stays_silent():
     def world(n, given, x):
         state = driver(n * TICK, "disarmed", 7 if n < 14 else 8, accepted=0)
         return Inputs((odometry(n * TICK, x, n), state), given.goal)
 
     run = list(drive(line_context(), world=world, ticks=30))
-    asked = [state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)]
-    assert asked == [1, 7, 13]
+    requested = [
+        state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)
+    ]
+    assert requested == [1, 7, 13]
 
 
 def test_robot_coasts_two_ticks_between_actions_and_then_stands():
@@ -367,7 +369,7 @@ def test_unsound_plan_is_not_executed(monkeypatch):
     assert all(state.command == (0.0,) for state, _, _ in run)
 
 
-def test_every_word_about_a_refinement_without_a_valid_choice_can_be_encoded():
+def test_reports_of_a_refinement_without_a_valid_choice_can_be_encoded():
     class Never:
         def predict(self, arguments):
             return np.full(len(arguments), np.nan), np.full(len(arguments), np.nan)
@@ -375,7 +377,7 @@ def test_every_word_about_a_refinement_without_a_valid_choice_can_be_encoded():
     context = line_context()
     context = dataclasses.replace(context, models=Models({"slide/duration": Never()}, {}))
     run = list(drive(context, ticks=5))
-    told = messages(run, RefinementReport)
-    assert told
-    assert all(isinstance(codec.decode(type(word), codec.encode(word)), RefinementReport) for word in told)
-    assert told[0].best_s == -1.0
+    reports = messages(run, RefinementReport)
+    assert reports
+    assert all(isinstance(codec.decode(type(report), codec.encode(report)), RefinementReport) for report in reports)
+    assert reports[0].best_s == -1.0

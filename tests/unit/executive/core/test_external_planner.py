@@ -1,4 +1,4 @@
-"""An external planner as the core meets it: asked about the facts of now, validated, never waited for."""
+"""External planner at the core: requested with the current facts, validated, never waited for."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ WITH_PLANNER = Settings(external=PlannerCommand("vhpop", LIMIT_S))
 
 
 def well(request):
-    """What a planner that behaves well prints."""
+    """Output of a correct planner."""
     domain = parse_domain(request.domain)
     return format_links(solve(domain, parse_problem(request.problem, domain)).plan)
 
@@ -54,7 +54,7 @@ class Run:
         self.context = context or line_context(WITH_PLANNER)
         self.state, self.x, self.tick = initial_state(self.context), 0.0, 0
         self.answer, self.delay, self.budget = answer, delay, budget
-        self.said, self.tape = [], []
+        self.published, self.recorded = [], []
         self.due = {}
 
     def go(self, ticks=100, goals=((1, GOAL),)):
@@ -68,8 +68,8 @@ class Run:
                 given = replace(given, samples=(*given.samples, sample))
             budget = self.budget()
             self.state, outputs = step(self.context, self.state, n * TICK, given, budget)
-            self.tape.append(RecordedTick(n, n * TICK, given, budget.granted))
-            self.said.append((n, outputs))
+            self.recorded.append(RecordedTick(n, n * TICK, given, budget.granted))
+            self.published.append((n, outputs))
             self.x += 0.1 * self.state.command[0]
             for output in outputs:
                 if isinstance(output.message, PlanRequest) and self.answer is not None:
@@ -77,7 +77,7 @@ class Run:
         return self
 
     def messages(self, kind):
-        return [(n, o.message) for n, outputs in self.said for o in outputs if isinstance(o.message, kind)]
+        return [(n, o.message) for n, outputs in self.published for o in outputs if isinstance(o.message, kind)]
 
 
 @pytest.mark.parametrize("prints", [well, plainly])
@@ -101,10 +101,10 @@ def test_the_request_is_pddl_of_the_facts_of_now_and_is_made_once():
     assert pending_request(run.state) is request
 
 
-def test_nothing_moves_while_the_planner_is_asked_and_no_tick_works_for_it():
+def test_nothing_moves_while_a_request_is_pending_and_no_check_is_spent():
     run = Run(None).go(ticks=10)
     assert run.state.command == (0.0,)
-    assert [tick.checks for tick in run.tape] == [0] * 10
+    assert [tick.checks for tick in run.recorded] == [0] * 10
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_nothing_moves_while_the_planner_is_asked_and_no_tick_works_for_it():
         (lambda r: answer_of(r, unsoundly), Reason.PLAN_UNSOUND, ""),
     ],
 )
-def test_a_failed_planner_is_told_once_and_our_own_takes_over(answer, reason, detail):
+def test_a_failed_planner_is_reported_once_and_the_built_in_search_takes_over(answer, reason, detail):
     run = Run(answer).go()
     reports = [report for _, report in run.messages(PlanReport)]
     assert (reports[0].status, reports[0].way, reports[0].plan) == ("failed", "external", "")
@@ -131,7 +131,7 @@ def test_a_failed_planner_is_told_once_and_our_own_takes_over(answer, reason, de
     assert run.state.task.result == "achieved"
 
 
-def test_after_a_failure_it_is_asked_again_only_for_a_new_goal():
+def test_after_a_failure_it_gets_a_request_only_for_a_new_goal():
     places = {"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}}  # a is too far: the action fails, twice
     run = Run(lambda r: answer_of(r, well, "crashed"), context=line_context(WITH_PLANNER, places))
     run.go(ticks=20, goals=[(1, "(visited a)")])
@@ -163,7 +163,7 @@ def test_a_new_goal_drops_the_request_and_makes_another():
     assert run.x == pytest.approx(1.0, abs=0.06)
 
 
-def test_without_a_command_nobody_is_asked():
+def test_without_a_command_there_is_no_request():
     run = Run(None, context=line_context()).go(ticks=5)
     assert run.messages(PlanRequest) == []
     assert run.messages(PlanReport)[0][1].way == "searched"
@@ -175,13 +175,13 @@ def test_a_run_with_recorded_answers_is_replayed_bit_for_bit(seed, outcome):
     rng = np.random.default_rng(seed)
     run = Run(lambda r: answer_of(r, well, outcome), delay=seed + 1, budget=lambda: FickleBudget(rng)).go(ticks=60)
     assert any(report.way == "external" for _, report in run.messages(PlanReport))
-    assert list(replay(line_context(WITH_PLANNER), run.tape)) == run.said
+    assert list(replay(line_context(WITH_PLANNER), run.recorded)) == run.published
 
 
 def test_a_replay_without_the_recorded_answer_is_noticed():
     run = Run(lambda r: answer_of(r, well)).go(ticks=30)
     deaf = [
         replace(t, inputs=replace(t.inputs, samples=tuple(s for s in t.inputs.samples if s.key != "exec/plan_answer")))
-        for t in run.tape
+        for t in run.recorded
     ]
-    assert list(replay(line_context(WITH_PLANNER), deaf)) != run.said
+    assert list(replay(line_context(WITH_PLANNER), deaf)) != run.published

@@ -1,4 +1,4 @@
-"""While an action runs a better plan may be found for what comes after it; it is taken up between actions only."""
+"""While an action runs a better plan may be found for the rest of the task; it is adopted between actions only."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ PROBLEM = """
   (:init (at home) (place a) (place b) (place c)) (:goal (and (visited a) (visited b) (visited c) (at c))))
 """
 GOAL = "(and (visited a) (visited b) (visited c) (at c))"
-SEEN = 0.01  # a shift of the places that tells: somebody else has been at b
+SEEN = 0.01  # a shift of the places that means: somebody else has been at b
 
 
 def three_places(settings=None):
-    """The line with three places; b counts as visited once the shift says so."""
+    """The line with three places; b counts as visited once the shift is SEEN."""
     context = line_context(settings, PLACES, PROBLEM)
 
     def anchor(belief, scenario, remembered):
@@ -41,20 +41,20 @@ def three_places(settings=None):
 
 def drive(context, seen_from, ticks=120, budget=lambda: CheckBudget(500)):
     """Drives the point on the line; from tick `seen_from` on b has been visited by somebody else."""
-    state, x, tape, said, states = initial_state(context), 0.0, [], [], []
+    state, x, ticks_run, published, states = initial_state(context), 0.0, [], [], []
     for n in range(1, ticks + 1):
         samples = (odometry(n * TICK, x, n, SEEN if n >= seen_from else 0.0), driver(n * TICK))
         given, granted = Inputs(samples, GOAL if n == 1 else ""), budget()
         state, outputs = step(context, state, n * TICK, given, granted)
         x += 0.1 * state.command[0]
-        tape.append(RecordedTick(n, n * TICK, given, granted.granted))
-        said.append((n, outputs))
+        ticks_run.append(RecordedTick(n, n * TICK, given, granted.granted))
+        published.append((n, outputs))
         states.append(state)
-    return states, said, tape
+    return states, published, ticks_run
 
 
-def told(said, kind):
-    return [(n, output.message) for n, outputs in said for output in outputs if isinstance(output.message, kind)]
+def messages_of(published, kind):
+    return [(n, output.message) for n, outputs in published for output in outputs if isinstance(output.message, kind)]
 
 
 def steps(report):
@@ -62,8 +62,8 @@ def steps(report):
 
 
 def test_a_shortcut_that_shows_while_an_action_runs_is_taken_when_it_has_ended():
-    states, said, _ = drive(three_places(), seen_from=4)
-    (first, improved), ended = told(said, PlanReport)[:2], told(said, ActionFinished)
+    states, published, _ = drive(three_places(), seen_from=4)
+    (first, improved), ended = messages_of(published, PlanReport)[:2], messages_of(published, ActionFinished)
     assert [action[2] for action in steps(first[1])] == ["a", "b", "c"]
     assert (improved[1].status, improved[1].way) == ("solved", "improved")
     assert improved[0] == ended[0][0], "in the tick in which the action ended, and no sooner"
@@ -74,21 +74,21 @@ def test_a_shortcut_that_shows_while_an_action_runs_is_taken_when_it_has_ended()
 
 
 def test_without_it_the_longer_way_is_gone():
-    _, said, _ = drive(three_places(Settings(improve_plans=0)), seen_from=4)
-    assert {report.way for _, report in told(said, PlanReport)} == {"searched", "suffix"}
-    assert len(told(said, ActionFinished)) == 3
+    _, published, _ = drive(three_places(Settings(improve_plans=0)), seen_from=4)
+    assert {report.way for _, report in messages_of(published, PlanReport)} == {"searched", "suffix"}
+    assert len(messages_of(published, ActionFinished)) == 3
 
 
 def test_a_plan_that_cannot_be_shortened_stays_the_suffix():
-    _, said, _ = drive(three_places(), seen_from=999)
-    assert {report.way for _, report in told(said, PlanReport)} == {"searched", "suffix"}
-    assert len(told(said, ActionFinished)) == 3
+    _, published, _ = drive(three_places(), seen_from=999)
+    assert {report.way for _, report in messages_of(published, PlanReport)} == {"searched", "suffix"}
+    assert len(messages_of(published, ActionFinished)) == 3
 
 
 def test_it_has_the_lowest_priority_and_ends_by_itself():
-    _, _, tape = drive(three_places(), seen_from=999, ticks=20)
-    assert tape[0].checks > 0, "the first decision"
-    assert tape[10].checks == tape[19].checks == 0, "proven: no shorter plan; nothing goes on"
+    _, _, ticks_run = drive(three_places(), seen_from=999, ticks=20)
+    assert ticks_run[0].checks > 0, "the first decision"
+    assert ticks_run[10].checks == ticks_run[19].checks == 0, "proven: no shorter plan; nothing goes on"
 
 
 def test_it_is_bounded_by_the_plans_that_it_may_generate(monkeypatch):
@@ -106,23 +106,23 @@ def test_it_is_bounded_by_the_plans_that_it_may_generate(monkeypatch):
 
 
 def test_a_starved_tick_has_nothing_left_for_it():
-    _, said, _ = drive(three_places(), seen_from=4, ticks=300, budget=lambda: CheckBudget(0))
-    assert told(said, PlanReport) == []
+    _, published, _ = drive(three_places(), seen_from=4, ticks=300, budget=lambda: CheckBudget(0))
+    assert messages_of(published, PlanReport) == []
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_runs_in_which_a_better_plan_is_found_are_replayed_bit_for_bit(seed):
     rng = np.random.default_rng(seed)
-    _, said, tape = drive(three_places(), seen_from=4 + seed % 3, budget=lambda: FickleBudget(rng))
-    assert list(replay(three_places(), tape)) == said
+    _, published, ticks_run = drive(three_places(), seen_from=4 + seed % 3, budget=lambda: FickleBudget(rng))
+    assert list(replay(three_places(), ticks_run)) == published
 
 
 def test_some_of_those_runs_do_find_one():
     ways = set()
     for seed in range(8):
         rng = np.random.default_rng(seed)
-        _, said, _ = drive(three_places(), seen_from=4 + seed % 3, budget=lambda rng=rng: FickleBudget(rng))
-        ways |= {report.way for _, report in told(said, PlanReport)}
+        _, published, _ = drive(three_places(), seen_from=4 + seed % 3, budget=lambda rng=rng: FickleBudget(rng))
+        ways |= {report.way for _, report in messages_of(published, PlanReport)}
     assert ways == {"searched", "suffix", "improved"}
 
 
@@ -141,7 +141,7 @@ def test_better_means_strictly_fewer_steps_or_strictly_sooner():
 def test_a_failed_action_leaves_no_better_plan_behind():
     places = {**PLACES, "b": {"x": 95.0}}
     context = replace(three_places(), scenario=replace(three_places().scenario, places=places))
-    _, said, _ = drive(context, seen_from=4, ticks=30)
-    after = [n for n, f in told(said, ActionFinished) if f.outcome == "failed"]
-    ways = {n: report.way for n, report in told(said, PlanReport)}
+    _, published, _ = drive(context, seen_from=4, ticks=30)
+    after = [n for n, f in messages_of(published, ActionFinished) if f.outcome == "failed"]
+    ways = {n: report.way for n, report in messages_of(published, PlanReport)}
     assert all(ways.get(n) != "improved" for n in after)

@@ -60,7 +60,7 @@ def test_every_word_lies_where_reaches_were_learned(word, seed):
 @pytest.mark.parametrize(
     "name", ["letter-a", "word-", "word-tailor", "word-" + "A" * 13, "letter-AB", "stops-", "square"]
 )
-def test_a_scenario_that_does_not_exist_is_told_with_what_does(name):
+def test_an_unknown_scenario_is_refused_with_the_known_ones(name):
     with pytest.raises(UsageError, match="letter-A to letter-Z"):
         load(name)
 
@@ -113,9 +113,9 @@ def test_belief_reads_its_joints_by_name_and_predicts_them_to_now():
     assert ARM.ready(belief)
 
 
-def test_a_joint_state_without_our_joints_tells_nothing():
-    told = heard(10, 0.5, -0.2, names=("elbow", "wrist"))
-    assert not ARM.ready(believing.update(ArmBelief(), 20, (told,), (0.0, 0.0)))
+def test_a_joint_state_without_our_joints_is_ignored():
+    sample = heard(10, 0.5, -0.2, names=("elbow", "wrist"))
+    assert not ARM.ready(believing.update(ArmBelief(), 20, (sample,), (0.0, 0.0)))
 
 
 def test_without_encoders_the_belief_stands_still():

@@ -31,7 +31,7 @@ def test_way_leads_from_the_robot_to_the_goal_along_its_heading(start, vg):
 
 
 @given(places, speeds)
-def test_bend_is_never_wider_than_asked_and_never_a_whole_round(start, vg):
+def test_bend_is_never_wider_than_requested_and_never_a_full_circle(start, vg):
     assume(math.hypot(start[0] + WAYS.run_in_m, start[1]) > 2.0 * WAYS.tightest_m / WAYS.inside)
     path = WAYS.quickest(start, vg)
     assert WAYS.tightest_m <= path.radius <= WAYS.radius(vg)

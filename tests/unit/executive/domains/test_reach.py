@@ -34,7 +34,7 @@ def cost(q0, v0, q1, v1, duration_s, acceleration):
 
 
 @given(joints, speeds, joints, speeds, st.floats(0.2, 8.0))
-def test_a_cubic_begins_and_ends_as_asked(q0, v0, q1, v1, duration_s):
+def test_a_cubic_has_the_given_ends(q0, v0, q1, v1, duration_s):
     made = cubic(q0, v0, q1, v1, duration_s)
     assert made.angles(0.0) == pytest.approx(q0)
     assert made.velocities(0.0) == pytest.approx(v0)
@@ -49,7 +49,7 @@ def test_the_best_duration_costs_least():
     assert all(cost(*states, factor * best, 0.9) > least for factor in (0.5, 0.9, 0.99, 1.01, 1.1, 2.0))
 
 
-def test_from_rest_to_rest_the_largest_acceleration_is_the_one_asked_for():
+def test_from_rest_to_rest_the_largest_acceleration_is_the_given_one():
     for distance in (0.1, 0.5, 2.0):
         states = ((0.0, 0.0), (0.0, 0.0), (distance, 0.0), (0.0, 0.0))
         made = cubic(*states, best_duration_s(*states, 0.8))
@@ -80,7 +80,7 @@ def test_duration_hardly_changes_when_a_goal_velocity_hardly_does():
 
 
 def drive(start, goal):
-    """Run the controller against joints that do as they are told; arguments as Table 6 has them."""
+    """Run the controller against joints that follow each command exactly; arguments as in Table 6."""
     (q0, v0), (q1, v1) = start, goal
     arguments = np.array([*np.stack((q0, v0), 1).ravel(), *np.stack((q1, v1), 1).ravel()])
     q, v, state, commands = np.array(q0), np.array(v0), None, []
@@ -96,7 +96,7 @@ def drive(start, goal):
 
 
 @given(joints, speeds, joints, speeds)
-def test_it_is_done_one_period_before_it_passes_the_waypoint_as_asked(q0, v0, q1, v1):
+def test_it_is_done_one_period_before_it_passes_the_waypoint_with_the_goal_velocity(q0, v0, q1, v1):
     control, q, v, _ = drive((q0, v0), (q1, v1))
     assert control.outcome == "done"
     assert math.dist(q, q1) < 0.02

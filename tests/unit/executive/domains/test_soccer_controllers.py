@@ -1,4 +1,4 @@
-"""goToPose and dribbleBall drive the real sim body to where they are told, smoothly, and know when they have failed."""
+"""goToPose and dribbleBall drive the simulated body to their goals, smoothly, and detect their failures."""
 
 import dataclasses
 import math
@@ -68,7 +68,7 @@ def test_approach_that_sweeps_over_the_ball_is_a_collision_but_still_arrives():
     assert run_action(BODY, SOCCER, "approachBall", straight, np.random.default_rng(1)).success
 
 
-def test_time_limit_is_a_failure_that_says_so():
+def test_time_limit_is_reported_as_the_failure():
     episode = played("goToPose", 1, limit_s=1.0)
     assert (episode.done, episode.failure, episode.duration_s) == (False, "time limit", pytest.approx(0.9))
 
@@ -90,7 +90,7 @@ def test_duration_changes_little_when_the_goal_does():
     assert max(abs(np.diff(curve))) < 1.2, "stopping to turn on the spot costs a second"
 
 
-def test_robot_stops_turning_before_it_says_that_it_has_arrived():
+def test_robot_stops_turning_before_it_reports_its_arrival():
     control = GO(ALIGN, 0, believing(omega=-1.2, phi=0.05), goal(0.0, 0.0, 0.0))
     assert control.outcome == "running"
     assert GO(ALIGN, 0, believing(omega=-0.1, phi=0.05), goal(0.0, 0.0, 0.0)).outcome == "done"
@@ -113,7 +113,7 @@ def test_way_is_kept_from_before_its_bend_to_the_goal():
     assert moved.state is None or moved.state.path != near.state.path, "the goal is elsewhere now"
 
 
-def test_robot_passes_its_goal_at_the_speed_that_is_asked():
+def test_robot_passes_its_goal_at_the_goal_speed():
     speeds = []
     for number in range(16):
         rng = np.random.default_rng([22, number])
@@ -163,12 +163,12 @@ def test_slipping_ball_is_steered_after():
     ("ball", "now_ns", "reason"),
     [(None, 0, "the ball was never seen"), (seen(1.5, 0.0), 0, "the ball got away")],
 )
-def test_dribble_fails_with_a_reason(ball, now_ns, reason):
+def test_dribble_fails_with_a_detail(ball, now_ns, reason):
     control = DRIBBLE(None, now_ns, believing(ball=ball), goal(2.0, 0.0, 0.0))
     assert (control.outcome, control.detail) == ("failed", reason)
 
 
-def test_ball_that_should_be_in_view_and_is_not_is_looked_for_once_round():
+def test_ball_that_should_be_in_view_and_is_not_is_sought_during_one_turn():
     hidden, state = believing(ball=seen(0.31, 0.05)), None
     for tick in range(100):
         control = DRIBBLE(state, 2 * SECOND_NS + tick * SECOND_NS // 10, hidden, goal(2.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""What soccer's predicates mean: values from the belief, ranges from what is to be, facts from what is seen."""
+"""Soccer's predicates: values from the belief, ranges for what is to be achieved, facts from percepts."""
 
 import dataclasses
 import math
@@ -51,7 +51,7 @@ def test_robot_that_has_the_ball_is_where_it_is_heading_as_it_does():
     assert value("x", "pos2", holds, (), belief).lower == pytest.approx(0.33 * math.cos(0.5))
 
 
-def test_waypoint_is_where_the_scenario_says_and_its_heading_is_free():
+def test_waypoint_is_at_its_place_of_the_scenario_and_its_heading_is_free():
     scenario = Scenario("waypoints", "", {"way1": {"x": 2.0, "y": -1.0}})
     holds = (("route", "home", "way1"),)
     assert value("x", "way1", holds, (("robot", "way1"),), None, scenario) == Interval(2.0, 2.0)
@@ -59,7 +59,7 @@ def test_waypoint_is_where_the_scenario_says_and_its_heading_is_free():
     assert value("x", "home", (*holds, ("robot", "home")), (), None, scenario) == Interval(0.0, 0.0)
 
 
-def test_predicates_that_exclude_each_other_are_a_conflict_that_says_what():
+def test_predicates_that_exclude_each_other_are_a_conflict_that_names_the_quantity():
     with pytest.raises(Conflict, match="x of pos3"):
         value("x", "pos3", (("final", "pos3"), ("ball", "pos3")))
 
