@@ -1,1 +1,1 @@
-"""EXPERIENCE: episodes, features, learners, ONNX, cards. The executive loads tailor.models.runtime only."""
+"""Action models: episodes, features, learners, ONNX export, cards. The executive loads tailor.models.runtime only."""

@@ -1,6 +1,6 @@
-"""Loads, checks and runs ONNX action models. The only place that imports onnxruntime.
+"""Loads, checks and runs ONNX action models. The only module that imports onnxruntime.
 
-A model is used only if its bytes, its card and what it computes agree: the runtime itself notices no flipped bit.
+A model is used only if its bytes, its card and its predictions agree: onnxruntime does not detect a flipped bit.
 """
 
 from __future__ import annotations
@@ -22,24 +22,39 @@ from tailor.schemas.errors import UsageError
 Array = NDArray[np.float64]
 
 ZOO = Path(__file__).resolve().parent / "zoo"
-GATE = "refinement/benefit"  # the one model of a robot that is not of an action but of choosing subgoals
-GOLDEN_TOLERANCE = 1e-4  # seconds, or probability: what export promises (learning.md)
+GATE = "refinement/benefit"  # the refinement gate: the one model that belongs to a robot and not to an action
+GOLDEN_TOLERANCE = 1e-4  # seconds, joules or probability: the tolerance of export (learning.md)
 
 
 @dataclass(frozen=True, slots=True)
 class OnnxDuration:
-    """Predicts how long an action takes, or how much energy: seconds or joules, as its card says."""
+    """Predicts the duration of an action in seconds, or its energy in joules; the card holds which.
+
+    Attributes:
+      session: Inference session of onnxruntime.
+      card: The model's card.
+      output_min: Smallest valid mean.
+      output_max: Largest valid mean.
+      bounds: Bounds of the predictions; None if the model does not consist of trees.
+    """
 
     session: Any
     card: Card
-    shortest_s: float
-    longest_s: float
-    bounds: ModelBounds | None = None  # for proofs, where its trees can be read
+    output_min: float
+    output_max: float
+    bounds: ModelBounds | None = None
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Mean and standard deviation in seconds (or joules), (n,), of arguments (n, k); NaN where they are invalid."""
+        """Predict durations or energies.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Mean and standard deviation in seconds (or joules), shapes (n,); NaN where the prediction is invalid.
+        """
         mean, std = self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
-        valid = (mean >= self.shortest_s) & (mean <= self.longest_s) & (std >= 0)
+        valid = (mean >= self.output_min) & (mean <= self.output_max) & (std >= 0)
         if not valid.all():
             mean, std = np.where(valid, mean, np.nan), np.where(valid, std, np.nan)
         return mean.astype(np.float64), std.astype(np.float64)
@@ -47,29 +62,49 @@ class OnnxDuration:
 
 @dataclass(frozen=True, slots=True)
 class OnnxSuccess:
-    """Predicts whether an action succeeds."""
+    """Predicts whether an action succeeds.
+
+    Attributes:
+      session: Inference session of onnxruntime.
+      card: The model's card.
+      threshold: Probability of success from which success is predicted, 0..1.
+      bounds: Bounds of the predictions; None if the model does not consist of trees.
+    """
 
     session: Any
     card: Card
-    threshold: float  # the learner calls it a success above this probability of success
-    bounds: ModelBounds | None = None  # for proofs, where its trees can be read
+    threshold: float
+    bounds: ModelBounds | None = None
 
     def probability(self, arguments: Array) -> Array:
-        """Probability of success, shape (n,), of arguments (n, k); NaN where it is invalid."""
+        """Predict probabilities of success.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Probabilities, 0..1, shape (n,); NaN where the prediction is invalid.
+        """
         return _probability(self.session, arguments)
 
 
 @dataclass(frozen=True, slots=True)
 class OnnxGate:
-    """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
+    """Predicts whether refinement would slow an episode down (paper 6.3.2).
+
+    Attributes:
+      session: Inference session of onnxruntime.
+      card: The model's card.
+      threshold: Risk above which the greedy choice is kept, 0..1.
+    """
 
     session: Any
     card: Card
-    threshold: float  # above this risk the greedy choice is kept
+    threshold: float
 
     @property
     def input_names(self) -> tuple[str, ...]:
-        """Names of the values that it is told, in order."""
+        """Names of the inputs, in order."""
         return tuple(argument["name"] for argument in self.card["arguments"])
 
     @property
@@ -78,7 +113,14 @@ class OnnxGate:
         return frozenset(tuple(names) for names in self.card["sequences"])
 
     def p_slowdown(self, situations: Array) -> Array:
-        """Risk that refining costs time, 0..1, shape (n,), of situations (n, k); NaN where it is invalid."""
+        """Predict the risk that refinement costs time.
+
+        Args:
+          situations: Inputs, shape (n, k), in the order of `input_names`.
+
+        Returns:
+          Risk, 0..1, shape (n,); NaN where the prediction is invalid.
+        """
         return _probability(self.session, situations)
 
 
@@ -86,10 +128,14 @@ OnnxModel = OnnxDuration | OnnxSuccess | OnnxGate
 
 
 def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
-    """Load one model by path, or by name in the zoo: "agilo/goToPose/duration".
+    """Load and check one model.
+
+    Args:
+      model: Path of the ONNX file, or name in the zoo, as "agilo/goToPose/duration".
+      zoo: Folder of models, None for the one that ships.
 
     Raises:
-      UsageError: The file or its card is missing or damaged, or they do not agree; the message names both sides.
+      UsageError: The file or its card is missing or damaged, or they do not agree; the message names both values.
     """
     path = model if isinstance(model, Path) else _in_zoo(model, zoo or ZOO)
     card = read_card(card_path(path))
@@ -111,17 +157,20 @@ def load_robot(
 
     Args:
       robot: Folder in the zoo.
-      zoo: Another zoo than the one that ships.
-      declared: Ranges of arguments that the robot's actions will ask for, by action and argument; a model that has
-        seen less is refused.
+      zoo: Folder of models, None for the one that ships.
+      declared: Ranges (lower, upper) that the robot's actions declare, by action and argument; a model that was trained
+        on less is refused.
+
+    Returns:
+      Models of durations and energies, and models of success.
 
     Raises:
-      UsageError: No such robot in the zoo, or a model cannot be trusted.
+      UsageError: No such robot in the zoo, or a model fails its checks.
     """
     folder = (zoo or ZOO) / robot
     if not folder.is_dir() or folder.parent != (zoo or ZOO):
-        known = ", ".join(sorted(p.name for p in (zoo or ZOO).glob("*") if p.is_dir())) or "none"
-        raise UsageError(f"no action models for robot '{robot}' in {zoo or ZOO} (robots there: {known})")
+        robots = ", ".join(sorted(p.name for p in (zoo or ZOO).glob("*") if p.is_dir())) or "none"
+        raise UsageError(f"no action models for robot '{robot}' in {zoo or ZOO} (robots there: {robots})")
     durations: dict[str, OnnxDuration] = {}
     successes: dict[str, OnnxSuccess] = {}
     for name in _names(folder):
@@ -136,28 +185,31 @@ def load_robot(
 
 
 def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxGate | None:
-    """Load a robot's refinement gate; None where none has been trained.
+    """Load a robot's refinement gate.
 
     Args:
       robot: Folder in the zoo.
-      zoo: Another zoo than the one that ships.
-      models: The robot's action models by "action/kind": the tree must have been learned with these.
+      zoo: Folder of models, None for the one that ships.
+      models: The robot's action models by "action/kind"; the gate must have been trained with these.
+
+    Returns:
+      The gate, None if the zoo has none.
 
     Raises:
-      UsageError: It cannot be trusted, or was learned with other action models.
+      UsageError: It fails its checks, or was trained with other action models.
     """
     path = (zoo or ZOO) / robot / f"{GATE}.onnx"
     if not path.exists() and not card_path(path).exists():
         return None
     model = load_model(path)
     check_place(model.card, f"{robot}/{GATE}", path.parent)
-    check_trained_with(model.card, {name: made.card["sha256"] for name, made in models.items()}, path)
+    check_trained_with(model.card, {name: loaded.card["sha256"] for name, loaded in models.items()}, path)
     assert isinstance(model, OnnxGate)
     return model
 
 
 def _names(folder: Path) -> list[str]:
-    """Every "action/kind" of which there is a model or a card: one without the other is an error later."""
+    """Every "action/kind" that has a model or a card; one without the other is an error when loading."""
     files = {f"{p.parent.name}/{p.name.split('.')[0]}" for kind in KINDS for p in folder.glob(f"*/{kind}.*")}
     return sorted(files - {GATE})
 
@@ -170,27 +222,27 @@ def _in_zoo(name: str, zoo: Path) -> Path:
 
 
 def open_session(content: bytes) -> Any:
-    """An inference session that never starts a thread of its own; the runtime's own exceptions come through."""
+    """Inference session of an ONNX model that starts no threads; exceptions of onnxruntime are not caught."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
-    options.enable_mem_reuse = False  # 2 us a call: each result has its place, none waits for another's to be free
+    options.enable_mem_reuse = False  # saves 2 us per call: results do not wait for each other's memory
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    options.log_severity_level = 3  # errors come as exceptions, too
+    options.log_severity_level = 3  # errors are raised as exceptions
     return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
 
 
 def _session(content: bytes, path: Path) -> Any:
     try:
         return open_session(content)
-    except Exception as error:  # the runtime's own family has no common base
-        raise UsageError(f"{path}: not a model that runs here ({str(error).splitlines()[0]})") from None
+    except Exception as error:  # onnxruntime's exceptions have no common base
+        raise UsageError(f"{path}: not a model that onnxruntime can run ({str(error).splitlines()[0]})") from None
 
 
 def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -> OnnxModel:
     if card["kind"] in ("duration", "energy"):
-        shortest, longest = card["output_range"]
-        return OnnxDuration(session, card, float(shortest), float(longest), bounds)
+        output_min, output_max = card["output_range"]
+        return OnnxDuration(session, card, float(output_min), float(output_max), bounds)
     if card["kind"] == "benefit":
         return OnnxGate(session, card, float(card["threshold"]))
     if card["kind"] == "success":
@@ -200,23 +252,24 @@ def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -
 
 def _probability(session: Any, arguments: Array) -> Array:
     rows = np.ascontiguousarray(arguments, np.float64)
-    (said,) = session.run(None, {"arguments": rows})
-    valid = (said >= 0) & (said <= 1) & np.isfinite(rows.sum(axis=1))  # a tree sends NaN somewhere, too
-    return np.where(valid, said, np.nan).astype(np.float64)
+    (probability,) = session.run(None, {"arguments": rows})
+    # a tree assigns NaN to some leaf, so the inputs are checked, too
+    valid = (probability >= 0) & (probability <= 1) & np.isfinite(rows.sum(axis=1))
+    return np.where(valid, probability, np.nan).astype(np.float64)
 
 
 def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
-    """The model must still compute what it computed when its card was written; warms the session, too."""
+    """Compare predictions of the golden examples with the card; also warms up the session."""
     golden = card["golden"]
     arguments = np.array(golden["arguments"], np.float64)
     match model:
         case OnnxDuration():
-            found: tuple[Array, ...] = model.predict(arguments)
+            predictions: tuple[Array, ...] = model.predict(arguments)
         case OnnxSuccess():
-            found = (model.probability(arguments),)
+            predictions = (model.probability(arguments),)
         case OnnxGate():
-            found = (model.p_slowdown(arguments),)
-    for name, values in zip(card["outputs"], found, strict=True):
+            predictions = (model.p_slowdown(arguments),)
+    for name, values in zip(card["outputs"], predictions, strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)
         if not (off <= GOLDEN_TOLERANCE).all():

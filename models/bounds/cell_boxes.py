@@ -1,4 +1,4 @@
-"""Reads tables of cells back out of a graph, as the boxes of features that each leaf holds."""
+"""Reads tables of cells from an ONNX graph, as the box of features of each leaf."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Boxes = tuple[Ints, Floats, Floats, Floats]
 def boxes_of_cells(graph: Contents, features: int) -> Boxes:
     """First leaf of each tree, box of each leaf (lower < x <= upper), and its number in its tree.
 
-    The counterpart of `onnx_leaves._looked_up`: products with thresholds, with strides, then the table.
+    Inverse of `onnx_leaves._by_cells`: products with thresholds, with strides, then the table.
 
     Raises:
       KeyError: The graph has no tables of cells.
@@ -30,8 +30,8 @@ def boxes_of_cells(graph: Contents, features: int) -> Boxes:
         for stride, start, end in zip(strides, first, ends, strict=True)
     ]
     starts = np.cumsum([0, *(len(part[2]) for part in parts)])[:-1]
-    lower, upper, said = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return starts, lower, upper, said
+    lower, upper, number = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return starts, lower, upper, number
 
 
 def _tree(

@@ -1,6 +1,6 @@
-"""The least and the most that each tree of a model can say for boxes of features, over the leaves that a box meets.
+"""Bounds of each tree of a model over boxes of features, from the leaves that a box overlaps.
 
-A leaf's formula is a sum over features, so that what depends on one side of a pair is computed for that side alone.
+A leaf's formula is a sum over features, so terms that depend on one side of a pair are computed for that side only.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ Spans = tuple[Span, ...]
 Ends = tuple[Floats, Floats]
 
 ROUNDING = 2.0**-21  # of the terms of a sum: eight units in the last place
-FARTHEST = 10.0  # no feature is larger, in metres or radians
-AXES = 3  # of boxes: ways, before, own
-WORTH_LEAVING_OUT = 10_000  # boxes and leaves: fewer are compared sooner than the leaves that none meets are left out
+FARTHEST = 10.0  # magnitude limit of features, in metres or radians
+AXES = 3  # of boxes: cases, boxes of the values before, boxes of the own values
+MIN_SELECTION = 10_000  # comparisons; below, selecting the overlapping leaves costs more than it saves
 
 
 class Side(Enum):
-    """What is asked of trees: the least that they say, the least of the opposite (minus the most), or both."""
+    """Requested bound: the minimum, the minimum of the negative (minus the maximum), or both."""
 
     LEAST = slice(0, 1)
     OPPOSITE = slice(1, 2)
@@ -37,24 +37,24 @@ class Side(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Meeting:
-    """Boxes of features, and the leaves that any of them meets."""
+class Overlap:
+    """Boxes of features, and the leaves that any of them overlaps."""
 
-    ends: tuple[Ends, ...]  # of each feature, in single precision, which arguments are rounded to
+    ends: tuple[Ends, ...]  # of each feature, in single precision, to which arguments are rounded
     leaves: Places | slice
-    met: Bools  # (leaves, ...) which boxes meet each
-    starts: Places  # first of each tree's leaves
-    empty: bool  # a tree has no leaf that any box meets: there are no such features
+    met: Bools  # (leaves, ...) whether each box overlaps the leaf
+    starts: Places  # first leaf of each tree
+    empty: bool  # a tree has no leaf that any box overlaps: such features do not exist
 
 
 class LeafBounds:
-    """Least and largest values of the trees of one model.
+    """Bounds of the trees of one model.
 
-    `slack` is how far single precision may be off, here and in the model itself.
+    `slack` bounds the rounding error of single precision, here and in the model.
 
     Args:
-      boxes: Its trees.
-      slack: If it is known already.
+      boxes: The trees.
+      slack: The rounding error, None to compute it.
     """
 
     def __init__(self, boxes: TreeBoxes, slack: float | None = None) -> None:
@@ -72,19 +72,19 @@ class LeafBounds:
         )
 
     def within(self, features: Spans, margin: float) -> LeafBounds:
-        """The same trees for features that lie within these, or `margin` beside them.
+        """The bounds restricted to features within these spans, widened by `margin`.
 
-        Leaves that are out of reach are left out, and of the others the sides that no such features are beyond.
+        Leaves out of reach are left out, and so are the sides of leaves that no such feature can exceed.
         """
         wide = tuple(span.wider(margin) for span in features)
-        meeting = self.meeting(wide)
+        overlap = self.overlap(wide)
         reached = np.zeros(self.leaves, bool)
-        reached[meeting.leaves] = meeting.met.reshape(len(meeting.met), -1).any(axis=1)
+        reached[overlap.leaves] = overlap.met.reshape(len(overlap.met), -1).any(axis=1)
         lowest, highest = np.array([(span.lower.min(), span.upper.max()) for span in wide]).T
         return LeafBounds(self.boxes.part(reached).inside(lowest, highest), self.slack)
 
-    def meeting(self, features: Spans) -> Meeting:
-        """Which leaves are met by features whose spans broadcast to (...)."""
+    def overlap(self, features: Spans) -> Overlap:
+        """Leaves that overlap features whose spans broadcast to (...)."""
         ends = tuple((span.lower.astype(np.float32), span.upper.astype(np.float32)) for span in features)
         masks: dict[tuple[int, ...], Bools] = {}
         for j in self._decide:
@@ -93,36 +93,39 @@ class LeafBounds:
             shape = met.shape[1:]
             masks[shape] = masks[shape] & met if shape in masks else met
         sides = sorted(masks.values(), key=np.size) or [np.ones((self.leaves, *(1,) * AXES), bool)]
-        leaves, starts = self._worth(sides)
+        leaves, starts = self._selected(sides)
         met = reduce(np.logical_and, (side[leaves] for side in sides))
         empty = bool((starts == np.append(starts[1:], len(met))).any())
-        return Meeting(ends, leaves, met, starts, empty)
+        return Overlap(ends, leaves, met, starts, empty)
 
-    def _worth(self, sides: list[Bools]) -> tuple[Places | slice, Places]:
-        """The leaves to go on with, as each side meets them, and where each tree begins among them."""
-        if self.leaves * prod(np.broadcast_shapes(*(side.shape[1:] for side in sides))) < WORTH_LEAVING_OUT:
+    def _selected(self, sides: list[Bools]) -> tuple[Places | slice, Places]:
+        """Leaves to consider, given the overlap by each side, and the first of each tree among them."""
+        if self.leaves * prod(np.broadcast_shapes(*(side.shape[1:] for side in sides))) < MIN_SELECTION:
             return slice(None), self.boxes.first
         leaves = np.flatnonzero(reduce(np.logical_and, (side.reshape(self.leaves, -1).any(axis=1) for side in sides)))
         return leaves, np.searchsorted(leaves, self.boxes.first)
 
-    def least(self, meeting: Meeting, side: Side, k_std: float = 0.0) -> Floats:
-        """The least of each tree, shape (sides, trees, ...); where leaves have a spread, with `k_std` times that."""
-        said = self._formulas(meeting, side)
+    def least(self, overlap: Overlap, side: Side, k_std: float = 0.0) -> Floats:
+        """Minimum of each tree, shape (sides, trees, ...).
+
+        Where leaves have a standard deviation of their own, `k_std` times that is added.
+        """
+        values = self._formulas(overlap, side)
         if k_std and self.boxes.std is not None:
-            said = said + _along(np.float32(k_std) * self.boxes.std[meeting.leaves])
-        total = np.where(meeting.met, said, np.float32(np.inf))
-        least: Floats = np.minimum.reduceat(total, meeting.starts, axis=1)
+            values = values + _along(np.float32(k_std) * self.boxes.std[overlap.leaves])
+        total = np.where(overlap.met, values, np.float32(np.inf))
+        least: Floats = np.minimum.reduceat(total, overlap.starts, axis=1)
         return least
 
-    def _formulas(self, meeting: Meeting, side: Side) -> Floats:
-        """The least of each leaf's formula where a box meets it, (sides, leaves, ...): a sum over features."""
-        side_of, leaves = side.value, meeting.leaves
+    def _formulas(self, overlap: Overlap, side: Side) -> Floats:
+        """Minimum of each leaf's formula where a box overlaps it, (sides, leaves, ...): a sum over features."""
+        side_of, leaves = side.value, overlap.leaves
         low, high, total = (each[side_of, leaves] for each in (self._low, self._high, self._intercept))
         if not len(self._count):
             return low
         sums: dict[tuple[int, ...], Floats] = {}
         for j in self._count:
-            lower, upper = meeting.ends[j]
+            lower, upper = overlap.ends[j]
             slopes = self._slopes[side_of, j, leaves]
             at_least = np.maximum(lower, self._lower[j, leaves]) * slopes
             part = np.minimum(at_least, np.minimum(upper, self._upper[j, leaves]) * slopes)
@@ -139,5 +142,5 @@ def _slack(boxes: TreeBoxes) -> float:
 
 
 def _along(values: Floats) -> Floats:
-    """One value a leaf, (..., leaves), with the axes of boxes behind it."""
+    """One value per leaf, (..., leaves), with the axes of boxes appended."""
     return np.ascontiguousarray(values).reshape(*values.shape, *(1,) * AXES)

@@ -1,4 +1,4 @@
-"""What an action model says at least, or at most, while its arguments lie in boxes: what a proof about it rests on."""
+"""Bounds of an action model's predictions over boxes of arguments: the basis of proofs about the model."""
 
 from __future__ import annotations
 
@@ -11,88 +11,106 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.bag_bounds import bag_lower_bound
-from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Meeting, Side
+from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.features.feature_intervals import FEATURE_SPANS, Spans
 from tailor.models.features.intervals import Array, Span
 
-Columns = tuple[Array, ...]  # one array an argument; they broadcast to one shape of three axes
-MARGIN = 1e-4  # m or rad: far more than the bounds of a part can reach beyond those of the whole, by rounding
+Columns = tuple[Array, ...]  # one array per argument; they broadcast to one shape of three axes
+MARGIN = 1e-4  # m or rad: far more than rounding moves the bounds of a part beyond those of the whole
 
-WORTH_PICKING = 200  # pairs of boxes, by way
+MIN_SELECTION = 200  # pairs of boxes, by case; below, selecting the possible ones costs more than it saves
 
 
 @dataclass(frozen=True, slots=True)
 class ModelBounds:
-    """The bounds of one model, from its trees and its feature space."""
+    """The bounds of one model, computed from its trees and its feature space."""
 
     space: str
     trees: LeafBounds
 
     def within(self, lower: Columns, upper: Columns) -> ModelBounds:
-        """The same for arguments that lie between these, where fewer leaves can be met: much quicker to compute."""
+        """The bounds restricted to arguments between these, with fewer leaves: much faster to compute."""
         cases = FEATURE_SPANS[self.space](tuple(map(Span, lower, upper)))
         hulls = (reduce(Span.hull, spans) for spans in zip(*(case.features for case in cases), strict=True))
         return replace(self, trees=self.trees.within(tuple(hulls), MARGIN))
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
-        """The least mean plus `k_std` standard deviations, for arguments between `lower` and `upper`."""
-        return self._over_cases(tuple(map(Span, lower, upper)), lambda meeting: self._spread(meeting, k_std))
+        """Lower bound of the mean plus `k_std` standard deviations over boxes of arguments.
+
+        Args:
+          lower: Lower ends of each argument; the arrays broadcast to one shape of three axes.
+          upper: Upper ends.
+          k_std: Number of standard deviations.
+
+        Returns:
+          Seconds, joules or probability, of the broadcast shape.
+        """
+        return self._over_cases(tuple(map(Span, lower, upper)), lambda overlap: self._mean_and_std(overlap, k_std))
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
-        """The largest mean, for arguments between `lower` and `upper`."""
+        """Upper bound of the mean over boxes of arguments, as `lower_bound`."""
         trees = self.trees
         return -self._over_cases(
             tuple(map(Span, lower, upper)),
-            lambda meeting: trees.least(meeting, Side.OPPOSITE)[0].mean(axis=0) - trees.slack,
+            lambda overlap: trees.least(overlap, Side.OPPOSITE)[0].mean(axis=0) - trees.slack,
         )
 
     @property
     def effort(self) -> int:
-        """Leaves that one bound looks at, at most."""
+        """Maximum number of leaves that one bound considers."""
         return self.trees.leaves
 
-    def _over_cases(self, arguments: Spans, least: Callable[[Meeting], Floats]) -> Array:
-        """The least over all cases in which the features may come about, each for the part where it is possible.
+    def _over_cases(self, arguments: Spans, least: Callable[[Overlap], Floats]) -> Array:
+        """Minimum over all cases of the features, each where it is possible.
 
-        Where a tree has no leaf for a case, there are no such arguments: that says nothing, nor do sums with it.
+        If a tree has no leaf for a case, there are no such arguments: the case and sums with it are ignored.
         """
         shape = np.broadcast_shapes(*(span.lower.shape for span in arguments))
-        found = np.full(shape, np.inf)
+        bound = np.full(shape, np.inf)
         for case in FEATURE_SPANS[self.space](arguments):
             possible = np.broadcast_to(True if case.possible is None else case.possible, shape)
             if not possible.any():
                 continue
-            features, at = _picked(case.features, possible)
-            meeting = self.trees.meeting(features)
-            if not meeting.empty:
+            features, at = _selected(case.features, possible)
+            overlap = self.trees.overlap(features)
+            if not overlap.empty:
                 with np.errstate(invalid="ignore"):
-                    said = np.fmin(found[at], least(meeting))
-                found[at] = np.where(possible[at], said, found[at])
-        return found
+                    values = np.fmin(bound[at], least(overlap))
+                bound[at] = np.where(possible[at], values, bound[at])
+        return bound
 
-    def _spread(self, meeting: Meeting, k_std: float) -> Floats:
-        """Mean plus k standard deviations of the trees, shape (...), at least."""
+    def _mean_and_std(self, overlap: Overlap, k_std: float) -> Floats:
+        """Lower bound of the mean plus k standard deviations of the trees, shape (...)."""
         trees, slack = self.trees, np.float32(self.trees.slack)
         if k_std <= 0 or trees.trees == 1:
-            mean: Floats = trees.least(meeting, Side.LEAST, k_std)[0].mean(axis=0) - slack
+            mean: Floats = trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack
             return mean
-        least, opposite = trees.least(meeting, Side.BOTH)
+        least, opposite = trees.least(overlap, Side.BOTH)
         return bag_lower_bound(least, 2 * slack - opposite, k_std) - slack
 
 
 def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
-    """The bounds of an ONNX model, with so many features; None where it, or its feature space, is not of the kind."""
+    """Bounds of an ONNX model.
+
+    Args:
+      model: Content of the ONNX file.
+      space: Name of its feature space.
+      features: Number of features.
+
+    Returns:
+      The bounds; None if the model is not made of trees, or the feature space has no intervals.
+    """
     boxes = tree_boxes(model, features) if space in FEATURE_SPANS else None
     return None if boxes is None else ModelBounds(space, LeafBounds(boxes))
 
 
-def _picked(features: Spans, possible: NDArray[np.bool_]) -> tuple[Spans, Any]:
-    """The features at those ways, boxes before and own boxes where they are possible at all, and where that is.
+def _selected(features: Spans, possible: NDArray[np.bool_]) -> tuple[Spans, Any]:
+    """The features of those cases and boxes that are possible at all, and their indices.
 
-    All of them where it is not worth picking; what does not vary along an axis stays as it is.
+    All of them if there are fewer than MIN_SELECTION; arrays that do not vary along an axis stay as they are.
     """
-    if possible.size < WORTH_PICKING or possible.all():
+    if possible.size < MIN_SELECTION or possible.all():
         return features, ...
     place = tuple(np.flatnonzero(possible.any(axis=other)) for other in ((1, 2), (0, 2), (0, 1)))
     return tuple(Span(_taken(span.lower, place), _taken(span.upper, place)) for span in features), np.ix_(*place)

@@ -1,6 +1,6 @@
-"""Reads the few ONNX fields that trees are written in from a model's bytes; knows no other part of the format.
+"""Reads nodes and constants from an ONNX file: a minimal parser of protocol buffers for the fields that hold trees.
 
-The executive runs on onnxruntime alone, which computes a graph but does not say what is in it.
+The executive depends on onnxruntime only, which computes a graph but does not expose its content.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ DTYPES = {1: "<f4", 4: "<u2", 6: "<i4", 7: "<i8", 11: "<f8"}  # TensorProto.data
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """An operator: names of what goes in and out, and its attributes that are lists of numbers."""
+    """An operator: names of inputs and outputs, and those attributes that are lists of numbers."""
 
     op: str
     inputs: tuple[str, ...]
@@ -36,10 +36,10 @@ class Contents:
 
 
 def read_graph(model: bytes) -> Contents:
-    """What is in the graph of an ONNX model.
+    """Read the graph of an ONNX model.
 
     Raises:
-      ValueError: It ends in the middle, or is not written as ours are.
+      ValueError: The file is truncated, or not of the expected form.
     """
     try:
         graph = dict(_fields(memoryview(model)))[7]
@@ -47,7 +47,7 @@ def read_graph(model: bytes) -> Contents:
         nodes = tuple(_node(value) for number, value in fields if number == 1)
         return Contents(nodes, dict(_tensor(value) for number, value in fields if number == 5))
     except (IndexError, KeyError, TypeError) as error:
-        raise ValueError(f"no ONNX graph that can be read: {error!r}") from None
+        raise ValueError(f"no readable ONNX graph: {error!r}") from None
 
 
 def _fields(message: memoryview) -> Iterator[tuple[int, Any]]:
@@ -68,7 +68,7 @@ def _fields(message: memoryview) -> Iterator[tuple[int, Any]]:
 
 
 def _varint(message: memoryview, at: int) -> tuple[int, int]:
-    """A number of seven bits a byte, least first, and where it ends."""
+    """A number of seven bits per byte, least significant first, and the position after it."""
     value = shift = 0
     while True:
         byte = message[at]
@@ -91,7 +91,7 @@ def _node(message: memoryview) -> Node:
 
 
 def _attribute(message: memoryview) -> tuple[str, NDArray[Any]]:
-    """Name and numbers; nothing for attributes of other kinds. Lists are long, so they are not read one by one."""
+    """Name and numbers; no numbers for attributes of other kinds. Long lists are read as arrays."""
     at = 2 + message[1]  # names are short: their length is one byte
     name, rest = bytes(message[2:at]).decode(), np.frombuffer(message[at:], np.uint8)
     if not len(rest) or rest[0] not in (FLOATS_TAG, INTS_TAG):
@@ -100,14 +100,14 @@ def _attribute(message: memoryview) -> tuple[str, NDArray[Any]]:
 
 
 def _floats(rest: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """A tag and four bytes for each; the attribute's type comes after them."""
+    """Floats, each with a tag and four bytes; the attribute's type follows them."""
     groups = rest[: len(rest) // 5 * 5].reshape(-1, 5)
     count = int(np.argmin(np.append(groups[:, 0] == FLOATS_TAG, False)))
     return np.ascontiguousarray(groups[:count, 1:]).view("<f4").ravel()
 
 
 def _ints(rest: NDArray[np.uint8]) -> NDArray[np.int64]:
-    """A tag and a varint for each; the attribute's type comes after them."""
+    """Integers, each with a tag and a varint; the attribute's type follows them."""
     ends = np.flatnonzero(rest < 0x80)
     starts = np.append(0, ends[:-1] + 1)
     places = np.arange(len(rest)) - np.repeat(starts, ends - starts + 1)

@@ -1,6 +1,6 @@
-"""The trees inside an ONNX action model as boxes of features: what can be proven about a model needs them.
+"""The trees of an ONNX action model as boxes of features: the input of bounds and rules.
 
-Read from the very bytes that the runtime computes, so that the two cannot differ.
+They are read from the same bytes that the runtime loads, so that the two cannot differ.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class TreeBoxes:
-    """k trees with l leaves in all, over f features; what the model says is the mean over its trees.
+    """k trees with l leaves in all, over f features; the model predicts the mean over its trees.
 
-    Leaf i holds the rows with `lower[i] < x <= upper[i]` and says `x @ slopes[i] + intercept[i]`, clipped to
+    Leaf i holds the rows with `lower[i] < x <= upper[i]` and predicts `x @ slopes[i] + intercept[i]`, clipped to
     `low[i]` and `high[i]`.
     """
 
-    first: Ints  # (k,) the first leaf of each tree; a tree's leaves lie together
+    first: Ints  # (k,) the first leaf of each tree; the leaves of a tree are contiguous
     lower: Floats  # (l, f), -inf where there is no bound
     upper: Floats  # (l, f)
-    slopes: Floats  # (l, f), all zero where a leaf says one number
+    slopes: Floats  # (l, f), all zero where a leaf predicts a constant
     intercept: Floats  # (l,)
     low: Floats  # (l,)
     high: Floats  # (l,)
-    std: Floats | None = None  # (l,) standard deviation by leaf; None: that of the trees among each other
+    std: Floats | None = None  # (l,) standard deviation by leaf; None: that over the trees
 
     def part(self, leaves: NDArray[np.bool_]) -> TreeBoxes:
-        """The same trees with some of their leaves only, (l,): at least one of each."""
+        """The trees with a selection of their leaves, (l,): at least one of each tree."""
         counts = np.add.reduceat(leaves, self.first, dtype=np.int64)
         return replace(
             self,
@@ -52,14 +52,14 @@ class TreeBoxes:
         )
 
     def inside(self, lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> TreeBoxes:
-        """The same for features between these, (f,): sides beyond them become infinite, for they decide nothing."""
+        """The trees for features between these, (f,): sides beyond them become infinite, since they decide nothing."""
         lower = np.where(self.lower < lowest, np.float32(-np.inf), self.lower)
         upper = np.where(self.upper > highest, np.float32(np.inf), self.upper)
         return replace(self, lower=lower, upper=upper)
 
 
 def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
-    """The trees of an ONNX model over so many features; None where it is not made of trees as we write them."""
+    """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes."""
     try:
         graph = read_graph(model)
         ensembles = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
@@ -69,24 +69,24 @@ def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
         return None
 
 
-def _plain(graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats) -> TreeBoxes | None:
-    """Leaves that say one number; the graph adds the trees up."""
+def _plain(graph: Contents, first: Ints, lower: Floats, upper: Floats, numbers: Floats) -> TreeBoxes | None:
+    """Leaves that predict a constant; the graph sums the trees."""
     last = [node.op for node in graph.nodes[-2:]]
     if last != ["TreeEnsembleRegressor", "Reshape"]:
-        return None  # something is done to the sum that we do not know
-    value = said * np.float32(len(first))
+        return None  # an unknown operation on the sum
+    value = numbers * np.float32(len(first))
     return TreeBoxes(first, lower, upper, np.zeros_like(lower), value, value, value)
 
 
-def _linear(graph: Contents, first: Ints, lower: Floats, upper: Floats, said: Floats) -> TreeBoxes:
-    """Leaves that say their number in their tree, where the constants hold their formula."""
-    tree = np.repeat(np.arange(len(first)), np.diff([*first, len(said)]))
-    place = tree, said.astype(np.int64)
+def _linear(graph: Contents, first: Ints, lower: Floats, upper: Floats, numbers: Floats) -> TreeBoxes:
+    """Leaves with a formula, which the constants hold by the leaf's number in its tree."""
+    tree = np.repeat(np.arange(len(first)), np.diff([*first, len(numbers)]))
+    place = tree, numbers.astype(np.int64)
     formula = _formulas(graph, lower.shape[1])[place]
     low, high = (graph.constants[name][place] for name in (tree_names.LOW, tree_names.HIGH))
-    spread = graph.constants.get(tree_names.LEAF_STD)
-    said_spread = None if spread is None else spread[place]
-    return TreeBoxes(first, lower, upper, formula[:, :-1], formula[:, -1], low, high, said_spread)
+    leaf_std = graph.constants.get(tree_names.LEAF_STD)
+    std = None if leaf_std is None else leaf_std[place]
+    return TreeBoxes(first, lower, upper, formula[:, :-1], formula[:, -1], low, high, std)
 
 
 def _formulas(graph: Contents, features: int) -> Floats:
@@ -97,7 +97,7 @@ def _formulas(graph: Contents, features: int) -> Floats:
 
 
 def _boxes(ensembles: list[Node], features: int) -> tuple[Ints, Floats, Floats, Floats]:
-    """First leaf of each tree, box of each leaf, and the number that each leaf says."""
+    """First leaf of each tree, box of each leaf, and the value of each leaf."""
     first: list[int] = []
     parts: list[tuple[Floats, Floats, Floats]] = []
     count = 0
@@ -108,8 +108,8 @@ def _boxes(ensembles: list[Node], features: int) -> tuple[Ints, Floats, Floats, 
             first.append(count)
             count += len(part[2])
             parts.append(part)
-    lower, upper, said = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return np.array(first), lower, upper, said
+    lower, upper, values = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return np.array(first), lower, upper, values
 
 
 def _tree(

@@ -1,4 +1,4 @@
-"""Writes a refinement gate into a zoo: the ONNX file, and the card that says what it was learned from and with."""
+"""Publishes a refinement gate in a zoo: the ONNX file and its card."""
 
 from __future__ import annotations
 
@@ -15,57 +15,61 @@ from tailor.models.export.onnx_features import add_features, as_columns
 from tailor.models.export.onnx_graph import Graph
 from tailor.models.export.onnx_trees import add_probability
 from tailor.models.export.publishing import GOLDEN, versions
-from tailor.models.export.zoo_writer import place
+from tailor.models.export.zoo_writer import write_model
 from tailor.models.runtime import GATE
 from tailor.models.training.gate_training import Pairs, TrainedGate, space
 
 
 @dataclass(frozen=True, slots=True)
 class GateProvenance:
-    """What a card says beside what pairs and training know."""
+    """Card entries that pairs and training do not hold."""
 
     robot: str
-    names: tuple[str, ...]  # of the situations' columns
-    sequences: tuple[tuple[str, ...], ...]  # of actions that it was learned for, asserted subgoals left out
-    models: Mapping[str, str]  # SHA-256 of the action models by "action/kind": it judges their choices alone
-    settings: Mapping[str, Any]  # of refinement
-    episodes: Mapping[str, Any]  # where the pairs come from
+    names: tuple[str, ...]  # names of the situations' columns
+    sequences: tuple[tuple[str, ...], ...]  # kinds of sequences it was trained for, asserted subgoals left out
+    models: Mapping[str, str]  # SHA-256 of the action models by "action/kind" that it was trained with
+    settings: Mapping[str, Any]  # settings of refinement
+    episodes: Mapping[str, Any]  # provenance of the pairs
     learner: str
     seed: int
-    command: str  # what makes the model again
+    command: str  # reproduces the model
 
 
-def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> Path:
+def publish_gate(zoo: Path, pairs: Pairs, trained: TrainedGate, provenance: GateProvenance) -> Path:
     """Write `zoo/robot/refinement/benefit.onnx` and its card; returns the ONNX file's path."""
-    card = _card(pairs, trained, about)
-    return place(zoo, _exported(trained, about.names, card), card)
+    card = _card(pairs, trained, provenance)
+    return write_model(zoo, _exported(trained, provenance.names, card), card)
 
 
 def remove_gate(zoo: Path, robot: str) -> bool:
-    """Remove a robot's refinement gate, as its action models have changed; whether there was one."""
+    """Remove a robot's refinement gate and its card.
+
+    Returns:
+      Whether there was one.
+    """
     path = zoo / robot / f"{GATE}.onnx"
-    there = path.exists()
+    existed = path.exists()
     for file in (path, card_path(path)):
         file.unlink(missing_ok=True)
-    return there
+    return existed
 
 
 def _exported(trained: TrainedGate, names: tuple[str, ...], card: Card) -> bytes:
-    """Double `arguments` (n, k) to float `slower` (n,)."""
+    """Graph from double `arguments` (n, k) to float `slower` (n,)."""
     graph, columns = Graph(), space(names)
     features = as_columns(graph, add_features(graph, columns, "arguments"))
     slower = add_probability(graph, features, trained.trees.steps)
     return bytes(graph.model(len(columns.arguments), {"slower": slower}, identity(card)).SerializeToString())
 
 
-def _card(pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> dict[str, Any]:
+def _card(pairs: Pairs, trained: TrainedGate, provenance: GateProvenance) -> dict[str, Any]:
     action, kind = GATE.split("/")
-    columns = space(about.names)
+    columns = space(provenance.names)
     low, high = pairs.situations.min(axis=0), pairs.situations.max(axis=0)
     content = np.ascontiguousarray(np.column_stack([pairs.situations, pairs.greedy_s, pairs.refined_s]))
     return {
         "format": FORMAT,
-        "robot": about.robot,
+        "robot": provenance.robot,
         "action": action,
         "kind": kind,
         "features": columns.name,
@@ -77,22 +81,26 @@ def _card(pairs: Pairs, trained: TrainedGate, about: GateProvenance) -> dict[str
         "outputs": ["slower"],
         "output_range": [0.0, 1.0],
         "threshold": trained.threshold,
-        "sequences": [list(names) for names in about.sequences],
-        "models": dict(about.models),
-        "settings": dict(about.settings),
-        "episodes": {**about.episodes, "count": len(pairs.slower), "sha256": hashlib.sha256(content).hexdigest()},
-        "learner": {"name": about.learner, "leaves": trained.trees.leaves, "seed": about.seed},
+        "sequences": [list(names) for names in provenance.sequences],
+        "models": dict(provenance.models),
+        "settings": dict(provenance.settings),
+        "episodes": {
+            **provenance.episodes,
+            "count": len(pairs.slower),
+            "sha256": hashlib.sha256(content.tobytes()).hexdigest(),
+        },
+        "learner": {"name": provenance.learner, "leaves": trained.trees.leaves, "seed": provenance.seed},
         "test": trained.test,
         "rules": list(trained.rules),
         "golden": _golden(pairs, trained),
         "versions": versions(),
-        "command": about.command,
+        "command": provenance.command,
     }
 
 
 def _golden(pairs: Pairs, trained: TrainedGate) -> dict[str, Sequence[Any]]:
-    """Situations spread over the pairs, and what the learner itself says of them."""
+    """Situations spread over the pairs, and the learner's predictions."""
     chosen = np.linspace(0, len(pairs.slower) - 1, GOLDEN).astype(int)
     situations = pairs.situations[chosen]
-    said = np.round(trained.trees.risk(situations), 6)
-    return {"arguments": situations.tolist(), "slower": said.tolist()}
+    risk = np.round(trained.trees.risk(situations), 6)
+    return {"arguments": situations.tolist(), "slower": risk.tolist()}

@@ -1,4 +1,4 @@
-"""Makes skl2onnx know our estimators: `to_onnx(model, X)` and pipelines with them work like scikit-learn's own."""
+"""Registers our estimators with skl2onnx: `to_onnx(model, X)` converts them, also inside pipelines."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TYPES = {"f4": TensorProto.FLOAT, "u2": TensorProto.UINT16, "i4": TensorProto.IN
 
 
 class _ContainerSink:
-    """Writes nodes into skl2onnx's container."""
+    """Adds nodes to skl2onnx's container."""
 
     def __init__(self, scope: Any, container: Any) -> None:
         self._scope, self._container = scope, container
@@ -38,7 +38,7 @@ class _ContainerSink:
         return names[0] if outputs == 1 else names
 
     def constant(self, value: NDArray[Any], name: str = "constant") -> str:
-        """Name of a constant tensor, with a number where there are several."""
+        """Name of a constant tensor, with a number if the name is taken."""
         name = str(self._scope.get_unique_variable_name(name))
         kind = TYPES[value.dtype.str[1:]]
         self._container.add_initializer(name, kind, list(value.shape), value.ravel().tolist())
@@ -46,13 +46,13 @@ class _ContainerSink:
 
 
 def register() -> None:
-    """Register all converters; may be called again."""
-    for estimator in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
-        update_registered_converter(estimator, f"Tailor{estimator.__name__}", _regressor_shape, _convert_regressor)
-    for estimator in (FailureTree, FailureForest, DistilledForest, DistilledFailureTree):
+    """Register all converters; may be called repeatedly."""
+    for regressor in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
+        update_registered_converter(regressor, f"Tailor{regressor.__name__}", _regressor_shape, _convert_regressor)
+    for classifier in (FailureTree, FailureForest, DistilledForest, DistilledFailureTree):
         update_registered_converter(
-            estimator,
-            f"Tailor{estimator.__name__}",
+            classifier,
+            f"Tailor{classifier.__name__}",
             _classifier_shape,
             _convert_classifier,
             options={"zipmap": [False], "nocl": [True, False], "output_class_labels": [False, True]},
@@ -71,7 +71,7 @@ def _classifier_shape(operator: Any) -> None:
 
 
 def _features(sink: _ContainerSink, operator: Any) -> str:
-    guess_tensor_type(operator.inputs[0].type)  # raises if these are no numbers
+    guess_tensor_type(operator.inputs[0].type)  # raises if the inputs are not numbers
     return str(sink.add("Cast", operator.inputs[0].full_name, to=TensorProto.FLOAT))
 
 

@@ -1,4 +1,4 @@
-"""Turns a fitted learner into one ONNX graph from raw action arguments to seconds, or to the probability of success."""
+"""Exports a fitted learner as one ONNX graph from action arguments to seconds, joules or probability of success."""
 
 from __future__ import annotations
 
@@ -17,12 +17,19 @@ from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 
 
 def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str], unit: str = "s") -> onnx.ModelProto:
-    """Double `arguments` (n, k) to float `mean_s` and `std_s`, (n,); `notes` become the file's metadata.
+    """Export a model of durations or energies.
 
-    Energy goes the same way, its `unit` is "j".
+    Args:
+      learner: A fitted `RegressionModel`.
+      space: Its feature space.
+      notes: Metadata of the file.
+      unit: Suffix of the outputs: "s", or "j" for energies.
+
+    Returns:
+      A model from double `arguments` (n, k) to float `mean_s` and `std_s` (or `mean_j`, `std_j`), shapes (n,).
 
     Raises:
-      TypeError: The learner is none of ours.
+      TypeError: The learner is of another type.
     """
     graph = Graph()
     features = add_features(graph, space, "arguments")
@@ -42,10 +49,18 @@ def export_duration(learner: Any, space: FeatureSpace, notes: Mapping[str, str],
 
 
 def export_success(learner: Any, space: FeatureSpace, notes: Mapping[str, str]) -> onnx.ModelProto:
-    """Double `arguments` (n, k) to float `success` (n,); `notes` become the file's metadata.
+    """Export a model of success.
+
+    Args:
+      learner: A fitted `FailureModel`.
+      space: Its feature space.
+      notes: Metadata of the file.
+
+    Returns:
+      A model from double `arguments` (n, k) to float `success`, 0..1, shape (n,).
 
     Raises:
-      TypeError: The learner is none of ours.
+      TypeError: The learner is of another type.
     """
     graph = Graph()
     features = as_columns(graph, add_features(graph, space, "arguments"))

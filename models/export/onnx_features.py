@@ -1,4 +1,4 @@
-"""Traces feature spaces into ONNX: the functions of features.py run on symbols that write nodes."""
+"""Traces feature spaces into ONNX: the functions of features.py run on symbols that add nodes to a graph."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Tracing:
         return Symbol(a.sink, a.sink.add("Sqrt", a.name))
 
     def absolute(self, a: Symbol) -> Symbol:
-        """Magnitude."""
+        """Absolute value."""
         return Symbol(a.sink, a.sink.add("Abs", a.name))
 
     def round(self, a: Symbol) -> Symbol:
@@ -61,7 +61,7 @@ class Tracing:
         return Symbol(a.sink, a.sink.add("Round", a.name))
 
     def clip(self, a: Symbol, low: float, high: float) -> Symbol:
-        """What lies outside is brought to the nearer end."""
+        """Values clipped to [low, high]."""
         ends = (a.sink.constant(single(end)) for end in (low, high))
         return Symbol(a.sink, a.sink.add("Clip", a.name, *ends))
 
@@ -76,19 +76,20 @@ class Tracing:
 
 
 def add_features(sink: Sink, space: FeatureSpace, arguments: str) -> str:
-    """Write a feature space into a graph: double arguments (n, k) to a row of each feature, float (f, n)."""
+    """Add a feature space to a graph: from double arguments (n, k) to a row per feature, float (f, n)."""
     values = sink.add("Cast", arguments, to=TensorProto.FLOAT)
-    return space.rows(Symbol(sink, as_rows(sink, values, len(space.arguments))), Tracing()).name
+    rows: Symbol = space.rows(Symbol(sink, as_rows(sink, values, len(space.arguments))), Tracing())
+    return rows.name
 
 
 def as_rows(sink: Sink, columns: str, count: int) -> str:
-    """Columns (n, count) as rows (count, n): the runtime is quick on long rows.
+    """Columns (n, count) as rows (count, n): the runtime is fast on long rows.
 
-    A product with ones and zeros is exact, and makes everything NaN where one number is not finite.
+    The product with ones and zeros is exact; a row with a number that is not finite becomes NaN as a whole.
     """
     return str(sink.add("Gemm", sink.constant(np.eye(count, dtype=np.float32)), columns, transB=1))
 
 
 def as_columns(sink: Sink, rows: str) -> str:
-    """Rows (f, n) as columns (n, f), which tree ensembles ask for."""
+    """Rows (f, n) as columns (n, f), which tree ensembles require."""
     return str(sink.add("Transpose", rows, perm=[1, 0]))

@@ -1,4 +1,4 @@
-"""A small writer of ONNX graphs: nodes and constants get names by themselves."""
+"""A builder of ONNX graphs that names nodes and constants."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import onnx
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-OPSET, ML_OPSET, IR_VERSION = 18, 3, 9  # old enough for every runtime of the last years
+OPSET, ML_OPSET, IR_VERSION = 18, 3, 9  # supported by onnxruntime from 1.14 on
 ML = "ai.onnx.ml"
 
 
 class Sink(Protocol):
-    """Where nodes go: our own graph, or skl2onnx's container."""
+    """Receiver of nodes: our own graph, or skl2onnx's container."""
 
     def add(self, op: str, *inputs: str, outputs: int = 1, domain: str = "", **attributes: Any) -> Any:
         """Add a node; returns the name of its output, or a list of names when it has several."""
         ...
 
     def constant(self, value: NDArray[Any], name: str = "") -> str:
-        """Name of a constant tensor; one that shall be found again is given its name."""
+        """Name of a constant tensor; a constant that is read back is given a name."""
         ...
 
 
@@ -41,7 +41,7 @@ class Graph:
         return names[0] if outputs == 1 else names
 
     def constant(self, value: NDArray[Any], name: str = "") -> str:
-        """Name of a constant tensor, its own or a new one; equal constants without a name are stored once."""
+        """Name of a constant tensor, given or new; equal constants without a name are stored once."""
         key = (name, value.dtype.str, value.shape, value.tobytes())
         if key not in self._constants:
             self._constants[key] = name or f"constant_{len(self._constants)}"
@@ -49,7 +49,7 @@ class Graph:
         return self._constants[key]
 
     def embed(self, model: onnx.ModelProto, feed: str) -> list[str]:
-        """Copy another model's graph in, its one input fed from `feed`; returns the names of its outputs here."""
+        """Copy another model's graph, its one input connected to `feed`; returns the names of its outputs here."""
         prefix = f"inner_{len(self._nodes)}_"
         names = {model.graph.input[0].name: feed, "": ""}
         for tensor in model.graph.initializer:
@@ -65,12 +65,12 @@ class Graph:
         return [names[output.name] for output in model.graph.output]
 
     def model(self, width: int, outputs: Mapping[str, str], notes: Mapping[str, str]) -> onnx.ModelProto:
-        """The finished model: double `arguments` (n, width) to float vectors (n,).
+        """Finished model: double `arguments` (n, width) to float vectors (n,).
 
         Args:
           width: Number of arguments.
           outputs: Public name of each output to its name in the graph.
-          notes: Metadata to keep in the file.
+          notes: Metadata of the file.
         """
         nodes = [*self._nodes, *(helper.make_node("Identity", [inner], [name]) for name, inner in outputs.items())]
         graph = helper.make_graph(

@@ -1,4 +1,4 @@
-"""Writes into ONNX graphs which leaf of each tree a row falls into."""
+"""Adds the lookup of each tree's leaf to ONNX graphs."""
 
 from __future__ import annotations
 
@@ -34,28 +34,29 @@ def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArra
             if not inner:
                 for name, item in zip(ENSEMBLE[7:], (number, node, 0, float(values[tree.leaf[node]])), strict=True):
                     rows[name].append(item)
-    return str(sink.add("TreeEnsembleRegressor", features, domain=ML, n_targets=1, post_transform="NONE", **rows))
+    attributes: dict[str, Any] = {"n_targets": 1, "post_transform": "NONE", **rows}
+    return str(sink.add("TreeEnsembleRegressor", features, domain=ML, **attributes))
 
 
 def add_leaves(sink: Sink, features: str, trees: Sequence[SplitTree], width: int) -> str:
     """Leaf numbers (k, n) of k trees over `width` features, each counted from 0; rows with a one: (width + 1, n)."""
-    cells = cells_of(trees, width) if len(trees) > 1 else None  # a single tree is walked down as quickly
-    leaf = _walked(sink, features, trees) if cells is None else _looked_up(sink, features, cells, width)
+    cells = cells_of(trees, width) if len(trees) > 1 else None  # for a single tree the tree operator is as fast
+    leaf = _by_ensembles(sink, features, trees) if cells is None else _by_cells(sink, features, cells, width)
     shape = sink.constant(np.array([len(trees), -1]))
     return str(sink.add("Cast", sink.add("Reshape", leaf, shape), to=TensorProto.INT32))
 
 
-def _walked(sink: Sink, features: str, trees: Sequence[SplitTree]) -> str:
+def _by_ensembles(sink: Sink, features: str, trees: Sequence[SplitTree]) -> str:
     """One ensemble for each tree, (k·n, 1): one ensemble with several targets costs eight times as much."""
     columns = as_columns(sink, features)
     each = [add_steps(sink, columns, [(tree, np.arange(tree.leaves, dtype=np.float32))]) for tree in trees]
     return str(sink.add("Concat", *each, axis=0) if len(each) > 1 else each[0])
 
 
-def _looked_up(sink: Sink, features: str, cells: Cells, width: int) -> str:
-    """The same from tables of cells, (k·n,): who walks down a tree waits for branches that were guessed wrong.
+def _by_cells(sink: Sink, features: str, cells: Cells, width: int) -> str:
+    """Leaf numbers from tables of cells, (k·n,); avoids mispredicted branches.
 
-    `x - threshold` is a product with ones and zeros, so its sign is exact; a steep ramp makes 0 or 1 of it.
+    `x - threshold` is a product with ones and zeros, so its sign is exact; a steep ramp turns it into 0 or 1.
     """
     count = len(cells.threshold)
     minus = np.zeros((count, width + 1), np.float32)
@@ -67,7 +68,7 @@ def _looked_up(sink: Sink, features: str, cells: Cells, width: int) -> str:
     cell = sink.add("Gemm", strides, beyond, sink.constant(cells.first[:, None], tree_names.FIRST))  # (k, n)
     number = sink.add("Cast", sink.add("Reshape", cell, sink.constant(np.array([-1]))), to=TensorProto.INT32)
     limits = (sink.constant(np.array(limit, np.int32)) for limit in (0, len(cells.leaf) - 1))
-    # what is not a number may be cast to any cell: its formula gives no number either
+    # NaN may be cast to any cell; the formula gives NaN, too
     number = sink.add("Clip", number, *limits)
     table = sink.constant(cells.leaf.astype(np.uint16), tree_names.LEAF)
     return str(sink.add("GatherElements", table, number, axis=0))

@@ -1,4 +1,4 @@
-"""Writes fitted trees into ONNX graphs, bit for bit what their numpy form computes but for the order of sums."""
+"""Adds fitted trees to ONNX graphs; results equal those in numpy bit for bit, except for the order of sums."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def add_probability(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, 
 
 
 def add_tree(sink: Sink, features: str, tree: LinearTree) -> tuple[str, str]:
-    """One model tree: mean and spread, shapes (n,), of rows of features (f, n).
+    """One model tree: mean and standard deviation, shapes (n,), of rows of features (f, n).
 
-    Every leaf's formula is computed, in one product, and then the right one is taken.
+    Every leaf's formula is computed in one product, and the one of the row's leaf is selected.
     """
     rows, width = _with_one(sink, features), tree.slopes.shape[1]
     leaf = add_leaves(sink, rows, [tree.splits], width)
@@ -63,7 +63,7 @@ def _formulas(sink: Sink, features: str, leaf: str, trees: Sequence[LinearTree])
 
 
 def _table(each: Sequence[NDArray[np.float32]]) -> Tables:
-    """A row for each tree, as long as the one with most leaves needs."""
+    """One row per tree, padded to the largest number of leaves."""
     table = np.zeros((len(each), max(map(len, each))), np.float32)
     for row, values in zip(table, each, strict=True):
         row[: len(values)] = values
@@ -71,7 +71,7 @@ def _table(each: Sequence[NDArray[np.float32]]) -> Tables:
 
 
 def _looked_up(sink: Sink, name: str, table: Tables, leaf: str) -> str:
-    """Each tree's number for its leaf, (k, n). Of single numbers, GatherElements takes an eighth of Gather's time."""
+    """Each tree's number for its leaf, (k, n). GatherElements takes an eighth of Gather's time here."""
     return str(sink.add("GatherElements", sink.constant(table, name), leaf, axis=1))
 
 
@@ -81,7 +81,7 @@ def _clipped(sink: Sink, values: str, leaf: str, ends: dict[str, Tables]) -> str
 
 
 def _with_one(sink: Sink, features: str) -> str:
-    """Rows of features with a row of ones below, for what is added to products: (f + 1, n)."""
+    """Rows of features with a row of ones below, for the constant terms of products: (f + 1, n)."""
     return str(sink.add("Pad", features, sink.constant(np.array([0, 0, 1, 0])), sink.constant(single(1.0))))
 
 

@@ -1,4 +1,4 @@
-"""Writes a trained model into a zoo: the ONNX file, and the card that says what it is."""
+"""Publishes a trained model in a zoo: the ONNX file and its card."""
 
 from __future__ import annotations
 
@@ -17,31 +17,45 @@ from tailor.models.cards.card import FORMAT, Card, identity
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.export.onnx_export import export_duration, export_success
-from tailor.models.export.zoo_writer import place
+from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.features import FeatureSpace
 from tailor.models.training.training import Trained
 
 Array = NDArray[np.float64]
-GOLDEN = 32
-MAX_FACTOR = 3.0  # a prediction beyond three times the longest episode, or its energy, is no prediction
+GOLDEN = 32  # examples in a card
+MAX_FACTOR = 3.0  # predictions above three times the longest episode, or its energy, are invalid
 LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 
 
 @dataclass(frozen=True, slots=True)
 class Publication:
-    """What a card says beside what the data set and the training know."""
+    """Card entries that data set and training do not hold."""
 
     kind: str  # "duration", "energy" or "success"
     learner: str
     space: FeatureSpace
     seed: int
-    command: str  # what makes the model again
+    command: str  # reproduces the model
 
 
 def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> Path:
-    """Write `zoo/robot/action/kind.onnx` and its card; returns the ONNX file's path."""
+    """Write `zoo/robot/action/kind.onnx` and its card.
+
+    Args:
+      zoo: Folder of models.
+      data: Episodes that the model was trained on.
+      trained: The model.
+      about: Further entries of the card.
+
+    Returns:
+      Path of the ONNX file.
+
+    Raises:
+      TypeError: The learner cannot be exported.
+      OSError: The files cannot be written.
+    """
     card = _card(data, trained, about)
-    return place(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
+    return write_model(zoo, _exported(trained.learner, about, card).SerializeToString(), card)
 
 
 def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
@@ -56,7 +70,7 @@ def _outputs(kind: str) -> list[str]:
 
 
 def _output_range(data: DataSet, kind: str) -> list[float]:
-    """Answers outside are no answers."""
+    """Range outside of which predictions are invalid."""
     if kind == "success":
         return [0.0, 1.0]
     return [0.0, MAX_FACTOR * max(REGRESSION_TARGETS[kind].whole(episode) for episode in data.episodes)]
@@ -85,7 +99,7 @@ def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]
 
 
 def _episodes(data: DataSet) -> dict[str, Any]:
-    """What a card says of the episodes that it was learned from."""
+    """Card entries of the training episodes."""
     return {
         "count": len(data.episodes),
         "finished": sum(episode.finished for episode in data.episodes),
@@ -96,7 +110,7 @@ def _episodes(data: DataSet) -> dict[str, Any]:
 
 
 def _learner(trained: Trained, about: Publication) -> dict[str, Any]:
-    """What a card says of what learned it."""
+    """Card entries of the learner."""
     return {
         "name": about.learner,
         "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
@@ -107,7 +121,7 @@ def _learner(trained: Trained, about: Publication) -> dict[str, Any]:
 
 
 def versions() -> dict[str, str]:
-    """Of Python and of the libraries that a model depends on."""
+    """Versions of Python and of the libraries that a model depends on."""
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
@@ -116,22 +130,22 @@ def _plain(value: object) -> bool:
 
 
 def leaves(learner: Any) -> list[int]:
-    """Number of leaves of each of a learner's trees, if it has any."""
+    """Number of leaves of each tree of a learner; empty if it has no trees."""
     if hasattr(learner, "steps_"):
         return [splits.leaves for splits, _ in learner.steps_]
     return [tree.leaves for tree in getattr(learner, "trees_", [])]
 
 
 def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequence[Any]]:
-    """Arguments spread over the episodes, the last at zero distance, and what the learner itself says of them."""
+    """Arguments spread over the episodes, the last at zero distance, and the learner's predictions."""
     chosen = np.linspace(0, len(data.episodes) - 1, GOLDEN).astype(int)
     arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
     half = arguments.shape[1] // 2
     arguments[-1, half:] = arguments[-1, :half]
     features = about.space(arguments)
     if about.kind == "success":
-        answers: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
+        predictions: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
     else:
-        answers = dict(zip(_outputs(about.kind), learner.predict_with_std(features), strict=True))
-    rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in answers.items()}
+        predictions = dict(zip(_outputs(about.kind), learner.predict_with_std(features), strict=True))
+    rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in predictions.items()}
     return {"arguments": arguments.tolist(), **rounded}

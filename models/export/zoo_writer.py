@@ -1,4 +1,4 @@
-"""Puts a model and its card into a zoo, whole or not at all: a full disk or a kill leaves the model that was there."""
+"""Writes a model and its card into a zoo atomically: a full disk or a kill keeps the previous model."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from pathlib import Path
 from tailor.models.cards.card import Card, card_path, sha256_of, write_card
 
 
-def place(zoo: Path, content: bytes, card: Card) -> Path:
-    """Write `zoo/robot/action/kind.onnx`, and its card with the content's hash; returns the ONNX file's path."""
+def write_model(zoo: Path, content: bytes, card: Card) -> Path:
+    """Write `zoo/robot/action/kind.onnx`, and its card with the content's SHA-256; returns the ONNX file's path."""
     path: Path = zoo / card["robot"] / card["action"] / f"{card['kind']}.onnx"
     path.parent.mkdir(parents=True, exist_ok=True)
-    model, words = (_beside(kept) for kept in (path, card_path(path)))
+    model, card_file = (_temporary(final) for final in (path, card_path(path)))
     try:
         model.write_bytes(content)
-        write_card(words, {**card, "sha256": sha256_of(content)})
+        write_card(card_file, {**card, "sha256": sha256_of(content)})
         model.replace(path)
-        words.replace(card_path(path))
+        card_file.replace(card_path(path))
     finally:
-        for left in (model, words):
+        for left in (model, card_file):
             left.unlink(missing_ok=True)
     return path
 
 
-def _beside(path: Path) -> Path:
+def _temporary(path: Path) -> Path:
     return path.with_name(f".{path.name}.{os.getpid()}")

@@ -1,6 +1,6 @@
-"""What the features of an action model may be when its arguments lie in boxes: the feature spaces, on intervals.
+"""Feature spaces in interval arithmetic: ranges of the features for boxes of arguments.
 
-Each function is the interval form of its namesake in `features.py`; a test compares the two on drawn boxes.
+Each function is the interval form of its namesake in `features.py`; a test compares them on random boxes.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from tailor.models.features.intervals import (
 
 Bools = NDArray[np.bool_]
 Spans = tuple[Span, ...]
-Wrapped = tuple[tuple[Span, Bools], tuple[Span, Bools]]  # stretches of an angle, and where there is each
-FAR = 2 * NEAR  # m: between places so far apart there is one line of sight
-AT_REST = 1e-7  # well below what features.py calls the same place
+Wrapped = tuple[tuple[Span, Bools], tuple[Span, Bools]]  # intervals of an angle, and where each exists
+FAR = 2 * NEAR  # m: beyond this distance the line of sight is unique
+AT_REST = 1e-7  # well below SAME_PLACE of features.py
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One way in which the features may come about, where `possible`: angles wrap around, signs turn."""
+    """One case of the features, where `possible`: angles wrap around, signs change."""
 
     features: Spans
     possible: Bools | None = None  # None: everywhere
@@ -85,12 +85,12 @@ def _joints_relative(columns: Spans) -> tuple[Case, ...]:
 
 
 def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
-    """The direction from one place to another; between known places exactly what features.py makes of it."""
+    """Direction from one place to another; between known places exactly as features.py computes it."""
     known = x.known & y.known & xg.known & yg.known
     if not known.any():
         return direction(xg - x, yg - y)
     dx, dy = (np.float32(there.lower) - np.float32(here.lower) for here, there in ((x, xg), (y, yg)))
-    with np.errstate(invalid="ignore", divide="ignore"):  # the same place has no direction, and is not known, below
+    with np.errstate(invalid="ignore", divide="ignore"):  # no direction at zero distance, which is excluded below
         length = features.length(dx, dy, NUMPY)
         exact = features.direction(dx, dy, length, 0.0, NUMPY)
     known = known & (length > FAR)
@@ -101,7 +101,7 @@ def _sight(x: Span, y: Span, xg: Span, yg: Span) -> Span:
 
 
 def _heading(wa: Span, wb: Span, sight: Span) -> Span:
-    """The direction of a velocity; at rest that of the line of sight."""
+    """Direction of a velocity; at rest that of the line of sight."""
     moving = direction(wa, wb)
     fastest = np.maximum(magnitude(wa).upper, magnitude(wb).upper)
     rests = fastest < AT_REST
@@ -109,7 +109,7 @@ def _heading(wa: Span, wb: Span, sight: Span) -> Span:
 
 
 def _wrapped(angle: Span) -> Wrapped:
-    """The angles brought into [-pi, pi]: a stretch up to pi, and a second from -pi on where they go beyond."""
+    """Angles wrapped to [-pi, pi]: an interval up to pi, and a second one from -pi where they exceed pi."""
     wide = angle.wider(ANGLE_ERROR)
     turns = TURN * np.floor((wide.lower + np.pi) / TURN)
     whole = wide.upper - wide.lower >= TURN
@@ -122,7 +122,7 @@ def _wrapped(angle: Span) -> Wrapped:
 
 
 def _may_lie_in_half(angle: Span, begin: float) -> Bools:
-    """Whether an angle may lie, but for whole turns, in the half turn that begins there."""
+    """Whether an angle, modulo whole turns, may lie in the half turn that starts at `begin`."""
     wide = angle.wider(ANGLE_ERROR)
     return np.asarray(np.floor((wide.upper - begin) / TURN) >= np.ceil((wide.lower - begin - np.pi) / TURN))
 

@@ -1,7 +1,7 @@
-"""Feature spaces of the action models (Table 7): pure functions of action parameters, one definition for all uses.
+"""Feature spaces of the action models (Table 7): pure functions of action arguments, defined once for all uses.
 
-Training calls them on arrays, export on symbols of an ONNX graph. Only operations that IEEE 754 rounds exactly are
-used, in single precision and in one order: numpy and the ONNX runtime give the same bits, on thresholds too.
+Training calls them on arrays, export on symbols of an ONNX graph. They use only operations that IEEE 754 rounds
+exactly, in single precision and in a fixed order, so numpy and onnxruntime give the same bits, on thresholds too.
 """
 
 from __future__ import annotations
@@ -14,30 +14,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
-Rows = Any  # an array of shape (k, n), or a symbol of the exported graph; both know + - * / < and indices of rows
+Rows = Any  # an array of shape (k, n), or a symbol of the exported graph; both support + - * / < and row indices
 
 TWO_PI = 2 * np.pi
-SAME_PLACE = 1e-6  # m (or rad): nearer than this there is no line of sight
+SAME_PLACE = 1e-6  # m (or rad): below this distance there is no line of sight
 STEEP = 1e38  # a ramp of this slope is a step
-# atan2(dy, dx) = dy·Σ w / (dist + g·dx) for dx >= 0, like Gauss quadrature; (w, g) fitted by us to be at most 1e-5 rad
-# off, far below any pose noise, and exact straight ahead and sideways
+# atan2(dy, dx) = dy·Σ w / (dist + g·dx) for dx >= 0, like Gauss quadrature; (w, g) are fitted: the error is at
+# most 1e-5 rad, far below any pose noise, and 0 straight ahead and sideways
 ARCTANGENT = ((1.06079778, 0.84703681), (0.50999855, 0.19823857))
 
 
 class Operations(Protocol):
-    """What a feature may use besides arithmetic; numpy and the ONNX exporter each provide it."""
+    """Operations of features besides arithmetic, implemented by numpy and by the ONNX exporter."""
 
     def sqrt(self, a: Rows) -> Rows:
         """Square root."""
 
     def absolute(self, a: Rows) -> Rows:
-        """Magnitude."""
+        """Absolute value."""
 
     def round(self, a: Rows) -> Rows:
         """Nearest whole number, ties to even."""
 
     def clip(self, a: Rows, low: float, high: float) -> Rows:
-        """What lies outside is brought to the nearer end."""
+        """Values clipped to [low, high]."""
 
     def where(self, condition: Rows, a: Rows, b: Rows) -> Rows:
         """Elements of `a` where the condition holds, of `b` elsewhere."""
@@ -71,10 +71,14 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class FeatureSpace:
-    """A map from an action's arguments to what a model sees.
+    """A map from an action's arguments to the features of a model.
 
-    `rows` makes a row of each feature from a row of each argument. It is traced for export: it may use arithmetic,
-    indices of rows and the `Operations` alone.
+    Attributes:
+      name: Name in cards and in `SPACES`.
+      arguments: Names and units of the arguments, k.
+      features: Names and units of the features, f.
+      rows: Computes features (f, n) from arguments (k, n). It is traced for export, so it may only use arithmetic, row
+        indices and `Operations`.
     """
 
     name: str
@@ -83,21 +87,27 @@ class FeatureSpace:
     rows: Callable[[Rows, Operations], Rows]
 
     def __call__(self, arguments: Array) -> NDArray[np.float32]:
-        """Features of arguments: shape (n, k) to (n, f), single precision.
+        """Compute features.
+
+        Args:
+          arguments: Shape (n, k), in the units of `self.arguments`.
+
+        Returns:
+          Features in single precision, shape (n, f), in the units of `self.features`; NaN for arguments that are NaN.
 
         Raises:
-          ValueError: the arguments have another number of columns.
+          ValueError: The arguments have another number of columns.
         """
         if arguments.ndim != 2 or arguments.shape[1] != len(self.arguments):
             raise ValueError(f"{self.name} takes (n, {len(self.arguments)}) arguments, got {arguments.shape}")
-        # a NaN argument gives NaN features, which the models call invalid; the same place has no direction
+        # a NaN argument gives NaN features, which the models mark as invalid; at zero distance there is no direction
         with np.errstate(invalid="ignore", divide="ignore"):
             rows = self.rows(np.ascontiguousarray(arguments.T, np.float32), NUMPY)
         return np.ascontiguousarray(rows.T)
 
 
 def wrap(a: Rows, ops: Operations) -> Rows:
-    """The paper's norm(a): the angle plus or minus whole turns, in [-pi, pi]."""
+    """The paper's norm(a): angles in radians wrapped to [-pi, pi]."""
     return a - ops.round(a * (1 / TWO_PI)) * TWO_PI
 
 
@@ -115,11 +125,11 @@ def direction(dx: Rows, dy: Rows, dist: Rows, otherwise: Rows, ops: Operations) 
 
 
 def _toward(rows: Rows, ops: Operations) -> tuple[Rows, Rows, Rows]:
-    """Distance, |angle to the goal| and signed angle at the goal.
+    """Distance, |angle to the goal| and signed angle at the goal (Table 7).
 
     The angle at the goal is positive when the robot must turn the same way twice (an S-curve is negative). At zero
-    distance the line of sight is the robot's own heading: what is left is a turn on the spot. Straight ahead
-    (angle_to = 0) counts as a left turn.
+    distance the line of sight is the robot's heading, which leaves a turn on the spot. Straight ahead (angle_to = 0)
+    counts as a left turn.
     """
     away = rows[[4, 5]] - rows[[0, 1]]
     dx, dy = away[[0]], away[[1]]
@@ -151,7 +161,7 @@ def _joints(rows: Rows, ops: Operations) -> Rows:
     da, db = ag - a, bg - b
     dist, v, vg = length(da, db, ops), length(wa, wb, ops), length(wag, wbg, ops)
     sight = direction(da, db, dist, 0.0, ops)
-    leave = direction(wa, wb, v, sight, ops)  # at rest it leaves along the line of sight
+    leave = direction(wa, wb, v, sight, ops)  # at rest: the line of sight
     arrive = direction(wag, wbg, vg, sight, ops)
     return ops.stack(v, vg, dist, wrap(ops.stack(sight - leave, arrive - sight), ops))
 
@@ -177,7 +187,7 @@ SPACES: dict[str, FeatureSpace] = {
         FeatureSpace("projective", POSE, TOWARD, _projective),
         FeatureSpace("projective-turn", POSE, (*TOWARD, Quantity("turn", "rad")), _projective_turn),
         FeatureSpace("joints", JOINTS, _quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints),
-        FeatureSpace(  # for what depends on where the joints are, as gravity does
+        FeatureSpace(  # for quantities that depend on the joint positions, as gravity does
             "joints-relative",
             JOINTS,
             _quantities("a:rad b:rad da:rad db:rad wa:rad/s wb:rad/s wag:rad/s wbg:rad/s"),

@@ -1,4 +1,4 @@
-"""Rules of the very trees inside an ONNX model, and what each of them says by itself."""
+"""Rules and predictions of single trees inside an ONNX model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Floats = NDArray[np.float32]
 
 
 def leaves_of(boxes: TreeBoxes, number: int) -> range:
-    """The leaves of a tree, counted from 1.
+    """Leaves of a tree; trees are numbered from 1.
 
     Raises:
       UsageError: There is no such tree.
@@ -29,41 +29,45 @@ def leaves_of(boxes: TreeBoxes, number: int) -> range:
 
 
 def rules_of(boxes: TreeBoxes, number: int, quantities: Sequence[Quantity], unit: str) -> list[str]:
-    """One rule a leaf of a tree; `unit` is that of its formulas, "" where leaves say a probability of success."""
-    said = []
+    """One rule per leaf of a tree; `unit` is that of its formulas, "" where leaves hold a probability of success."""
+    rules = []
     for leaf in leaves_of(boxes, number):
         box = LeafBox(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
         then = f"success in {100 * boxes.low[leaf]:.0f} %"
         if unit:
             then = f"{QUANTITY_NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}"
-        said.append(f"if {conditions(box, quantities)}\nthen {then}")
-    return said
+        rules.append(f"if {conditions(box, quantities)}\nthen {then}")
+    return rules
 
 
 def applied_rule(boxes: TreeBoxes, features: Floats, quantities: Sequence[Quantity], unit: str) -> str:
     """Rule that applies to one row of features, shape (f,), from the tree closest to the mean of all trees.
 
-    Empty where a feature is not a number, or in no leaf.
+    Empty if a feature is not a number.
     """
     inside = ((features > boxes.lower) & (features <= boxes.upper)).all(axis=1)
     leaves = np.flatnonzero(inside)
     if len(leaves) != len(boxes.first):
         return ""
-    said = np.clip(boxes.slopes[leaves] @ features + boxes.intercept[leaves], boxes.low[leaves], boxes.high[leaves])
-    tree = int(np.abs(said - said.mean()).argmin())
+    each = np.clip(boxes.slopes[leaves] @ features + boxes.intercept[leaves], boxes.low[leaves], boxes.high[leaves])
+    tree = int(np.abs(each - each.mean()).argmin())
     leaf = int(leaves[tree])
     box = LeafBox(leaf, boxes.lower[leaf].astype(np.float64), boxes.upper[leaf].astype(np.float64))
-    of = "" if len(leaves) == 1 else f" (tree {tree + 1} of {len(leaves)}, the one that says nearest to their mean)"
+    of = "" if len(leaves) == 1 else f" (tree {tree + 1} of {len(leaves)}, the one closest to their mean)"
     return (
         f"if {conditions(box, quantities)} then {QUANTITY_NAMES[unit]} = {formula(boxes, leaf, quantities, unit)}{of}"
     )
 
 
 def predictions_of(boxes: TreeBoxes, number: int, features: Floats) -> Floats:
-    """What a tree says of features (n, f), shape (n,)."""
-    answers = np.full(len(features), np.nan, np.float32)
+    """Predictions of a tree, shape (n,), of features (n, f).
+
+    Raises:
+      UsageError: There is no such tree.
+    """
+    predictions = np.full(len(features), np.nan, np.float32)
     for leaf in leaves_of(boxes, number):
         inside = ((features > boxes.lower[leaf]) & (features <= boxes.upper[leaf])).all(axis=1)
         value = features[inside] @ boxes.slopes[leaf] + boxes.intercept[leaf]
-        answers[inside] = np.clip(value, boxes.low[leaf], boxes.high[leaf])
-    return answers
+        predictions[inside] = np.clip(value, boxes.low[leaf], boxes.high[leaf])
+    return predictions

@@ -1,4 +1,4 @@
-"""Asks loaded models: random arguments in a card's ranges, and a tree distilled from what any model says."""
+"""Queries of loaded models: random arguments in a card's ranges, and trees distilled from any model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROWS = 30_000
 
 
 def space_of(card: Card) -> FeatureSpace:
-    """The feature space that a card names."""
+    """Feature space of a card."""
     return SPACES[card["features"]]
 
 
@@ -30,7 +30,7 @@ def random_arguments(card: Card, count: int, rng: np.random.Generator) -> Array:
 
 
 def distilled_duration(model: OnnxDuration, rng: np.random.Generator) -> tuple[LinearTree, float]:
-    """A tree of at most 64 leaves that says what the model says, and by how many seconds it differs elsewhere."""
+    """A tree of at most 64 leaves distilled from a model, and the mean difference in seconds."""
     space = space_of(model.card)
     arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
     tree = distill(lambda _: model.predict(arguments), space(arguments))
@@ -38,7 +38,7 @@ def distilled_duration(model: OnnxDuration, rng: np.random.Generator) -> tuple[L
 
 
 def distilled_success(model: OnnxSuccess, rng: np.random.Generator) -> tuple[SplitTree, NDArray[np.float32], float]:
-    """A decision tree of at most 24 leaves with their probabilities, and how much it differs elsewhere."""
+    """A tree of at most 24 leaves distilled from a model, its probabilities, and the mean difference."""
     space = space_of(model.card)
     arguments, fresh = (random_arguments(model.card, rows, rng) for rows in (ROWS, ROWS // 10))
     grown = DecisionTreeRegressor(max_leaf_nodes=24, min_samples_leaf=100, random_state=0)

@@ -1,26 +1,52 @@
-"""Prints trees as rules in the manner of the paper's Figure 7: conditions, then the formula, with units."""
+"""Prints trees as rules like Figure 7 of the paper: conditions, then the formula, with units."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.features import Quantity
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.split_tree import LEAF, SplitTree
 
+Floats = NDArray[np.float32]
+
 DEGREES = 180 / np.pi
-TOO_SMALL = 0.0005  # seconds (joules) per unit: not worth a term
+TOO_SMALL = 0.0005  # seconds (joules) per unit; smaller slopes are left out
 QUANTITY_NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
+
+
+class LeafFormulas(Protocol):
+    """Formulas of l leaves over f features; `LinearTree` and `TreeBoxes` have them."""
+
+    @property
+    def slopes(self) -> Floats:
+        """Slopes, shape (l, f)."""
+
+    @property
+    def intercept(self) -> Floats:
+        """Intercepts, shape (l,)."""
+
+    @property
+    def low(self) -> Floats:
+        """Lower ends of the predictions, shape (l,)."""
+
+    @property
+    def high(self) -> Floats:
+        """Upper ends of the predictions, shape (l,)."""
+
+    @property
+    def std(self) -> Floats | None:
+        """Standard deviations, shape (l,), None where leaves have none."""
 
 
 @dataclass(frozen=True, slots=True)
 class LeafBox:
-    """What the path to a leaf says of each feature: lower < value <= upper."""
+    """Conditions on the path to a leaf, for each feature: lower < value <= upper."""
 
     leaf: int
     lower: NDArray[np.float64]  # (f,)
@@ -44,7 +70,7 @@ def leaf_boxes(tree: SplitTree, features: int) -> Iterator[LeafBox]:
 
 
 def duration_rules(tree: LinearTree, quantities: Sequence[Quantity], unit: str = "s") -> list[str]:
-    """One rule a leaf: "if ... then time = ...", or "energy" where the unit is J."""
+    """One rule per leaf: "if ... then time = ...", or "energy" where the unit is J."""
     return [
         f"if {conditions(box, quantities)}\nthen {QUANTITY_NAMES[unit]} = {formula(tree, box.leaf, quantities, unit)}"
         for box in leaf_boxes(tree.splits, len(quantities))
@@ -52,7 +78,7 @@ def duration_rules(tree: LinearTree, quantities: Sequence[Quantity], unit: str =
 
 
 def success_rules(splits: SplitTree, success: NDArray[np.float32], quantities: Sequence[Quantity]) -> list[str]:
-    """One rule a leaf: "if ... then success in p %"."""
+    """One rule per leaf: "if ... then success in p %"."""
     return [
         f"if {conditions(box, quantities)}\nthen success in {100 * success[box.leaf]:.0f} %"
         for box in leaf_boxes(splits, len(quantities))
@@ -61,20 +87,20 @@ def success_rules(splits: SplitTree, success: NDArray[np.float32], quantities: S
 
 def conditions(box: LeafBox, quantities: Sequence[Quantity]) -> str:
     """The conditions of a leaf, angles in degrees."""
-    said = []
+    parts = []
     for quantity, low, high in zip(quantities, box.lower, box.upper, strict=True):
         below, above = np.isfinite(high), np.isfinite(low)
         if below and above:
-            said.append(f"{_value(low, quantity)} < {quantity.name} <= {_value(high, quantity)}")
+            parts.append(f"{_value(low, quantity)} < {quantity.name} <= {_value(high, quantity)}")
         elif below:
-            said.append(f"{quantity.name} <= {_value(high, quantity)}")
+            parts.append(f"{quantity.name} <= {_value(high, quantity)}")
         elif above:
-            said.append(f"{quantity.name} > {_value(low, quantity)}")
-    return " and ".join(said) or "in all cases"
+            parts.append(f"{quantity.name} > {_value(low, quantity)}")
+    return " and ".join(parts) or "in all cases"
 
 
-def formula(tree: LinearTree | TreeBoxes, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
-    """The linear formula of a leaf in its unit, slopes of angles per degree, and the range that it is kept in."""
+def formula(tree: LeafFormulas, leaf: int, quantities: Sequence[Quantity], of: str = "s") -> str:
+    """Linear formula of a leaf in its unit, slopes of angles per degree, and the range that it is clipped to."""
     terms = []
     for quantity, slope in zip(quantities, tree.slopes[leaf].tolist(), strict=True):
         if abs(slope) >= TOO_SMALL:
@@ -82,8 +108,8 @@ def formula(tree: LinearTree | TreeBoxes, leaf: int, quantities: Sequence[Quanti
             sign = "-" if shown < 0 else "+"
             terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
     start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
-    spread = "" if tree.std is None else f", ± {tree.std[leaf]:.2f} {of}"
-    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{spread}]"
+    deviation = "" if tree.std is None else f", ± {tree.std[leaf]:.2f} {of}"
+    return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{deviation}]"
 
 
 def _value(value: float, quantity: Quantity) -> str:

@@ -128,7 +128,7 @@ def test_what_is_no_model_of_trees_is_not_read(content):
 def test_leaves_of_all_trees_meet_every_box():
     bounds = LeafBounds(Trees.random(5, trees=4).boxes)
     everywhere = tuple(Span(np.full(SHAPE, -10.0), np.full(SHAPE, 10.0)) for _ in range(5))
-    assert bounds.least(bounds.meeting(everywhere), Side.LEAST).shape == (1, 4, *SHAPE)
+    assert bounds.least(bounds.overlap(everywhere), Side.LEAST).shape == (1, 4, *SHAPE)
 
 
 @settings(max_examples=300, deadline=None)

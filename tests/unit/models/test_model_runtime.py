@@ -75,7 +75,7 @@ def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -
     content = duration(zoo).read_bytes()[:-2000]
     duration(zoo).write_bytes(content)
     changed_card(duration(zoo), sha256=sha256_of(content))
-    with pytest.raises(UsageError, match="not a model that runs here"):
+    with pytest.raises(UsageError, match="not a model that onnxruntime can run"):
         runtime.load_model(duration(zoo))
 
 

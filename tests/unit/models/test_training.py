@@ -9,7 +9,7 @@ from tailor.models import runtime
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.episodes.regression_targets import ENERGY
 from tailor.models.export.publishing import Publication, publish
-from tailor.models.export.zoo_writer import place
+from tailor.models.export.zoo_writer import write_model
 from tailor.models.features import features
 from tailor.models.training.training import Trained, train_duration, train_regression, train_success
 from tailor.schemas.errors import UsageError
@@ -28,14 +28,14 @@ def data_set(count: int, seed: int = 1) -> DataSet:
 
 def test_a_model_that_cannot_be_written_whole_leaves_the_one_that_was_there(tmp_path, monkeypatch) -> None:
     card = {"robot": "toy", "action": "goToPose", "kind": "duration"}
-    path = place(tmp_path, b"old", card)
+    path = write_model(tmp_path, b"old", card)
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("tailor.models.export.zoo_writer.write_card", full)
     with pytest.raises(OSError, match="No space"):
-        place(tmp_path, b"new", card)
+        write_model(tmp_path, b"new", card)
     assert path.read_bytes() == b"old"
     assert sorted(file.name for file in path.parent.iterdir()) == ["duration.card.json", "duration.onnx"]
 

@@ -172,5 +172,5 @@ def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_p
 
 def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:
     assert main(["gather", "powercube", "--from", str(RECORDING), "--out", str(tmp_path / "x")]) == 2
-    assert "is recorded, expected those of powercube: reach" in capsys.readouterr().err
+    assert "recorded action 'approachBall', expected one of powercube: reach" in capsys.readouterr().err
     assert not (tmp_path / "x").exists()
