@@ -1,1 +1,1 @@
-"""NERVES: the only place that touches zenoh, the clock and the operating system."""
+"""Bus, clock, real-time loop, processes, recordings: the only package that calls zenoh and the operating system."""

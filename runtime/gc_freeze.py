@@ -1,4 +1,4 @@
-"""What is loaded, kept out of the garbage collector's way for a while: looking through it takes many ticks."""
+"""Excludes loaded objects from garbage collection: a full collection of them takes many ticks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def gc_frozen() -> Iterator[None]:
-    """Collections within look at what was made within alone; not to be nested."""
+    """Limit collections inside the block to objects created inside it. Do not nest."""
     gc.freeze()
     try:
         yield

@@ -1,4 +1,4 @@
-"""A periodic loop on absolute deadlines: it does not drift, and an overrun loses whole periods but keeps the phase."""
+"""Periodic loop on absolute deadlines: no drift; an overrun skips whole periods and keeps the phase."""
 
 from __future__ import annotations
 
@@ -9,32 +9,33 @@ from tailor.runtime.clock import Clock
 
 @dataclass(frozen=True, slots=True)
 class Period:
-    """The start of one period."""
+    """Start of one period; times in nanoseconds of the loop's clock."""
 
-    deadline_ns: int  # when it should have started
-    now_ns: int  # when it did
-    skipped: int  # whole periods lost since the turn before
+    deadline_ns: int  # planned start
+    now_ns: int  # actual start
+    skipped: int  # whole periods lost since the previous one
 
     @property
     def lateness_ns(self) -> int:
-        """How long after its deadline the turn started."""
+        """Delay of the actual start after the deadline."""
         return self.now_ns - self.deadline_ns
 
 
 class Loop:
-    """Hands out turns at `start + k * period`; counts what it had to skip."""
+    """Starts periods at `start + k * period` and counts skipped ones."""
 
     def __init__(self, period_ns: int, clock: Clock) -> None:
+        """Raise ValueError unless `period_ns` is positive."""
         if period_ns <= 0:
             raise ValueError(f"period_ns must be positive, is {period_ns}")
         self.period_ns = period_ns
-        self.overruns = 0  # turns that began after at least one whole lost period
-        self.skipped = 0  # all periods lost so far
+        self.overruns = 0  # periods that started after at least one lost period
+        self.skipped = 0  # periods lost so far
         self._clock = clock
         self._deadline_ns: int | None = None
 
     def wait_for_next_period(self) -> Period:
-        """Wait for the next deadline; the first turn starts at once and sets the phase."""
+        """Sleep until the next deadline; the first period starts at once and sets the phase."""
         now_ns = self._clock.now_ns()
         if self._deadline_ns is None:
             self._deadline_ns = now_ns

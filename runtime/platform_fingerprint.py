@@ -1,7 +1,7 @@
-"""How this machine computes: a fingerprint of its elementary functions, and the versions behind them.
+"""Fingerprint of this platform's floating-point arithmetic, and the versions behind it.
 
-libm rounds a sine otherwise on a CPU without fused multiply-add, and another libm does so anyway: machines of one kind
-are promised to replay a recording bit for bit, others are not.
+libm rounds differently on a CPU without fused multiply-add, and so does another libm. Only a platform of the same kind
+replays a recording bit for bit.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-KIND = ("arithmetic", "python", "numpy", "onnxruntime")  # what decides; the rest of a description is for people
-POINTS = 1024  # of each function: one in some 500 differs without fused multiply-add
-TELLING = ("fma", "avx2", "avx512f")  # CPU features by which libraries choose their kernels
+KIND = ("arithmetic", "python", "numpy", "onnxruntime")  # these decide; the other entries are informative
+POINTS = 1024  # per function; about one in 500 results differs without fused multiply-add
+FEATURES = ("fma", "avx2", "avx512f")  # CPU features that select the kernels of libraries
 FLAGS = Path("/proc/cpuinfo")
 
 
 def platform_fingerprint() -> dict[str, str]:
-    """A description of this machine, to go into a recording's provenance; takes a few ms."""
+    """Description of this platform for the provenance of a recording; takes a few ms."""
     return {
         "arithmetic": arithmetic(),
         "cpu": " ".join((platform.machine(), *_features())),
@@ -34,22 +34,22 @@ def platform_fingerprint() -> dict[str, str]:
 
 
 def same_kind(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
-    """Whether two machines must compute alike; one of which nothing is known counts as the same."""
+    """Whether two platforms compute identically; an unknown platform (empty) counts as the same kind."""
     return not one or not other or all(one.get(name) == other.get(name) for name in KIND)
 
 
 def contrast(one: Mapping[str, str], other: Mapping[str, str]) -> str:
-    """Where two descriptions differ, the first one's side before the other's; empty if nowhere."""
+    """Entries that differ, those of `one` before those of `other`; empty if none does."""
     names = [name for name in other if one.get(name, "unknown") != other[name]] if one else []
     sides = (", ".join(f"{name} {side.get(name, 'unknown')}" for name in names) for side in (one, other))
     return " against ".join(sides) if names else ""
 
 
 def arithmetic() -> str:
-    """Twelve hex digits of the results of the functions that the core calls.
+    """Hash of the results of all functions that the core calls: twelve hex digits.
 
-    Those that numpy computes otherwise with AVX-512 (arctan2, exp, power) are left out as long as the core leaves them
-    out: so AVX2 and AVX-512 are one kind.
+    The core does not call the functions that numpy computes differently with AVX-512 (arctan2, exp, power). They are
+    not hashed either, so that AVX2 and AVX-512 are one kind.
     """
     x = np.linspace(-7.0, 7.0, POINTS)
     y = x[::-1] * 3.1 + 0.5
@@ -67,7 +67,7 @@ def arithmetic() -> str:
 
 
 def _version(name: str) -> str:
-    """A package's version; of one that is loaded, without the costly look into its metadata."""
+    """Version of a package; reading metadata is slow, so a loaded package is queried directly."""
     loaded = sys.modules.get(name)
     if loaded is not None:
         return str(loaded.__version__)
@@ -82,4 +82,4 @@ def _features() -> list[str]:
     except OSError:
         return []
     flags = next((line.split() for line in lines if line.startswith("flags")), [])
-    return [name for name in TELLING if name in flags]
+    return [name for name in FEATURES if name in flags]

@@ -1,7 +1,7 @@
-"""Asks the operating system for the privileges of a real-time loop, and says which ones it got.
+"""Requests real-time privileges from the operating system and reports which ones were granted.
 
-Call it last before the first tick, from the loop's own thread, with everything loaded and warmed up: what is
-allocated by then is frozen out of garbage collection and locked into memory.
+Call `prepare` from the loop's own thread, just before the first tick, with everything loaded: objects that exist by
+then are excluded from garbage collection and locked into memory.
 """
 
 from __future__ import annotations
@@ -22,13 +22,19 @@ _MCL_CURRENT, _MCL_FUTURE = 1, 2  # <sys/mman.h>
 
 
 def prepare(priority: int = PRIORITY) -> dict[str, Any]:
-    """Freeze garbage collection, lock memory, take SCHED_FIFO for this thread; report what was obtained.
+    """Freeze garbage collection, lock memory and schedule this thread under SCHED_FIFO.
 
-    Nothing here is needed for correctness: a refusal is reported, never raised.
+    Correctness does not depend on any of them: a refusal is reported, never raised.
+
+    Args:
+      priority: SCHED_FIFO priority of the calling thread, 1 to 99.
+
+    Returns:
+      What was granted, for the provenance of a recording: gc, memory, scheduler, bus, threads.
     """
     gc.collect()
     gc.freeze()
-    gc.disable()  # the loop calls collect_young() in its slack instead
+    gc.disable()  # the loop calls collect_young() in its slack time instead
     return {
         "gc": "frozen",
         "memory": _lock_memory(),
@@ -39,7 +45,7 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
 
 
 def collect_young() -> None:
-    """Collect young garbage; call it when the tick's work is done, so that it never interrupts a tick."""
+    """Collect young garbage. Call it after the work of a tick, so that no collection interrupts a tick."""
     gc.collect(1)
 
 
@@ -54,9 +60,10 @@ def _lock_memory() -> str:
 
 
 def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:
-    """SCHED_FIFO for zenoh's threads in this process; call it again when a new kind of thread may have come up.
+    """Schedule zenoh's threads of this process under SCHED_FIFO; returns what was granted.
 
-    A command that is published in time and then waits for a starved network thread comes too late all the same.
+    A command that is published in time is late if it waits for a starved network thread. Call this again after zenoh
+    may have started further threads.
     """
     elevated = 0
     for thread in Path("/proc/self/task").iterdir():
@@ -66,14 +73,14 @@ def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:
                 os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(priority))
                 elevated += 1
         except FileNotFoundError:
-            continue  # it has ended meanwhile
+            continue  # the thread has ended
         except OSError as error:
             return f"default: {error.strerror}"
     return f"fifo {priority}, {elevated} threads"
 
 
 def take_fifo(priority: int) -> str:
-    """SCHED_FIFO for the calling thread; what was obtained."""
+    """Schedule the calling thread under SCHED_FIFO; returns what was granted."""
     try:
         # Reset on fork: threads and processes that this thread starts later do not inherit the priority.
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))

@@ -1,6 +1,6 @@
-"""Ctrl-C, SIGTERM and a terminal that closes, as a question that a loop asks between two turns.
+"""Stop requests by Ctrl-C, SIGTERM or a closed terminal; a loop polls them once a period.
 
-The second signal of a kind ends the process at once.
+A second signal of the same kind ends the process at once.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Stop:
-    """Whether this process was asked to end."""
+    """Flag that a stop of this process was requested."""
 
     def __init__(self) -> None:
         self.requested = False
 
     def request(self, number: int = 0, frame: FrameType | None = None) -> None:
-        """Ask to end; also the signal handler, which then lets a second signal through."""
+        """Request a stop; also the signal handler, which restores the default action for a second signal."""
         self.requested = True
         if number:
             signal.signal(number, signal.SIG_DFL)
 
 
 def stop_on_signals() -> Stop:
-    """Take over the signals that end a process, but for those that nohup has it ignore; from the main thread."""
+    """Handle the signals that end a process, except ignored ones (nohup). Call it from the main thread."""
     stop = Stop()
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:

@@ -1,4 +1,4 @@
-"""The `tailor` command: a table of commands, each in a module of its own that is loaded when it is called."""
+"""The `tailor` command: a table of commands; the module of a command is only loaded when it is called."""
 
 from __future__ import annotations
 
@@ -12,36 +12,36 @@ from tailor import __version__
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plain_text import plain
 
-# command -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
+# command -> (module, one line of help); each module has configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
     "up": ("tailor.tools.commands.run.up", "start a whole system: bus, simulator, executive, recorder"),
-    "demo": ("tailor.tools.commands.run.demo", "greedy against refined from the same seed, with a picture"),
-    "letters": ("tailor.tools.commands.run.letters", "the arm writes capitals, with and without refined velocities"),
-    "bus": ("tailor.tools.commands.run.bus", "run the bus router alone"),
+    "demo": ("tailor.tools.commands.run.demo", "run the same plan greedy and refined, and compare"),
+    "letters": ("tailor.tools.commands.run.letters", "write letters with the arm, with and without refined velocities"),
+    "bus": ("tailor.tools.commands.run.bus", "run only the bus router"),
     "sim": ("tailor.tools.commands.run.sim", "run a simulated robot on the bus"),
     "executive": ("tailor.tools.commands.run.executive", "run the executive on the bus"),
     "goal": ("tailor.tools.commands.run.goal", "send a PDDL goal to a running executive"),
-    "arm": ("tailor.tools.commands.run.arm", "let a driver obey the running executive"),
-    "estop": ("tailor.tools.commands.run.estop", "stop every driver until it is reset"),
+    "arm": ("tailor.tools.commands.run.arm", "arm a driver for the running executive"),
+    "estop": ("tailor.tools.commands.run.estop", "emergency stop of all drivers"),
     "record": ("tailor.tools.commands.run.record", "record the bus into an MCAP file"),
     "replay": ("tailor.tools.commands.look.replay", "play a recording on the bus"),
-    "info": ("tailor.tools.commands.look.info", "what a recording holds"),
-    "recover": ("tailor.tools.commands.look.recover", "make a whole recording of a damaged one"),
-    "cut": ("tailor.tools.commands.look.cut", "cut a span of time or some topics out of a recording"),
-    "compare": ("tailor.tools.commands.look.compare", "two recorded runs side by side"),
-    "verify": ("tailor.tools.commands.look.verify", "feed a recording through today's core and compare bit for bit"),
+    "info": ("tailor.tools.commands.look.info", "summarise a recording"),
+    "recover": ("tailor.tools.commands.look.recover", "recover a damaged recording"),
+    "cut": ("tailor.tools.commands.look.cut", "cut a time span or some topics out of a recording"),
+    "compare": ("tailor.tools.commands.look.compare", "compare two recorded runs"),
+    "verify": ("tailor.tools.commands.look.verify", "replay a recording through today's core and compare bit for bit"),
     "picture": (
         "tailor.tools.commands.look.picture",
-        "draw the paths of recordings in the manner of the paper's Figure 1",
+        "draw the paths of recordings as in the paper's Figure 1",
     ),
-    "view": ("tailor.tools.commands.look.view", "show a run as a page, of a recording or live"),
-    "why": ("tailor.tools.commands.look.why", "say why subgoals were chosen, and what greedy would have done"),
-    "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, in VHPOP's manner"),
-    "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and keep the episodes"),
-    "train": ("tailor.tools.commands.learn.train", "make action models from episodes"),
+    "view": ("tailor.tools.commands.look.view", "show a run in the browser, recorded or live"),
+    "why": ("tailor.tools.commands.look.why", "explain the choice of subgoals, compared with greedy"),
+    "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, VHPOP-style"),
+    "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and save the episodes"),
+    "train": ("tailor.tools.commands.learn.train", "train action models from episodes"),
     "train-gate": (
         "tailor.tools.commands.learn.train_gate",
-        "learn when not to refine, with the action models that there are",
+        "train a refinement gate for the trained action models",
     ),
     "models": ("tailor.tools.commands.learn.models", "list, show, plot and check action models"),
     "evaluate": ("tailor.tools.commands.measure.evaluate", "reproduce the paper's tables and figures"),
@@ -50,7 +50,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; returns its exit code: 0 done, 1 a negative answer, 2 bad input."""
+    """Run one command.
+
+    Args:
+      argv: Arguments without the program name; default: those of the process.
+
+    Returns:
+      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted.
+    """
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_overview())
@@ -65,7 +72,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         code = _call(name, rest)
         if sys.stdout:
-            sys.stdout.flush()  # here, where a reader that has left is no error
+            sys.stdout.flush()  # here, where a closed pipe is handled
         return code
     except UsageError as error:
         print(f"tailor {name}: {plain(str(error))}", file=sys.stderr)
@@ -73,11 +80,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        sys.stdout = None  # the interpreter would flush it once more at its end, and complain
+        sys.stdout = None  # the interpreter would flush it again at exit, and fail
         return 1
-    except OSError as error:  # of a path that was named, or of standard output, which has no name
-        where = "" if error.filename is None else f"{error.filename}: "
-        print(f"tailor {name}: {plain(f'{where}{error.strerror or error}')}", file=sys.stderr)
+    except OSError as error:  # of a named path, or of standard output, which has no name
+        path = "" if error.filename is None else f"{error.filename}: "
+        print(f"tailor {name}: {plain(f'{path}{error.strerror or error}')}", file=sys.stderr)
         return 1 if error.filename is None else 2
 
 
@@ -89,16 +96,17 @@ def _call(name: str, rest: Sequence[str]) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells a mistake in one line, as all mistakes are told, instead of with the usage above it."""
+    """Reports an error in one line, like all other errors, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message} ({self.prog} --help tells more)")
+        raise UsageError(f"{message} (see {self.prog} --help)")
 
 
 def _overview() -> str:
     width = max(map(len, COMMANDS))
-    rows = [f"  {name:<{width}}  {text}" for name, (_, text) in COMMANDS.items()]
-    return "\n".join(["usage: tailor COMMAND [...]   (tailor COMMAND --help tells more)", "", "commands:", *rows])
+    lines = [f"  {name:<{width}}  {text}" for name, (_, text) in COMMANDS.items()]
+    usage = "usage: tailor COMMAND [...]   (see tailor COMMAND --help)"
+    return "\n".join([usage, "", "commands:", *lines])
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""When a sample arrived, on the receiver's monotonic clock, though it is only looked at once a tick.
+"""Arrival time of a sample on the receiver's monotonic clock, although samples are drained only once a tick.
 
-A ring handler does not say when it was filled. Our publishers ask the receiver's zenoh to note the wall time of
-reception (in Rust, no Python thread involved); its distance to now is the sample's age. A sample without that note
-gets the time of the drain. Senders' own stamps play no part: nobody can make data fresher than it is.
+zenoh's ring buffer does not record when it was filled. Our publishers request a reception stamp, which the receiver's
+zenoh adds in Rust. The age of the stamp gives the arrival time; without a stamp it is the time of the drain. Stamps of
+the sender are ignored: no sender can make data look fresher than it is.
 """
 
 from __future__ import annotations
@@ -12,16 +12,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """The two clocks read at one moment."""
+    """Readings of both clocks at the same moment."""
 
     monotonic_ns: int
     wall_ns: int
 
 
 def arrival_ns(received_wall_ns: int | None, previous: Instant, now: Instant) -> int:
-    """Monotonic arrival time of a sample that was found at `now` and not yet there at the drain before, `previous`.
+    """Monotonic arrival time of a sample that arrived between the drains at `previous` and `now`.
 
-    A jump of the wall clock between reception and drain cannot move the result out of [previous, now].
+    A jump of the wall clock cannot move the result out of [previous, now].
+
+    Args:
+      received_wall_ns: Wall time of reception, Unix nanoseconds; None if unknown.
+      previous: Time of the previous drain.
+      now: Time of this drain.
     """
     if received_wall_ns is None:
         return now.monotonic_ns

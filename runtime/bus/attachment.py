@@ -1,4 +1,4 @@
-"""The 33 bytes that go with every publication: who sent it, as which number, and when (rmw_zenoh's layout)."""
+"""Attachment of every publication, 33 bytes in rmw_zenoh's layout: sequence number, source time, sender id."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ SENDER_BYTES = 16
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a message comes from, as its sender says."""
+    """Origin of a message according to its sender."""
 
-    sequence: int  # rises by one with each message of one publisher
-    source_ns: int  # sender's wall clock, Unix nanoseconds (ROS's convention); decides nothing
-    sender: str  # 32 hex digits, one per process
+    sequence: int  # increases by one with each message of one publisher
+    source_ns: int  # sender's wall clock, Unix nanoseconds (ROS's convention); never used in a decision
+    sender: str  # 32 hex digits, one id per process
 
 
-UNSIGNED = Origin(0, 0, "")  # what a publication without attachment has, e.g. from a ROS 2 bridge
+UNSIGNED = Origin(0, 0, "")  # publication without attachment, e.g. from a ROS 2 bridge
 
 
 def pack(origin: Origin) -> bytes:
-    """The attachment's 33 bytes, little-endian."""
+    """Attachment of 33 bytes, little-endian."""
     return _LAYOUT.pack(origin.sequence, origin.source_ns, SENDER_BYTES, bytes.fromhex(origin.sender))
 
 
 def unpack(data: bytes | None) -> Origin | Rejected:
-    """The origin in an attachment; None (no attachment) is UNSIGNED, other lengths are refused."""
+    """Origin in an attachment: UNSIGNED for None, Rejected for a malformed one."""
     if data is None:
         return UNSIGNED
     if len(data) != _LAYOUT.size:

@@ -1,4 +1,4 @@
-"""Questions that people ask a running process, answered from its loop: a PDDL goal, a simulator's reset."""
+"""Services of a running process, served from its loop: e.g. a PDDL goal, or the reset of a simulator."""
 
 from __future__ import annotations
 
@@ -7,35 +7,35 @@ from typing import Protocol
 
 
 class ServiceRequest:
-    """One question with its text; answer it exactly once."""
+    """Request of a client; call `accept` or `refuse` exactly once."""
 
-    def __init__(self, text: str, answer: Callable[[bool, str], None]) -> None:
+    def __init__(self, text: str, respond: Callable[[bool, str], None]) -> None:
         self.text = text
-        self._answer = answer
+        self._respond = respond
 
-    def accept(self, said: str = "accepted") -> None:
-        """Answer yes."""
-        self._answer(True, said)
+    def accept(self, response: str = "accepted") -> None:
+        """Respond that the request is accepted."""
+        self._respond(True, response)
 
-    def refuse(self, why: str) -> None:
-        """Answer no, and why."""
-        self._answer(False, why)
+    def refuse(self, reason: str) -> None:
+        """Respond that the request is refused."""
+        self._respond(False, reason)
 
 
 class RequestSource(Protocol):
-    """Where questions come from; session.py makes it of a zenoh queryable."""
+    """Source of requests; session.py implements it with a zenoh queryable."""
 
     def receive(self) -> ServiceRequest | None:
-        """The oldest question that waits, None if there is none; never blocks."""
+        """Oldest waiting request, None if there is none; never blocks."""
         ...
 
 
 class ServiceServer:
-    """The questions under one key, polled once a tick."""
+    """Requests under one key, polled once a tick."""
 
     def __init__(self, source: RequestSource) -> None:
         self._source = source
 
     def poll(self) -> ServiceRequest | None:
-        """The next question, None if nobody asks."""
+        """Next request, None if there is none."""
         return self._source.receive()

@@ -1,4 +1,4 @@
-"""The only module that knows zenoh: opens sessions and makes publishers, inboxes, questions and taps of them."""
+"""The only module that imports zenoh: sessions with their publishers, inboxes, services and subscriptions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.schemas.typesystem import ros_type
 
 SELF_CONNECT_MS = 500
-MAX_KEY_BYTES = 1000  # bytes; a message of zenoh has room for 65 535
+MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -33,25 +33,25 @@ _PRIORITIES = {
 
 
 def encoding_of(kind: type) -> str:
-    """The encoding string of a message type, e.g. application/cdr;std_msgs/msg/Bool."""
+    """Encoding string of a message type, e.g. application/cdr;std_msgs/msg/Bool."""
     return f"application/cdr;{ros_type(kind)}"
 
 
 @contextmanager
 def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
-    """A session that routes for everyone who connects to `listen`, and can publish and subscribe itself.
+    """Session that routes for all clients of the endpoint `listen`; it publishes and subscribes like a client.
 
     Raises:
-      UsageError: The port is in use, or the endpoint cannot be listened at.
+      UsageError: The port is in use, or cannot be listened at.
     """
     config = zenoh.Config.from_json5(zenoh_config.router(listen))
     try:
         opened = zenoh.open(config)
     except zenoh.ZError as error:
-        why = "the port is in use" if "in use" in str(error) else "cannot listen there"
-        raise UsageError(f"bus endpoint {listen}: {why}; expected a free one, see --connect") from error
+        reason = "the port is in use" if "in use" in str(error) else "cannot listen there"
+        raise UsageError(f"bus endpoint {listen}: {reason}; expected a free one, see --connect") from error
     with opened:
-        # The threads that serve clients come up with the first one: be it ourselves, so that they can be elevated now.
+        # zenoh starts its serving threads with the first client. Connect once, so that they can be elevated now.
         with suppress(zenoh.ZError), zenoh.open(zenoh.Config.from_json5(zenoh_config.client(listen, SELF_CONNECT_MS))):
             pass
         elevate_bus_threads()
@@ -60,22 +60,22 @@ def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session
 
 @contextmanager
 def open_client(connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0) -> Iterator[Session]:
-    """A session with the router at `connect`.
+    """Session with the router at the endpoint `connect`.
 
     Raises:
-      UsageError: Nobody answers there within `timeout_s`.
+      UsageError: No router responds within `timeout_s`.
     """
     config = zenoh.Config.from_json5(zenoh_config.client(connect, int(timeout_s * 1000)))
     try:
         opened = zenoh.open(config)
     except zenoh.ZError as error:
-        raise UsageError(f"bus endpoint {connect}: no router answers; start one with `tailor bus`") from error
+        raise UsageError(f"bus endpoint {connect}: no router responds; start one with `tailor bus`") from error
     with opened:
         yield Session(opened)
 
 
 class Session:
-    """One process on the bus. `sender` is its name there: 32 hex digits, new with every start."""
+    """One process on the bus; `sender` is its id: 32 random hex digits."""
 
     def __init__(self, opened: zenoh.Session) -> None:
         self.sender = secrets.token_hex(SENDER_BYTES)
@@ -83,11 +83,11 @@ class Session:
 
     @property
     def connected(self) -> bool:
-        """Whether a client has its router; it looks for a lost one by itself until it is back."""
+        """Whether the router is connected; zenoh reconnects by itself."""
         return bool(self._zenoh.info.routers_zid())
 
     def publisher(self, name: str, robot: str) -> Publisher:
-        """An outlet for a topic of tailor.schemas.topics."""
+        """Publisher of a topic of tailor.schemas.topics; drops messages rather than wait."""
         topic, key = TOPICS[name], key_of(name, robot)
         declared = self._zenoh.declare_publisher(
             key,
@@ -99,10 +99,10 @@ class Session:
         return Publisher(key, _Wire(declared), self.sender)
 
     def player(self, key: str, ros_type: str) -> Publisher:
-        """An outlet for recorded bytes under any key; waits rather than lose one, so never use it in a tick.
+        """Publisher of recorded bytes under any key; waits rather than drop, so never use it in a tick.
 
         Raises:
-          UsageError: Nothing can be said under this key, or it is a pattern of several.
+          UsageError: The key is invalid, or a pattern.
         """
         if not _is_one_key(key):
             raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
@@ -115,47 +115,51 @@ class Session:
         return Publisher(key, _Wire(declared), self.sender)
 
     def inbox(self, names: Sequence[str], robot: str, newest_only: bool = True) -> Inbox:
-        """The new samples of these topics, to be drained by a loop.
+        """Subscribe to topics; a loop drains the inbox.
 
         Args:
-          names: Of topics.
-          robot: Whose.
-          newest_only: Of a state topic, the newest sample alone; else several, for who tells senders apart.
+          names: Names of topics.
+          robot: Name of the robot.
+          newest_only: Keep only the newest sample of a state topic; else several, to distinguish senders.
         """
-        rows = []
+        subscriptions = []
         for name in names:
             topic, key = TOPICS[name], key_of(name, robot)
-            kept = depth(topic) if newest_only else EVENT_DEPTH
-            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(kept))
-            rows.append((topic, key, _Source(subscriber)))
-        return Inbox(rows, encoding_of, time.monotonic_ns)
+            capacity = depth(topic) if newest_only else EVENT_DEPTH
+            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(capacity))
+            subscriptions.append((topic, key, _Source(subscriber)))
+        return Inbox(subscriptions, encoding_of, time.monotonic_ns)
 
     def service_server(self, key: str) -> ServiceServer:
-        """Questions that are asked under `key`, to be polled by a loop."""
+        """Server of the requests under `key`; a loop polls it."""
         return ServiceServer(_RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
 
     def call(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
-        """Ask under `key` and wait: (accepted, answer). Nobody there or no answer in time: (False, why)."""
+        """Send a request to the service `key` and wait for the response.
+
+        Returns:
+          (accepted, response); (False, reason) if there is no such service or no response in time.
+        """
         for reply in self._zenoh.get(key, payload=text, timeout=timeout_s):
             if reply.ok is not None:
                 return True, reply.ok.payload.to_string()
-            said = "" if reply.err is None else reply.err.payload.to_string()
-            return False, f"no answer within {timeout_s:g} s" if said == "Timeout" else said
-        return False, f"nobody answers at {key}"
+            error = "" if reply.err is None else reply.err.payload.to_string()
+            return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
+        return False, f"no service at {key}"
 
     def subscribe_all(self, pattern: str) -> tuple[IngestQueue, Any]:
-        """Everything under a key pattern from now on, and the subscription: undeclare it at the end."""
-        intake = IngestQueue()
+        """Subscribe to all keys that match a pattern; undeclare the returned subscription at the end."""
+        queue = IngestQueue()
 
-        def put(sample: zenoh.Sample) -> None:  # read in zenoh's own thread: a sample that waits pins its whole batch
-            intake.put(_taken(sample, wall_ns()))
+        def put(sample: zenoh.Sample) -> None:  # copied in zenoh's thread: a waiting sample pins its whole batch
+            queue.put(_received_raw(sample, wall_ns()))
 
         handler: Any = zenoh.handlers.Callback(put, indirect=False)
-        return intake, self._zenoh.declare_subscriber(pattern, handler)
+        return queue, self._zenoh.declare_subscriber(pattern, handler)
 
 
 def _is_one_key(key: str) -> bool:
-    """Whether something can be said under a key: zenoh takes it, and it is no pattern."""
+    """Whether zenoh accepts a key and it is not a pattern."""
     try:
         zenoh.KeyExpr(key)
     except zenoh.ZError:
@@ -166,7 +170,7 @@ def _is_one_key(key: str) -> bool:
 class _Wire:
     def __init__(self, publisher: zenoh.Publisher) -> None:
         self._publisher = publisher
-        builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; arrival.py says what it is for
+        builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; used by arrival.py
         self._note_reception = builder.set_receive(True).build()
 
     def put(self, payload: bytes, attachment: bytes | None) -> None:
@@ -177,7 +181,7 @@ class _Wire:
 
 
 def _status(publisher: Any) -> Any:
-    return publisher.matching_status  # its type hint says bool, it is a MatchingStatus
+    return publisher.matching_status  # its type hint is wrong: the value is a MatchingStatus
 
 
 class _Source:
@@ -200,14 +204,14 @@ class _RequestSource:
         payload = query.payload
         text = "" if payload is None else payload.to_bytes().decode(errors="replace")
 
-        def answer(accepted: bool, said: str) -> None:
+        def respond(accepted: bool, response: str) -> None:
             if accepted:
-                query.reply(query.key_expr, said)
+                query.reply(query.key_expr, response)
             else:
-                query.reply_err(said)
+                query.reply_err(response)
             query.drop()
 
-        return ServiceRequest(text, answer)
+        return ServiceRequest(text, respond)
 
 
 def _raw(sample: zenoh.Sample) -> Raw:
@@ -218,17 +222,17 @@ def _raw(sample: zenoh.Sample) -> Raw:
         attachment=None if attachment is None else attachment.to_bytes(),
         encoding=str(sample.encoding),
         is_put=sample.kind == zenoh.SampleKind.PUT,
-        received_wall_ns=_received(sample),
+        received_wall_ns=_reception_stamp(sample),
     )
 
 
-def _taken(sample: zenoh.Sample, at_ns: int) -> Raw:
-    """A sample that was put at a wall time; that stands for its reception where nothing better is known."""
+def _received_raw(sample: zenoh.Sample, at_ns: int) -> Raw:
+    """Copy of a sample; `at_ns` is its wall time of reception unless zenoh stamped it."""
     raw = _raw(sample)
     return raw if raw.received_wall_ns is not None else replace(raw, received_wall_ns=at_ns)
 
 
-def _received(sample: zenoh.Sample) -> int | None:
+def _reception_stamp(sample: zenoh.Sample) -> int | None:
     stack = sample.timestamp_stack
     records = stack.records if stack is not None else []
     if not records or records[-1].point != zenoh.InterceptionPoint.RECEIVE or records[-1].is_custom:

@@ -1,6 +1,6 @@
-"""zenoh's configuration of a router and of a client: everything explicit, nothing discovered, loopback by default.
+"""zenoh's configuration of a router and of a client: explicit endpoints, no discovery, loopback by default.
 
-Plain data that a deployed zenohd or rmw_zenohd can take as well; this module does not import zenoh.
+A deployed zenohd or rmw_zenohd accepts the same JSON. This module does not import zenoh.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Any
 from tailor.schemas.errors import UsageError
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
-LEASE_MS = 1000  # a partner that is silent for so long is gone
+LEASE_MS = 1000  # a peer that is silent for longer counts as gone
 QUEUE_SIZE = 16  # zenoh's 2 loses the tail of a burst under load
 CONNECT_MS = 3000
-RETRY_MS = 200  # zenoh's own back-off goes up to 4 s; data is to be back within a second
+RETRY_MS = 200  # zenoh's back-off reaches 4 s; data must be back within a second
 PRIORITIES = (
     "control",
     "real_time",
@@ -33,7 +33,7 @@ def check_endpoint(endpoint: str) -> str:
     """The endpoint itself.
 
     Raises:
-      UsageError: It is not of the form tcp/127.0.0.1:7447.
+      UsageError: The endpoint does not have the form PROTOCOL/HOST:PORT.
     """
     match = _ENDPOINT.fullmatch(endpoint)
     if not match or not 0 < int(match[3]) < 65536:
@@ -46,7 +46,7 @@ def _base(mode: str) -> dict[str, Any]:
         "mode": mode,
         "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
         "transport": {
-            # Shared memory goes round the limits on message size.
+            # Shared memory would bypass the limits on message size.
             "shared_memory": {"enabled": False},
             "link": {"tx": {"lease": LEASE_MS, "queue": {"size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}}},
         },
@@ -54,13 +54,13 @@ def _base(mode: str) -> dict[str, Any]:
 
 
 def router(listen: str) -> str:
-    """JSON of a router that listens at one endpoint and connects to nobody; a port in use is an error at once."""
+    """JSON of a router that listens at one endpoint and connects to none; a port in use is an error at once."""
     listening = {"endpoints": [check_endpoint(listen)], "timeout_ms": 0, "exit_on_failure": True}
     return json.dumps(_base("router") | {"listen": listening, "connect": {"endpoints": []}})
 
 
 def client(connect: str, timeout_ms: int = CONNECT_MS) -> str:
-    """JSON of a client of the router at `connect`; it listens nowhere and reconnects when the router comes back."""
+    """JSON of a client of the router at `connect`; it does not listen, and reconnects to a router that restarts."""
     connecting = {
         "endpoints": [check_endpoint(connect)],
         "timeout_ms": timeout_ms,

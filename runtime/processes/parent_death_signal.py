@@ -1,7 +1,7 @@
-"""Ties a process to the life of the one that started it, then becomes the program it was given.
+"""Script that requests SIGTERM at the death of its parent, then executes a program.
 
-Run as a script: `python leash.py PARENT_PID PROGRAM ARGUMENTS…`. The kernel sends SIGTERM when the parent dies, even
-by kill -9. A script of its own because nothing but exec is safe between fork and exec in a process with threads.
+Usage: `python parent_death_signal.py PARENT_PID PROGRAM ARGUMENTS…`. The kernel sends the signal even after kill -9 of
+the parent. It is a script of its own, because only exec is safe between fork and exec in a process with threads.
 """
 
 import ctypes
@@ -13,7 +13,7 @@ PR_SET_PDEATHSIG = 1  # <sys/prctl.h>; survives exec
 
 
 def main() -> None:
-    """Set the leash and exec; end quietly if the parent has gone in between."""
+    """Set the signal and exec; end silently if the parent has died meanwhile."""
     parent, program = int(sys.argv[1]), sys.argv[2:]
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     if os.getppid() == parent:

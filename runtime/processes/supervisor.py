@@ -1,6 +1,6 @@
-"""Watches children: restarts the dead with back-off, kills the silent, gives up on a crash loop and says why.
+"""Supervises children: restarts dead ones with back-off, kills silent ones, reports a crash loop and gives up.
 
-A restarted process is disarmed by construction (a driver obeys nobody after its own stop), so restarting is safe.
+Restarting is safe: a driver that stopped by itself stays disarmed until it is armed again.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from dataclasses import dataclass, field
 from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.restart import Restart
 
-FINAL_CODES = (0, 2)  # done; bad input, which another start would not mend
-STARTUP_NS = 30_000_000_000  # from start to the first sign of life
-PAUSE_NS = 500_000_000  # between two looks: then it was us who stood still, and no child can be blamed for silence
+FINAL_CODES = (0, 2)  # done; bad input, which a restart does not correct
+STARTUP_NS = 30_000_000_000  # from the start to the first sign of life
+PAUSE_NS = 500_000_000  # between two polls: the supervisor itself was paused, so its children's silence proves nothing
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessSpec:
-    """One process to look after.
+    """One process to supervise.
 
-    `silence_ns`: kill it after this long without a sign of life (`Supervisor.heard`); None: it gives none. A hung loop
-    whose bus threads live on is noticed by that alone.
+    `silence_ns`: kill the process after this long without a sign of life (`Supervisor.report_alive`); None: no limit.
+    This is the only way to detect a hung loop whose bus threads still run.
     """
 
     name: str
@@ -31,102 +31,102 @@ class ProcessSpec:
 
 
 @dataclass(slots=True)
-class _Watch:
-    charge: ProcessSpec
+class _Supervised:
+    spec: ProcessSpec
     child: Child
     started_ns: int
-    heard_ns: int | None = None
+    alive_ns: int | None = None
     restart: Restart = field(default_factory=Restart)
-    start_at_ns: int | None = None  # waiting for its back-off to end
-    over: bool = False  # ended for good
+    start_at_ns: int | None = None  # end of the back-off
+    over: bool = False  # ended, not to be restarted
 
 
 class Supervisor:
-    """Call `look` a few times a second from one thread; it never blocks."""
+    """Supervises processes; call `poll` a few times a second from one thread. It never blocks."""
 
-    def __init__(self, tell: Callable[[str], None], start: Callable[[str, Sequence[str]], Child] = Child) -> None:
-        """`tell` gets one line per event; `start` makes a child of a name and a command line."""
-        self._tell = tell
-        self._start = start
-        self._watches: dict[str, _Watch] = {}
-        self._looked_ns: int | None = None
+    def __init__(self, report: Callable[[str], None], launch: Callable[[str, Sequence[str]], Child] = Child) -> None:
+        """`report` receives one line per event; `launch` starts a child from a name and a command line."""
+        self._report = report
+        self._launch = launch
+        self._processes: dict[str, _Supervised] = {}
+        self._polled_ns: int | None = None
 
-    def start(self, charge: ProcessSpec, now_ns: int) -> None:
-        """Start a process and look after it."""
-        watch = _Watch(charge, self._start(charge.name, charge.argv), now_ns)
-        watch.restart.started(now_ns)
-        self._watches[charge.name] = watch
+    def start(self, spec: ProcessSpec, now_ns: int) -> None:
+        """Start a process and supervise it."""
+        process = _Supervised(spec, self._launch(spec.name, spec.argv), now_ns)
+        process.restart.started(now_ns)
+        self._processes[spec.name] = process
 
     def report_alive(self, name: str, now_ns: int) -> None:
-        """A sign of life, e.g. a message with a new sequence number."""
-        self._watches[name].heard_ns = now_ns
+        """Record a sign of life, e.g. a message with a new sequence number."""
+        self._processes[name].alive_ns = now_ns
 
     def ended(self, name: str) -> int | None:
-        """The exit code of a process that will not be started again; None while it lives or may live again."""
-        watch = self._watches[name]
-        return watch.child.exit_code() if watch.over else None
+        """Exit code of a process that is not started again; None while it runs or waits for a restart."""
+        process = self._processes[name]
+        return process.child.exit_code() if process.over else None
 
     def pid(self, name: str) -> int:
-        """Process id of the present (or last) incarnation."""
-        return self._watches[name].child.pid
+        """Process id of the current (or last) child."""
+        return self._processes[name].child.pid
 
     def poll(self, now_ns: int) -> None:
-        """Notice deaths and silences; start what is due."""
-        self._forgive_own_pause(now_ns)
-        for watch in self._watches.values():
-            if watch.over:
+        """Detect dead and silent processes; start those whose back-off has ended."""
+        self._discount_own_pause(now_ns)
+        for process in self._processes.values():
+            if process.over:
                 continue
-            if watch.start_at_ns is not None:
-                self._start_when_due(watch, now_ns)
-            elif (code := watch.child.exit_code()) is not None:
-                self._died(watch, code, now_ns)
+            if process.start_at_ns is not None:
+                self._start_when_due(process, now_ns)
+            elif (code := process.child.exit_code()) is not None:
+                self._died(process, code, now_ns)
             else:
-                self._kill_when_silent(watch, now_ns)
+                self._kill_when_silent(process, now_ns)
 
     def stop(self) -> None:
-        """Stop everything, what was started last first."""
-        for watch in reversed(self._watches.values()):
-            watch.over = True
-            watch.child.stop()
+        """Stop all processes in the reverse order of their starts."""
+        for process in reversed(self._processes.values()):
+            process.over = True
+            process.child.stop()
 
-    def _forgive_own_pause(self, now_ns: int) -> None:
-        """Time in which we did not run (Ctrl-Z) is no silence of theirs: our router stood still, too."""
-        pause_ns = 0 if self._looked_ns is None else now_ns - self._looked_ns
-        self._looked_ns = now_ns
+    def _discount_own_pause(self, now_ns: int) -> None:
+        """Do not count a pause of the supervisor (Ctrl-Z) as silence: the router in this process was paused, too."""
+        pause_ns = 0 if self._polled_ns is None else now_ns - self._polled_ns
+        self._polled_ns = now_ns
         if pause_ns > PAUSE_NS:
-            for watch in self._watches.values():
-                watch.started_ns += pause_ns
-                if watch.heard_ns is not None:
-                    watch.heard_ns = min(now_ns, watch.heard_ns + pause_ns)
+            for process in self._processes.values():
+                process.started_ns += pause_ns
+                if process.alive_ns is not None:
+                    process.alive_ns = min(now_ns, process.alive_ns + pause_ns)
 
-    def _died(self, watch: _Watch, code: int, now_ns: int) -> None:
-        name = watch.charge.name
-        if not watch.charge.restarts or code in FINAL_CODES:
-            watch.over = True
+    def _died(self, process: _Supervised, code: int, now_ns: int) -> None:
+        name = process.spec.name
+        if not process.spec.restarts or code in FINAL_CODES:
+            process.over = True
             if code != 0:
-                self._tell(f"{name} ended with {code}; not started again")
-        elif watch.restart.exhausted(now_ns):
-            watch.over = True
-            self._tell(f"{name} ended with {code}; gave up: too many starts within a minute")
+                self._report(f"{name} ended with {code}; not started again")
+        elif process.restart.exhausted(now_ns):
+            process.over = True
+            self._report(f"{name} ended with {code}; gave up: too many starts within a minute")
         else:
-            delay_ns = watch.restart.delay_ns(now_ns)
-            watch.start_at_ns = now_ns + delay_ns
-            self._tell(f"{name} ended with {code}; starting again in {delay_ns / 1e9:.1f} s")
+            delay_ns = process.restart.delay_ns(now_ns)
+            process.start_at_ns = now_ns + delay_ns
+            self._report(f"{name} ended with {code}; starting again in {delay_ns / 1e9:.1f} s")
 
-    def _start_when_due(self, watch: _Watch, now_ns: int) -> None:
-        if watch.start_at_ns is not None and now_ns >= watch.start_at_ns:
-            watch.child = self._start(watch.charge.name, watch.charge.argv)
-            watch.restart.started(now_ns)
-            watch.started_ns, watch.heard_ns, watch.start_at_ns = now_ns, None, None
+    def _start_when_due(self, process: _Supervised, now_ns: int) -> None:
+        if process.start_at_ns is not None and now_ns >= process.start_at_ns:
+            process.child = self._launch(process.spec.name, process.spec.argv)
+            process.restart.started(now_ns)
+            process.started_ns, process.alive_ns, process.start_at_ns = now_ns, None, None
 
-    def _kill_when_silent(self, watch: _Watch, now_ns: int) -> None:
-        limit_ns = watch.charge.silence_ns
+    def _kill_when_silent(self, process: _Supervised, now_ns: int) -> None:
+        limit_ns = process.spec.silence_ns
         if limit_ns is None:
             return
-        if watch.heard_ns is None:
-            silent = now_ns - watch.started_ns > STARTUP_NS
+        if process.alive_ns is None:
+            silent = now_ns - process.started_ns > STARTUP_NS
         else:
-            silent = now_ns - watch.heard_ns > limit_ns
+            silent = now_ns - process.alive_ns > limit_ns
         if silent:
-            self._tell(f"{watch.charge.name} gives no sign of life; killed")
-            watch.child.kill()
+            self._report(f"{process.spec.name} gave no sign of life; killed")
+            process.child.kill()

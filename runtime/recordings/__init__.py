@@ -1,1 +1,1 @@
-"""MCAP recordings: writing, reading damaged files, playing, snapshots."""
+"""MCAP recordings: writing, reading, recovery of damaged files, playback, snapshots."""

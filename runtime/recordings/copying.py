@@ -1,4 +1,4 @@
-"""Copies recordings record by record, whoever made them: whole, or only the messages that are wanted."""
+"""Copies recordings of any origin record by record: all messages, or selected ones."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
 
 
 @dataclass(slots=True)
-class Copied:
-    """What a copy did."""
+class CopyResult:
+    """Counts of a copy."""
 
     kept: int = 0
     left_out: int = 0
@@ -27,7 +27,7 @@ class Copied:
 
 
 class _Copy:
-    """Gives schemas and channels new numbers, and writes only those that have messages."""
+    """Renumbers schemas and channels, and writes only those that have messages."""
 
     def __init__(self, writer: Any) -> None:
         self.writer = writer
@@ -36,8 +36,8 @@ class _Copy:
         self._new_schemas: dict[tuple[str, str, bytes], int] = {}
         self._new_channels: dict[tuple[int, str, int], int] = {}
 
-    def place(self, record: Any) -> tuple[str, str] | None:
-        """Key and ROS type of a message; None if its channel was lost."""
+    def origin(self, record: Any) -> tuple[str, str] | None:
+        """Key and ROS type of a message; None if the record of its channel is lost."""
         channel = self.channels.get(record.channel_id)
         if channel is None:
             return None
@@ -47,39 +47,39 @@ class _Copy:
     def write(self, record: Any) -> None:
         """Copy one message."""
         channel = self.channels[record.channel_id]
-        known = (channel.id, channel.topic, channel.schema_id)
-        if known not in self._new_channels:
+        identity = (channel.id, channel.topic, channel.schema_id)
+        if identity not in self._new_channels:
             schema = self._schema(self.schemas.get(channel.schema_id))
-            self._new_channels[known] = self.writer.register_channel(
+            self._new_channels[identity] = self.writer.register_channel(
                 channel.topic, channel.message_encoding, schema, channel.metadata
             )
         self.writer.add_message(
-            self._new_channels[known], record.log_time, record.data, record.publish_time, record.sequence
+            self._new_channels[identity], record.log_time, record.data, record.publish_time, record.sequence
         )
 
     def _schema(self, schema: Any) -> int:
         if schema is None:
             return 0
-        known = (schema.name, schema.encoding, schema.data)
-        if known not in self._new_schemas:
-            self._new_schemas[known] = self.writer.register_schema(*known)
-        return self._new_schemas[known]
+        identity = (schema.name, schema.encoding, schema.data)
+        if identity not in self._new_schemas:
+            self._new_schemas[identity] = self.writer.register_schema(*identity)
+        return self._new_schemas[identity]
 
 
-def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Copied:
-    """Copy what `keep` wants, and all metadata, into a new file with index and footer.
+def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> CopyResult:
+    """Copy the messages that `keep` selects, and all metadata, into a new file with index and footer.
 
     Args:
-      source: Any MCAP file, damaged or not.
-      target: Must not exist.
-      keep: Says which messages to copy.
-      note: Entries of a metadata record named "copy".
+      source: MCAP file, damaged or not.
+      target: New file.
+      keep: Predicate of key, ROS type and log time in ns.
+      note: Entries of the metadata record "copy".
 
     Raises:
-      UsageError: The source is not there or no MCAP file, the target exists or cannot be written.
+      UsageError: The source is missing or no MCAP file, or the target exists or cannot be written.
     """
-    copied = Copied()
-    next(scan(source, DamageReport(), with_chunks=False), None)  # a source that is no recording makes no target
+    copied = CopyResult()
+    next(scan(source, DamageReport(), with_chunks=False), None)  # checks the source before the target is created
     try:
         with target.open("xb") as file:
             writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
@@ -94,7 +94,7 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
     return copied
 
 
-def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: Copied) -> None:
+def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) -> None:
     for record in scan(source, copied.damage):
         if isinstance(record, r.Schema):
             copy_.schemas[record.id] = record
@@ -103,8 +103,8 @@ def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: Copied) -> Non
         elif isinstance(record, r.Metadata):
             copy_.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, r.Message):
-            place = copy_.place(record)
-            if place is not None and keep(*place, record.log_time):
+            origin = copy_.origin(record)
+            if origin is not None and keep(*origin, record.log_time):
                 copy_.write(record)
                 copied.kept += 1
             else:

@@ -17,33 +17,33 @@ _OTHERS: dict[int, Any] = {Opcode.SCHEMA: r.Schema, Opcode.CHANNEL: r.Channel}
 
 
 def records_of(plain: bytes, crc: int) -> list[Any]:
-    """Schemas, channels and messages in their order; other kinds are left out.
+    """Schemas, channels and messages in file order; other records are skipped.
 
     Args:
-      plain: What the chunk holds, uncompressed.
-      crc: Its CRC-32 by the chunk's head; 0: not known.
+      plain: Uncompressed content of the chunk.
+      crc: CRC-32 from the head of the chunk; 0 if unknown.
 
     Raises:
-      ValueError: It is not what was written. `struct.error` and mcap's own errors tell of damage, too.
+      ValueError: The content is damaged; `struct.error` and errors of mcap mean damage, too.
     """
     if crc and zlib.crc32(plain) != crc:
-        raise ValueError("its checksum is wrong")
-    found: list[Any] = []
+        raise ValueError("wrong checksum")
+    records: list[Any] = []
     at = 0
     while at < len(plain):
         opcode, length = _HEAD.unpack_from(plain, at)
         start, at = at + _HEAD.size, at + _HEAD.size + length
         if at > len(plain):
-            raise ValueError("a record in it goes beyond its end")
+            raise ValueError("a record exceeds the end of the chunk")
         if opcode == Opcode.MESSAGE:
-            found.append(_message(plain, start, at))
+            records.append(_message(plain, start, at))
         elif opcode in _OTHERS:
-            found.append(_OTHERS[opcode].read(ReadDataStream(BytesIO(plain[start:at]))))
-    return found
+            records.append(_OTHERS[opcode].read(ReadDataStream(BytesIO(plain[start:at]))))
+    return records
 
 
 def _message(plain: bytes, start: int, end: int) -> Any:
     if end - start < _MESSAGE.size:
-        raise ValueError("a message in it has no room for its head")
+        raise ValueError("a message is shorter than its head")
     channel, sequence, log_ns, publish_ns = _MESSAGE.unpack_from(plain, start)
     return r.Message(channel, log_ns, plain[start + _MESSAGE.size : end], publish_ns, sequence)

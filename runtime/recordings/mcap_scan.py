@@ -1,6 +1,6 @@
-"""Reads the records of an MCAP file from front to back, whatever state it is in, and keeps account of what was lost.
+"""Reads the records of an MCAP file from front to back, in whatever state, and reports the damage.
 
-Trusts no length: a record must lie inside the file, a chunk must not unpack to more than MOST_CHUNK_BYTES.
+Trusts no length: a record must lie inside the file, a chunk must not unpack to more than MAX_CHUNK_BYTES.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tailor.runtime.recordings.mcap_chunk import records_of
 from tailor.schemas.errors import UsageError
 
 MAGIC = b"\x89MCAP0\r\n"
-MAX_CHUNK_BYTES = 64_000_000  # ros2 bag's chunks have 0.8 MB, the largest of other tools a few dozen
+MAX_CHUNK_BYTES = 64_000_000  # chunks of ros2 bag have 0.8 MB, the largest of other tools a few dozen
 MAX_RECORD_BYTES = 128_000_000
 WINDOW_BYTES = 1_000_000
 CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
@@ -45,30 +45,31 @@ DAMAGE = (McapError, struct.error, ValueError, zstandard.ZstdError, RuntimeError
 
 @dataclass(slots=True)
 class DamageReport:
-    """What a scan found."""
+    """Damage found by a scan."""
 
     chunks: int = 0
     damaged_chunks: int = 0
-    lost_bytes: int = 0  # in damaged records, or behind the place where the file stops making sense
-    complete: bool = False  # the file ends with its footer
+    lost_bytes: int = 0  # in damaged records, or after the last valid record
+    complete: bool = False  # the file ends with a footer
     reasons: list[str] = field(default_factory=list)
 
     def text(self) -> str:
-        """One line for people; empty for a file without damage."""
+        """Summary in one line; empty for an undamaged file."""
         if self.complete and not self.damaged_chunks and not self.lost_bytes:
             return ""
-        what = "" if self.complete else "no footer; "
-        why = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
-        return f"{what}{self.chunks} chunks whole, {self.damaged_chunks} damaged, {self.lost_bytes} bytes lost{why}"
+        footer = "" if self.complete else "no footer; "
+        reasons = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
+        chunks = f"{self.chunks} chunks intact, {self.damaged_chunks} damaged"
+        return f"{footer}{chunks}, {self.lost_bytes} bytes lost{reasons}"
 
-    def add_loss(self, size: int, why: str) -> None:
-        """Note damage."""
+    def add_loss(self, size: int, reason: str) -> None:
+        """Record that `size` bytes were lost."""
         self.lost_bytes += size
-        self.reasons.append(why)
+        self.reasons.append(reason)
 
 
 def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator[Any]:
-    """Header, schemas, channels, messages and metadata in the order of the file; fills in `damage` on the way.
+    """Header, schemas, channels, messages and metadata in file order; fills in `damage`.
 
     Args:
       path: The file.
@@ -76,7 +77,7 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
       with_chunks: False skips all messages, which is fast.
 
     Raises:
-      UsageError: Not there, or not an MCAP file.
+      UsageError: The file is missing, or not an MCAP file.
     """
     try:
         with path.open("rb") as file:
@@ -91,7 +92,7 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
 
 
 def _summary(file: IO[bytes], size: int) -> Iterator[Any]:
-    """Schemas and channels from the index at the end, if there is one: the chunk that declares them may be damaged."""
+    """Schemas and channels from the index, if there is one: the chunk that declares them may be damaged."""
     file.seek(max(size - _FOOTER.size - len(MAGIC), 0))
     end = file.read()
     if len(end) < _FOOTER.size or not end.endswith(MAGIC):
@@ -116,12 +117,12 @@ def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool
             return
         opcode, length = _HEAD.unpack(head)
         if opcode == 0 or length > min(size - file.tell(), MAX_RECORD_BYTES):
-            again = _next_chunk(file, start + 1, size)
-            if again == size:
+            next_start = _next_chunk(file, start + 1, size)
+            if next_start == size:
                 damage.add_loss(size - start, "the file ends inside a record")
                 return
-            damage.add_loss(again - start, f"bytes {start} to {again} make no sense")
-            file.seek(again)
+            damage.add_loss(next_start - start, f"bytes {start} to {next_start} are not a record")
+            file.seek(next_start)
             continue
         if opcode == Opcode.DATA_END:
             damage.complete = _ends_well(file, size)
@@ -137,15 +138,15 @@ def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool
 
 
 def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
-    """Where the next chunk seems to begin, from `start` on; the file's end if there is none."""
+    """Offset of the next plausible chunk from `start` on; `size` if there is none."""
     file.seek(start)
-    window, at = b"", start  # bytes of the file from `at` on
+    window, at = b"", start  # content of the file from `at` on
     while block := file.read(WINDOW_BYTES):
         window += block
-        for found in _CHUNK.finditer(window):
-            (length,) = struct.unpack_from("<Q", window, found.start() + 1)
-            if length <= min(size - at - found.start() - _HEAD.size, MAX_RECORD_BYTES):
-                return at + found.start()
+        for match in _CHUNK.finditer(window):
+            (length,) = struct.unpack_from("<Q", window, match.start() + 1)
+            if length <= min(size - at - match.start() - _HEAD.size, MAX_RECORD_BYTES):
+                return at + match.start()
         at += max(len(window) - CHUNK_HEAD_BYTES, 0)
         window = window[-CHUNK_HEAD_BYTES:]
     return size
@@ -173,10 +174,10 @@ def _chunk(data: bytes, damage: DamageReport) -> Iterator[Any]:
 
 
 def _unpacked(chunk: Any) -> bytes:
-    """A chunk's records uncompressed, never more bytes than it declares and we allow."""
+    """Uncompressed records of a chunk, limited to its declared size and MAX_CHUNK_BYTES."""
     declared = chunk.uncompressed_size
     if declared > MAX_CHUNK_BYTES:
-        raise ValueError(f"it declares {declared} bytes")
+        raise ValueError(f"declared size of {declared} bytes")
     if chunk.compression == "zstd":
         plain = zstandard.ZstdDecompressor().stream_reader(BytesIO(chunk.data)).read(declared + 1)
     elif chunk.compression == "lz4":
@@ -184,9 +185,9 @@ def _unpacked(chunk: Any) -> bytes:
     elif chunk.compression == "":
         plain = chunk.data
     else:
-        raise ValueError(f"compression {chunk.compression!r} is not known")
+        raise ValueError(f"unknown compression {chunk.compression!r}")
     if len(plain) != declared:
-        raise ValueError(f"it declares {declared} bytes and holds {len(plain)}")
+        raise ValueError(f"declared size of {declared} bytes, holds {len(plain)}")
     return bytes(plain)
 
 

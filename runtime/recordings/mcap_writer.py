@@ -1,6 +1,6 @@
-"""One MCAP file that is being written: ROS 2 profile, one channel per key and sender, readable up to the last flush.
+"""Writes one MCAP file: ROS 2 profile, one channel per key and sender, readable up to the last flush.
 
-Foxglove, PlotJuggler, rerun and rosbags open it. log_time is the wall time of reception, publish_time the sender's.
+Foxglove, PlotJuggler, rerun and rosbags read it. log_time is the wall time of reception, publish_time that of sending.
 """
 
 from __future__ import annotations
@@ -19,22 +19,32 @@ from tailor.schemas.errors import Rejected
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 
-CHUNK_BYTES = 131_072  # a damaged chunk loses little, and a chunk still compresses well
-# Of a small file that is read from front to back: one chunk, no index, nothing said twice. Half the size
+CHUNK_BYTES = 131_072  # small enough that a damaged chunk loses little, large enough to compress well
+# For small files that are read from front to back: one chunk, no index, no repeated records. Half the size.
 COMPACT = {"chunk_size": 8_000_000, "index_types": IndexType.NONE, "repeat_channels": False, "repeat_schemas": False}
-STUCK_BYTES = 16_000_000  # waiting for the disk; more is not taken
+STUCK_BYTES = 16_000_000  # of data waiting for the disk; then messages are dropped
 ENCODING = "application/cdr;"
 
 
 class McapWriter:
-    """Takes messages in the order of their reception."""
+    """Writes messages in the order of their reception."""
 
-    def __init__(self, path: Path, facts: Mapping[str, Mapping[str, str]], compact: bool = False) -> None:
-        """Create the file; `facts` become its first metadata records, name -> entries."""
+    def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]], compact: bool = False) -> None:
+        """Create the file.
+
+        Args:
+          path: New file.
+          metadata: First metadata records, name -> entries.
+          compact: Write one chunk without index.
+
+        Raises:
+          FileExistsError: The file exists.
+          OSError: The file cannot be created.
+        """
         self.path = path
         self.messages = 0
         self.first_ns: int | None = None  # log time of the first message
-        self.trouble = ""  # why the last flush failed
+        self.disk_error = ""  # of the last flush; empty after a successful one
         self._sink = Sink(path)
         target: Any = self._sink
         layout: dict[str, Any] = COMPACT if compact else {"chunk_size": CHUNK_BYTES}
@@ -42,23 +52,23 @@ class McapWriter:
         self._writer.start(profile="ros2", library="tailor")
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, str, str], int] = {}
-        for name, entries in {"topics": _topics_table(), **facts}.items():
-            self.note(name, entries)
+        for name, entries in {"topics": _topics_table(), **metadata}.items():
+            self.add_metadata(name, entries)
 
     @property
-    def stuck(self) -> bool:
-        """Whether so much waits for the disk that messages must be dropped."""
+    def is_full(self) -> bool:
+        """Whether so much data waits for the disk that messages must be dropped."""
         return self._sink.pending > STUCK_BYTES
 
     @property
     def bytes(self) -> int:
-        """Size of the file, with what waits for the disk."""
+        """Size of the file in bytes, including data that waits for the disk."""
         return self._sink.tell()
 
     def write(self, raw: Raw, wall_ns: int) -> None:
-        """Add a message that was received at `wall_ns`; one with a broken attachment counts as unsigned."""
-        read = unpack(raw.attachment)
-        origin: Origin = UNSIGNED if isinstance(read, Rejected) else read
+        """Add a message received at `wall_ns`; one with a malformed attachment counts as unsigned."""
+        unpacked = unpack(raw.attachment)
+        origin: Origin = UNSIGNED if isinstance(unpacked, Rejected) else unpacked
         self._writer.add_message(
             channel_id=self._channel(raw, origin.sender),
             log_time=wall_ns,
@@ -69,22 +79,22 @@ class McapWriter:
         self.messages += 1
         self.first_ns = wall_ns if self.first_ns is None else self.first_ns
 
-    def note(self, name: str, entries: Mapping[str, str]) -> None:
-        """Add a metadata record; the last one of a name holds."""
+    def add_metadata(self, name: str, entries: Mapping[str, str]) -> None:
+        """Add a metadata record; the last one of a name is valid."""
         self._writer.add_metadata(name, dict(entries))
 
     def flush(self) -> bool:
-        """Put everything so far on the disk, as whole chunks; False (and `trouble`) if the disk refuses."""
+        """Write all messages to the disk, as complete chunks; False (and `disk_error`) if writing fails."""
         try:
             self._writer.flush()
         except OSError as error:
-            self.trouble = error.strerror or str(error)
+            self.disk_error = error.strerror or str(error)
             return False
-        self.trouble = ""
+        self.disk_error = ""
         return True
 
     def close(self) -> bool:
-        """Write index and footer; False if the disk refuses, the file is then readable without them."""
+        """Write index and footer; False if writing fails, the file is then readable without them."""
         self._writer.finish()
         done = self.flush()
         self._sink.close()
@@ -92,17 +102,17 @@ class McapWriter:
 
     def _channel(self, raw: Raw, sender: str) -> int:
         ros_name = raw.encoding.removeprefix(ENCODING) if raw.encoding.startswith(ENCODING) else _type_by_key(raw.key)
-        place = (raw.key, sender, ros_name)
-        if place not in self._channels:
-            kind = type_of(ros_name)
+        identity = (raw.key, sender, ros_name)
+        if identity not in self._channels:
+            kind: type | None = type_of(ros_name)
             entries = {"key": raw.key, "sender": sender} | ({"type_hash": type_hash(kind)} if kind else {})
             schema = self._schema(ros_name)
-            self._channels[place] = self._writer.register_channel(f"/{raw.key}", "cdr", schema, entries)
-        return self._channels[place]
+            self._channels[identity] = self._writer.register_channel(f"/{raw.key}", "cdr", schema, entries)
+        return self._channels[identity]
 
     def _schema(self, ros_name: str) -> int:
-        """Id of a type's schema; 0 (none) for a type that is not ours."""
-        kind = type_of(ros_name)
+        """Id of the schema of a type; 0 (none) for a type of another project."""
+        kind: type | None = type_of(ros_name)
         if kind is None:
             return 0
         if ros_name not in self._schemas:
@@ -111,11 +121,10 @@ class McapWriter:
 
 
 def _type_by_key(key: str) -> str:
-    """The ROS type that the topics table gives a key of any robot, for senders that name none."""
+    """ROS type of a key according to the table of topics, for senders that do not name it."""
     robot, _, _ = key.partition("/")
     return next((ros_type(t.type) for t in TOPICS.values() if t.key.format(robot=robot) == key), "")
 
 
 def _topics_table() -> dict[str, str]:
-    rows = {name: (t.key, t.type.__name__, t.rate_hz, t.fresh_s) for name, t in TOPICS.items()}
-    return {name: json.dumps(row) for name, row in rows.items()}
+    return {name: json.dumps((t.key, t.type.__name__, t.rate_hz, t.fresh_s)) for name, t in TOPICS.items()}

@@ -1,4 +1,4 @@
-"""Sends recorded messages again at their times, byte for byte, with the sequence and sender that they had."""
+"""Publishes recorded messages at their times, byte for byte, with their original sequence numbers and senders."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ from tailor.runtime.clock import Clock
 from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.recording import Recorded
 
-SLICE_NS = 20_000_000  # how long a player sleeps before it looks at the keyboard again
+SLICE_NS = 20_000_000  # longest sleep between two polls of the keyboard
 
 
 @dataclass(slots=True)
-class Played:
-    """What a player did."""
+class PlaybackStats:
+    """Counts and lateness of a playback."""
 
     messages: int = 0
     bytes: int = 0
-    lateness_ns: list[int] = field(default_factory=list)  # of every message that was due at a time
+    lateness_ns: list[int] = field(default_factory=list)  # of every message that had a due time
 
 
 class Player:
-    """Plays one pass over some messages."""
+    """Plays messages in order."""
 
     def __init__(
         self,
-        outlet: Callable[[str, str], Publisher],
+        publisher: Callable[[str, str], Publisher],
         clock: Clock,
         watch: Callable[[PlaybackClock], bool],
         tick: Callable[[int], None] = lambda _: None,
         tick_ns: int = 0,
     ) -> None:
-        """Make a player.
+        """Create a player.
 
         Args:
-          outlet: The publisher for a key and a ROS type.
-          clock: Paces the messages.
-          watch: Called a few dozen times a second with the pace, which it may change; False ends the playing.
+          publisher: Publisher for a key and a ROS type.
+          clock: Clock of the due times.
+          watch: Called with the playback clock a few dozen times a second; may change it; False ends the playback.
           tick: Called with the recorded time every `tick_ns` of real time; publishes /clock.
           tick_ns: 0 for never.
         """
-        self.played = Played()
-        self._outlet, self._clock, self._watch = outlet, clock, watch
+        self.stats = PlaybackStats()
+        self._publisher, self._clock, self._watch = publisher, clock, watch
         self._tick, self._tick_ns, self._next_tick_ns = tick, tick_ns, 0
 
     def play(self, messages: Iterable[Recorded], playback: PlaybackClock) -> bool:
-        """Send the messages, in their order; False if `watch` ended it."""
+        """Publish the messages in order; False if `watch` ended the playback."""
         for recorded in messages:
             if not self._wait(recorded.log_ns, playback):
                 return False
@@ -65,7 +65,7 @@ class Player:
                     return True
                 self._clock.sleep_until(now_ns + SLICE_NS)
             elif now_ns >= due_ns:
-                self.played.lateness_ns.append(now_ns - due_ns)
+                self.stats.lateness_ns.append(now_ns - due_ns)
                 return True
             else:
                 self._clock.sleep_until(min(due_ns, now_ns + SLICE_NS, self._next_tick_ns or due_ns))
@@ -78,6 +78,6 @@ class Player:
 
     def _send(self, recorded: Recorded) -> None:
         origin = Origin(recorded.sequence, recorded.publish_ns, recorded.sender)
-        self._outlet(recorded.key, recorded.ros_type).put_raw(recorded.data, origin)
-        self.played.messages += 1
-        self.played.bytes += len(recorded.data)
+        self._publisher(recorded.key, recorded.ros_type).put_raw(recorded.data, origin)
+        self.stats.messages += 1
+        self.stats.bytes += len(recorded.data)

@@ -1,6 +1,6 @@
-"""The recorder: takes what the bus says, and keeps it on tape, whatever the disk does. A plain subscriber.
+"""Recorder: a plain subscriber that writes the messages of the bus into MCAP files.
 
-Nothing that happens here can hold up anyone: the bus is drained at once, and what the disk cannot take is counted.
+It never blocks a publisher: the bus is drained at once, and messages that the disk cannot take are counted as dropped.
 """
 
 from __future__ import annotations
@@ -16,128 +16,132 @@ from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
 
-FLUSH_NS = 600_000_000  # with a turn and the disk's own time, kill -9 loses less than a second
-MAX_KINDS = 10_000  # of messages that are remembered: a bus has some 30
+FLUSH_NS = 600_000_000  # with one period and the time of the disk, kill -9 loses less than a second
+MAX_KINDS = 10_000  # limit of the cache by key and encoding; a bus has about 30
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """When to go on in a new file; 0 means never."""
+    """Size and duration (by wall time) after which a new file begins; 0 means never."""
 
-    most_bytes: int = 0
-    most_ns: int = 0
+    max_bytes: int = 0
+    max_ns: int = 0
 
     @property
     def splits(self) -> bool:
-        """Whether the recording may take several files."""
-        return bool(self.most_bytes or self.most_ns)
+        """Whether the recording may consist of several files."""
+        return bool(self.max_bytes or self.max_ns)
 
 
 @dataclass(slots=True)
 class Health:
-    """How the recording is doing, for people."""
+    """State of a recording, for display."""
 
     messages: int = 0
     bytes: int = 0
     files: list[Path] = field(default_factory=list)
     drops: Counter[str] = field(default_factory=Counter)
-    trouble: str = ""  # what the disk said last
+    disk_error: str = ""  # last error of the disk, empty if none
 
 
 class Recorder:
-    """Call `step` some ten times a second from one thread, and `close` at the end."""
+    """Records the bus; call `step` about ten times a second from one thread, and `close` at the end."""
 
     def __init__(
         self,
         path: Path,
-        intake: IngestQueue,
+        queue: IngestQueue,
         selection: Selection,
         limits: Limits,
-        facts: RecordingMetadata,
+        metadata: RecordingMetadata,
     ) -> None:
         """Create the (first) file.
 
         Args:
-          path: Of the file; when the limits split it, of NAME_000.mcap and so on.
-          intake: Where the messages wait.
-          selection: Which of them to keep.
-          limits: When to split.
-          facts: Metadata for every file; grows with what is heard.
+          path: New file; NAME_000.mcap and so on if the limits split it.
+          queue: Received messages.
+          selection: Messages to record.
+          limits: Limits of one file.
+          metadata: Metadata of every file; provenance received on the bus is added.
+
+        Raises:
+          FileExistsError: The file exists.
+          OSError: The file cannot be created.
         """
         self.health = Health()
-        self._path, self._intake, self._selection = path, intake, selection
-        self._limits, self._facts = limits, facts
+        self._path, self._queue, self._selection = path, queue, selection
+        self._limits, self._metadata = limits, metadata
         self._wanted: dict[tuple[str, str], bool] = {}  # by key and encoding
-        self._dropped: Counter[str] = Counter()  # for want of disk
+        self._dropped: Counter[str] = Counter()  # because the disk was full
         self._closed_messages = self._closed_bytes = 0
         self._flush_at_ns = 0
-        self._tape = self._next_tape()
+        self._writer = self._next_writer()
 
     def step(self, now_ns: int) -> None:
-        """Write what has arrived; flush when it is time. `now_ns` is monotonic."""
-        for raw in self._intake.drain():
+        """Write received messages; flush and split when due. `now_ns` is monotonic."""
+        for raw in self._queue.drain():
             self._keep(raw)
         if now_ns >= self._flush_at_ns:
             self._flush_at_ns = now_ns + FLUSH_NS
             self._note_drops()
-            self._tape.flush()
+            self._writer.flush()
             self._split_when_full()
         self._report()
 
     def close(self) -> Health:
-        """Write what is left, and the footer."""
-        for raw in self._intake.drain():
+        """Write the remaining messages and the footer."""
+        for raw in self._queue.drain():
             self._keep(raw)
         self._note_drops()
-        self._tape.close()
+        self._writer.close()
         self._report()
         return self.health
 
     def _keep(self, raw: Raw) -> None:
         if not raw.is_put or not self._wants(raw.key, raw.encoding):
             return
-        if self._tape.stuck:
+        if self._writer.is_full:
             self._dropped[raw.key] += 1
             return
-        self._tape.write(raw, raw.received_wall_ns or wall_ns())
-        if self._facts.observe(raw):
-            self._tape.note("provenance", self._facts.entries["provenance"])
+        self._writer.write(raw, raw.received_wall_ns or wall_ns())
+        if self._metadata.observe(raw):
+            self._writer.add_metadata("provenance", self._metadata.entries["provenance"])
 
     def _wants(self, key: str, encoding: str) -> bool:
-        """Whether to keep messages like this; worked out once for each kind."""
-        found = self._wanted.get((key, encoding))
-        if found is None:
+        """Whether to record messages of this key and encoding; cached."""
+        wanted = self._wanted.get((key, encoding))
+        if wanted is None:
             if len(self._wanted) >= MAX_KINDS:
                 self._wanted.clear()
-            found = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
-        return found
+            wanted = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
+        return wanted
 
     def _note_drops(self) -> None:
-        drops = self._intake.drops + self._dropped
+        drops = self._queue.drops + self._dropped
         if drops != self.health.drops:
             self.health.drops = drops
-            self._facts.put("drops", {key: str(count) for key, count in sorted(drops.items())})
-            self._tape.note("drops", self._facts.entries["drops"])
+            self._metadata.put("drops", {key: str(count) for key, count in sorted(drops.items())})
+            self._writer.add_metadata("drops", self._metadata.entries["drops"])
 
     def _split_when_full(self) -> None:
-        first_ns = self._tape.first_ns
-        too_long = self._limits.most_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.most_ns
-        too_big = self._limits.most_bytes and self._tape.bytes >= self._limits.most_bytes
-        if (too_long or too_big) and not self._tape.trouble:
-            self._tape.close()
-            self._closed_messages += self._tape.messages
-            self._closed_bytes += self._tape.bytes
-            self._tape = self._next_tape()
+        first_ns = self._writer.first_ns
+        too_long = self._limits.max_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.max_ns
+        too_big = self._limits.max_bytes and self._writer.bytes >= self._limits.max_bytes
+        if (too_long or too_big) and not self._writer.disk_error:
+            self._writer.close()
+            self._closed_messages += self._writer.messages
+            self._closed_bytes += self._writer.bytes
+            self._writer = self._next_writer()
 
-    def _next_tape(self) -> McapWriter:
+    def _next_writer(self) -> McapWriter:
         part = len(self.health.files)
         name = f"{self._path.stem}_{part:03d}{self._path.suffix}" if self._limits.splits else self._path.name
-        tape = McapWriter(self._path.with_name(name), {**self._facts.entries, "part": {"number": str(part)}})
-        self.health.files.append(tape.path)
-        return tape
+        writer = McapWriter(self._path.with_name(name), {**self._metadata.entries, "part": {"number": str(part)}})
+        self.health.files.append(writer.path)
+        return writer
 
     def _report(self) -> None:
         health = self.health
-        health.messages = self._closed_messages + self._tape.messages
-        health.bytes = self._closed_bytes + self._tape.bytes
-        health.trouble = self._tape.trouble
+        health.messages = self._closed_messages + self._writer.messages
+        health.bytes = self._closed_bytes + self._writer.bytes
+        health.disk_error = self._writer.disk_error

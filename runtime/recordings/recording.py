@@ -1,4 +1,4 @@
-"""Reading recordings: messages in the order of their reception, metadata, and an account of any damage."""
+"""Reads recordings: messages in the order of reception, metadata, and a report of the damage."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
-_LATEST_NS = 2**63 - 1  # of a sender's clock: the bus has no more bits for it
+_LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +34,14 @@ class Recorded:
 
 
 class Recording:
-    """An MCAP file on disk; every call reads it anew, so that its size does not matter."""
+    """MCAP file on disk; every call reads it again, so that any size fits into memory."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.damage = DamageReport()  # of the last complete iteration over messages()
 
     def messages(self) -> Iterator[Recorded]:
-        """All messages in file order, which is the order of reception; damaged parts are left out, see `damage`."""
+        """All messages in file order, which is the order of reception; damaged parts are skipped, see `damage`."""
         schemas: dict[int, Any] = {0: None}
         channels: dict[int, tuple[str, str, str]] = {}
         self.damage = DamageReport()
@@ -60,25 +60,25 @@ class Recording:
                 channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "")
 
     def decoded(self) -> Iterator[tuple[Recorded, Message | Rejected]]:
-        """Messages of our own types with their values; others are left out."""
+        """Messages of Tailor's types with their values; others are skipped."""
         for recorded in self.messages():
             kind = type_of(recorded.ros_type)
             if kind is not None:
                 yield recorded, decode(kind, recorded.data)
 
     def metadata(self) -> list[tuple[str, dict[str, str]]]:
-        """Metadata records, name and entries, in file order; of several with one name the last holds."""
-        found = scan(self.path, DamageReport(), with_chunks=False)
-        return [(record.name, record.metadata) for record in found if isinstance(record, r.Metadata)]
+        """Metadata records (name, entries) in file order; of several with one name, the last is valid."""
+        records = scan(self.path, DamageReport(), with_chunks=False)
+        return [(record.name, record.metadata) for record in records if isinstance(record, r.Metadata)]
 
     def _check_schema(self, channel: Any, schema: Any) -> None:
-        """A type of ours that has changed since must not be guessed at."""
-        kind = type_of(schema.name) if schema is not None else None
+        """Raise UsageError if one of Tailor's types has changed since the recording."""
+        kind: type | None = type_of(schema.name) if schema is not None else None
         if kind is None:
             return
         recorded, today = channel.metadata.get("type_hash"), type_hash(kind)
         if recorded is None:
-            recorded, today = _squeezed(schema.data.decode(errors="replace")), _squeezed(definition(kind))
+            recorded, today = _normalized(schema.data.decode(errors="replace")), _normalized(definition(kind))
         if recorded != today:
             raise UsageError(
                 f"{self.path}: {schema.name} has changed since this was recorded, expected {type_hash(kind)[:20]}…"
@@ -86,10 +86,10 @@ class Recording:
 
 
 def open_recording(path: str | Path) -> Recording:
-    """A recording on disk.
+    """Open a recording.
 
     Raises:
-      UsageError: Not there, or not an MCAP file.
+      UsageError: The file is missing, or not an MCAP file.
     """
     recording = Recording(Path(path))
     next(scan(recording.path, DamageReport(), with_chunks=False), None)
@@ -101,7 +101,7 @@ def _recorded(record: Any, key: str, name: str, sender: str) -> Recorded:
     return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data)
 
 
-def _squeezed(text: str) -> str:
-    """A definition without comments and spacing, as other recorders keep them."""
+def _normalized(text: str) -> str:
+    """Definition without comments and extra spaces; other recorders keep them differently."""
     lines = (" ".join(line.split("#")[0].split()) for line in text.splitlines())
     return "\n".join(line for line in lines if line)

@@ -1,4 +1,4 @@
-"""What a recording says about how it was made: the recorder, its clocks, and the configuration of who was recorded."""
+"""Metadata of a recording: the recorder, its clocks, and the provenance of the recorded executive."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ CLOCKS = {
 
 
 class RecordingMetadata:
-    """Metadata records of a recording, name -> entries; they go into each of its files."""
+    """Metadata records of a recording, name -> entries; written into each of its files."""
 
     def __init__(self, version: str, started_ns: int) -> None:
-        """`version` of Tailor; `started_ns` is wall time."""
+        """`version` is that of Tailor; `started_ns` is wall time."""
         recorder = {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(CLOCKS)}
         self.entries: dict[str, Mapping[str, str]] = {"recorder": recorder}
 
     def put(self, name: str, entries: Mapping[str, str]) -> bool:
-        """Note something; False if it was known."""
+        """Set a record; False if it is unchanged."""
         if self.entries.get(name) == entries:
             return False
         self.entries[name] = dict(entries)
         return True
 
     def observe(self, raw: Raw) -> bool:
-        """Take an executive's configuration out of what goes by; True if it is news."""
+        """Keep the provenance if the message contains one; True if it changed."""
         if raw.key != TOPICS["provenance"].key:
             return False
         message = decode(Provenance, raw.payload)

@@ -1,4 +1,4 @@
-"""Which messages to record, replay or keep: by topic name, key pattern or type."""
+"""Selection of messages to record, replay or copy: by topic name, key pattern or type."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ from tailor.schemas.topics import TOPICS
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A message is wanted if a pattern of `include` matches (none: all) and none of `exclude` does."""
+    """Selects a message if a pattern of `include` matches (empty: all) and none of `exclude` does."""
 
     include: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
 
     def allows(self, key: str, ros_name: str = "") -> bool:
-        """Whether nothing of `exclude` matches."""
+        """Whether no pattern of `exclude` matches."""
         return not any(_matches(pattern, key, ros_name) for pattern in self.exclude)
 
     def wants(self, key: str, ros_name: str = "") -> bool:
-        """Whether a message of this key and ROS type is wanted."""
+        """Whether a message of this key and ROS type is selected."""
         if not self.allows(key, ros_name):
             return False
         return not self.include or any(_matches(pattern, key, ros_name) for pattern in self.include)
 
 
 def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
-    """A selection from what people write: `odom`, `agilo/*`, `exec/**`, `nav_msgs/msg/Odometry`; commas separate.
+    """Parse a selection: words such as `odom`, `agilo/*`, `exec/**`, `nav_msgs/msg/Odometry`, separated by commas.
 
     Raises:
-      UsageError: A word that is neither a topic's name nor a pattern nor a type.
+      UsageError: A word is neither a topic name nor a pattern nor a type.
     """
     parts = [tuple(word for text in texts for word in text.split(",") if word) for texts in (include, exclude)]
     for word in (*parts[0], *parts[1]):
         if word not in TOPICS and "/" not in word and "*" not in word:
-            known = ", ".join(TOPICS)
-            raise UsageError(f"topic {word!r}: expected a name ({known}), a key pattern like agilo/* or a type")
+            names = ", ".join(TOPICS)
+            raise UsageError(f"topic {word!r}: expected a name ({names}), a key pattern like agilo/* or a type")
     unrecorded = () if parts[0] else tuple(name for name, topic in TOPICS.items() if not topic.recorded)
     return Selection(parts[0], parts[1] + unrecorded)
 

@@ -1,4 +1,4 @@
-"""A file that grows by whole blocks: a write that fails half-way leaves no trace, and is tried again next time."""
+"""Append-only file with atomic flushes: a flush that fails is undone and repeated with the next one."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ from pathlib import Path
 
 
 class Sink:
-    """What mcap's Writer writes to. Bytes gather in memory until `flush` puts them on disk, all or none."""
+    """Target of mcap's Writer; buffers bytes until `flush` writes all of them or none."""
 
     def __init__(self, path: Path) -> None:
-        """Create the file; refuses to overwrite one (FileExistsError)."""
+        """Create the file; raises FileExistsError if it exists."""
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
         self._pending = bytearray()
         self.on_disk = 0  # bytes
 
     @property
     def pending(self) -> int:
-        """Bytes that wait for the disk."""
+        """Number of buffered bytes."""
         return len(self._pending)
 
     def write(self, data: bytes) -> int:
-        """Take bytes; never touches the disk."""
+        """Buffer bytes; never writes to the disk."""
         self._pending += data
         return len(data)
 
     def tell(self) -> int:
-        """Position after everything taken so far."""
+        """Position after the last buffered byte."""
         return self.on_disk + len(self._pending)
 
     def flush(self) -> None:
-        """Put what waits on the disk.
+        """Write all buffered bytes to the disk.
 
         Raises:
-          OSError: The disk is full or broken; the file is as it was before, and the bytes still wait.
+          OSError: The disk is full or broken; the file is unchanged, and the bytes stay buffered.
         """
         try:
             done = 0
@@ -47,5 +47,5 @@ class Sink:
         self._pending = bytearray()
 
     def close(self) -> None:
-        """Close the file; what still waits is lost."""
+        """Close the file; buffered bytes are lost."""
         os.close(self._file)

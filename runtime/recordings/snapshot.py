@@ -1,4 +1,4 @@
-"""The last seconds of the bus in memory, written out when somebody asks or something goes wrong."""
+"""Snapshots: the last seconds of the bus in memory, and the failures that trigger writing them."""
 
 from __future__ import annotations
 
@@ -13,54 +13,54 @@ from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import TOPICS
 
-MAX_BYTES = 256_000_000  # of memory, whatever the time span
-AFTER_NS = 1_000_000_000  # of what follows a failure goes into its file too
+MAX_BYTES = 256_000_000  # of memory, for any time span
+AFTER_NS = 1_000_000_000  # a snapshot includes the second after the failure
 
 
 class SnapshotBuffer:
-    """Messages of the last `span_ns`, at most `most_bytes` of them."""
+    """Ring buffer of the messages of the last `span_ns`, at most `max_bytes`."""
 
-    def __init__(self, span_ns: int, most_bytes: int = MAX_BYTES) -> None:
-        self._span_ns, self._most_bytes = span_ns, most_bytes
+    def __init__(self, span_ns: int, max_bytes: int = MAX_BYTES) -> None:
+        self._span_ns, self._max_bytes = span_ns, max_bytes
         self._messages: deque[tuple[Raw, int]] = deque()
         self._bytes = 0
 
     def add(self, raw: Raw, wall_ns: int) -> None:
-        """Keep a message that was received at `wall_ns`, and forget the oldest."""
+        """Append a message received at `wall_ns` and drop the oldest ones."""
         self._messages.append((raw, wall_ns))
         self._bytes += len(raw.payload)
-        while self._messages[0][1] < wall_ns - self._span_ns or self._bytes > self._most_bytes:
+        while self._messages[0][1] < wall_ns - self._span_ns or self._bytes > self._max_bytes:
             self._bytes -= len(self._messages.popleft()[0].payload)
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to write."""
+        """Whether the buffer holds no message."""
         return not self._messages
 
-    def write(self, path: Path, facts: Mapping[str, Mapping[str, str]]) -> int:
-        """Write everything into a new file; how many messages.
+    def write(self, path: Path, metadata: Mapping[str, Mapping[str, str]]) -> int:
+        """Write all messages into a new file; returns their number.
 
         Raises:
-          FileExistsError: There is such a file.
-          OSError: The disk does not take it; then nothing is left of it.
+          FileExistsError: The file exists.
+          OSError: Writing fails; the file is then removed.
         """
-        tape = McapWriter(path, facts)
+        writer = McapWriter(path, metadata)
         for raw, wall_ns in self._messages:
-            tape.write(raw, wall_ns)
-        if not tape.close():
+            writer.write(raw, wall_ns)
+        if not writer.close():
             path.unlink()
-            raise OSError(0, tape.trouble, str(path))
-        return tape.messages
+            raise OSError(0, writer.disk_error, str(path))
+        return writer.messages
 
 
 class FailureDetector:
-    """Notices failures in what goes by: an executive that comes into FAULT, a driver that stops by itself."""
+    """Detects failures in messages: an executive that enters FAULT, a driver that stops by itself."""
 
     def __init__(self) -> None:
         self._modes: dict[str, str] = {}
 
     def detect(self, raw: Raw) -> str:
-        """What has just gone wrong, empty if nothing."""
+        """Description of a new failure, empty if there is none."""
         if raw.key == TOPICS["status"].key:
             return self._changed(raw, decode(ExecStatus, raw.payload), ("FAULT",))
         if raw.key.endswith(TOPICS["driver"].key.removeprefix("{robot}")):

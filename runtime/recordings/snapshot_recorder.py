@@ -1,4 +1,4 @@
-"""A recorder that keeps the last seconds in memory and writes them when asked or when something goes wrong."""
+"""Recorder that keeps the last seconds in memory and writes them on request or after a failure."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from tailor.runtime.recordings.snapshot import AFTER_NS, FailureDetector, Snapsh
 
 
 class SnapshotRecorder:
-    """Call `step` a few dozen times a second, `ask` to have a file written, and `close` at the end."""
+    """Call `step` a few dozen times a second, `request_snapshot` for a file, and `close` at the end."""
 
     def __init__(
-        self, path: Path, intake: IngestQueue, selection: Selection, buffer: SnapshotBuffer, facts: RecordingMetadata
+        self, path: Path, queue: IngestQueue, selection: Selection, buffer: SnapshotBuffer, metadata: RecordingMetadata
     ) -> None:
-        """Files will be NAME_000.mcap and so on beside `path`; none is made before it is needed."""
+        """Write snapshots to NAME_000.mcap and so on beside `path`; none is created in advance."""
         self.health = Health()
-        self._path, self._intake, self._selection = path, intake, selection
-        self._ring, self._facts, self._alarm = buffer, facts, FailureDetector()
-        self._reason = ""  # why a file is due
+        self._path, self._queue, self._selection = path, queue, selection
+        self._buffer, self._metadata, self._detector = buffer, metadata, FailureDetector()
+        self._reason = ""  # of the snapshot that is due; empty if none is
         self._write_at_ns = 0
         self._number = 0  # of the next file
 
     def step(self, now_ns: int) -> None:
-        """Take what has arrived; write a file when one is due. `now_ns` is monotonic."""
-        for raw in self._intake.drain():
+        """Buffer received messages; write a snapshot when due. `now_ns` is monotonic."""
+        for raw in self._queue.drain():
             self._keep(raw, now_ns)
-        self.health.drops = self._intake.drops
+        self.health.drops = self._queue.drops
         if self._reason and now_ns >= self._write_at_ns:
             self._write()
 
     def request_snapshot(self, reason: str, now_ns: int) -> bool:
-        """Have what is in memory written at the next turn; False if nothing is there yet."""
-        if self._ring.is_empty:
+        """Request that the next step writes a snapshot; False if the buffer is empty."""
+        if self._buffer.is_empty:
             return False
         if not self._reason:
             self._reason, self._write_at_ns = reason, now_ns
         return True
 
     def close(self) -> Health:
-        """Write what a failure left due; nothing else."""
+        """Write a snapshot that is due; nothing otherwise."""
         if self._reason:
             self._write()
         return self.health
@@ -53,25 +53,25 @@ class SnapshotRecorder:
     def _keep(self, raw: Raw, now_ns: int) -> None:
         if not raw.is_put or not self._selection.wants(raw.key, raw.encoding.removeprefix(ENCODING)):
             return
-        self._ring.add(raw, raw.received_wall_ns or wall_ns())
-        self._facts.observe(raw)
-        failure = self._alarm.detect(raw)
+        self._buffer.add(raw, raw.received_wall_ns or wall_ns())
+        self._metadata.observe(raw)
+        failure = self._detector.detect(raw)
         if failure and not self._reason:
-            self._reason, self._write_at_ns = failure, now_ns + AFTER_NS  # what follows tells too
+            self._reason, self._write_at_ns = failure, now_ns + AFTER_NS  # includes the second after the failure
 
     def _write(self) -> None:
         reason, self._reason = self._reason, ""
         health, path = self.health, self._free_path()
         try:
-            health.messages += self._ring.write(path, {**self._facts.entries, "snapshot": {"reason": reason}})
+            health.messages += self._buffer.write(path, {**self._metadata.entries, "snapshot": {"reason": reason}})
         except OSError as error:
-            health.trouble = error.strerror or str(error)
+            health.disk_error = error.strerror or str(error)
             return
         health.files.append(path)
         health.bytes += path.stat().st_size
 
     def _free_path(self) -> Path:
-        """The next name that no file has: those of an earlier recorder are kept."""
+        """Next unused name: snapshots of an earlier recorder are kept."""
         while True:
             path = self._path.with_name(f"{self._path.stem}_{self._number:03d}{self._path.suffix}")
             if not path.exists():

@@ -33,7 +33,7 @@ def test_a_port_in_use_is_told_in_one_line():
 
 
 def test_no_router_is_told_in_one_line():
-    with pytest.raises(UsageError, match="no router answers"), open_client(free_endpoint(), timeout_s=0.3):
+    with pytest.raises(UsageError, match="no router responds"), open_client(free_endpoint(), timeout_s=0.3):
         pass
 
 
@@ -118,11 +118,11 @@ def test_questions_are_answered_from_a_loop(pair):
     try:
         wait_until(lambda: a.call("exec/goal", "(good)") == (True, "gladly"), "an answer")
         assert a.call("exec/goal", "(bad)") == (False, "no such goal")
-        assert a.call("exec/none", "(good)") == (False, "nobody answers at exec/none")
+        assert a.call("exec/none", "(good)") == (False, "no service at exec/none")
     finally:
         over.set()
         thread.join()
-    assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no answer within 0.2 s")
+    assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no response within 0.2 s")
 
 
 def test_clients_are_back_within_a_second_of_their_router():

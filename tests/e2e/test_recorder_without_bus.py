@@ -5,7 +5,7 @@ import subprocess
 
 from tailor.runtime.bus.session import open_router
 from tailor.runtime.processes.child import tailor
-from tailor.tools.commands.run.record import BACK, GONE
+from tailor.tools.commands.run.record import DISCONNECTED, RECONNECTED
 from tests.support.bus_system import ROOT, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 
@@ -21,9 +21,9 @@ def test_a_recorder_tells_that_its_bus_is_gone_and_that_it_is_back(tmp_path):
         recorder = subprocess.Popen(command, stderr=stderr, cwd=ROOT)
         wait_until(lambda: path.exists() or recorder.poll() is not None, "recording")
     try:
-        wait_until(lambda: lines() == [GONE], "word of the lost bus")
+        wait_until(lambda: lines() == [DISCONNECTED], "word of the lost bus")
         with open_router(endpoint):
-            wait_until(lambda: lines() == [GONE, BACK], "word of the bus that is back")
+            wait_until(lambda: lines() == [DISCONNECTED, RECONNECTED], "word of the bus that is back")
             recorder.send_signal(signal.SIGINT)
             assert recorder.wait(PATIENCE_S) == 0
     finally:

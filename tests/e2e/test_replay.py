@@ -162,9 +162,9 @@ def test_a_substitute_executive_hears_the_sensors_and_a_driver_that_obeys_it(rec
 
 def test_the_clock_of_a_replay_tells_recorded_time(recording):
     with bus_system() as (session, endpoint, _):
-        intake, tapped = session.subscribe_all("clock")  # all of them: an inbox keeps the newest alone
+        queue, tapped = session.subscribe_all("clock")  # all of them: an inbox keeps the newest alone
         run(recording, endpoint, "--clock", "50", "--rate", "0.5", "--start", "1.0")
-        raws = wait_until(intake.drain, "the clock")
+        raws = wait_until(queue.drain, "the clock")
         times = [decode(Clock, raw.payload).stamp_ns / 1e9 - 1_700_000_000 for raw in raws]
         tapped.undeclare()
         assert times == sorted(times)
@@ -186,4 +186,4 @@ def test_a_replay_ends_when_the_bus_goes_away(recording):
         )
         wait_until(odometry, "the first message")
     said = player.communicate(timeout=PATIENCE_S)[1]
-    assert (player.returncode, said.splitlines()[-1]) == (1, "the bus is gone: the replay ended early")
+    assert (player.returncode, said.splitlines()[-1]) == (1, "bus disconnected: the replay ended early")

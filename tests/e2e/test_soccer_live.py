@@ -90,8 +90,8 @@ def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte
 @pytest.mark.xdist_group("live")
 def test_verify_names_the_first_tick_that_differs(recording):
     from tailor.executive.composition import rebuild_context
-    from tailor.tools.commands.look.verify import verify
     from tailor.tools.recordings.recorded_run import RecordedRuns
+    from tailor.tools.recordings.verification import verify
 
     runs = RecordedRuns(recording)
     run = runs.runs[0]

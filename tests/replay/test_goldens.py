@@ -22,10 +22,10 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Provenance, RefinementReport, VelocityCommand
-from tailor.tools.commands.look.verify import told, verify
 from tailor.tools.goldens import renew
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import RecordedRuns, decoded
+from tailor.tools.recordings.verification import verdict_text, verify
 from tests.support.bus_system import ROOT
 
 GOLDENS = {golden.name: renew.FOLDER / f"{golden.name}.mcap" for golden in renew.goldens()}
@@ -87,7 +87,7 @@ def test_core_says_what_it_said_when_the_golden_was_recorded(name):
         verdict = verdict_of(GOLDENS[name])
     except UsageError as error:
         pytest.fail(f"{name}: {error}; {RENEW}")
-    assert verdict.difference is None, f"{name}: {told(verdict)}; {RENEW}"
+    assert verdict.difference is None, f"{name}: {verdict_text(verdict)}; {RENEW}"
     assert verdict.ticks > 20
 
 
@@ -169,4 +169,4 @@ def test_goldens_are_renewed_only_after_telling_what_has_changed(tmp_path, capsy
     assert renew.main([SOME.stem]) == 0
     assert verdict_of(kept).difference is None
     assert renew.main([SOME.stem, "--check"]) == 0
-    assert capsys.readouterr().out.endswith(f"{SOME.stem}: as before\n")
+    assert capsys.readouterr().out.endswith(f"{SOME.stem}: unchanged\n")

@@ -1,1 +1,1 @@
-"""Golden recordings: made anew, compared with the old ones."""
+"""Golden recordings: renewal and comparison."""

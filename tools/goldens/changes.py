@@ -1,4 +1,4 @@
-"""What two recordings of the same scenario say differently: outcome, duration, actions, models, and where it begins."""
+"""Changes between two recordings of a scenario: result, durations, models, settings, first different message."""
 
 from __future__ import annotations
 
@@ -13,16 +13,14 @@ from tailor.tools.recordings.comparison import ComparedRun, compared_run
 from tailor.tools.recordings.differences import first_field
 from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, RecordedRuns, decoded
 
-MESSAGE = Recorded | None
-
 
 def changes(old: Path, new: Path) -> list[str]:
-    """One line a change, what was before what is now; none if a new recording would only be another copy.
+    """One line per change, old value before new; empty if the recordings are equal.
 
     Raises:
-      UsageError: One of the files cannot be read; its message types have changed since, for example.
+      UsageError: A file cannot be read, e.g. because its message types have changed.
     """
-    lines = [*_made_of(_provenance(old), _provenance(new))]
+    lines = [*_provenance_changes(_provenance(old), _provenance(new))]
     first = first_change(old, new)
     if first:
         lines += [*_outcome(compared_run(old), compared_run(new)), f"first at  {first}"]
@@ -30,11 +28,11 @@ def changes(old: Path, new: Path) -> list[str]:
 
 
 def first_change(old: Path, new: Path) -> str:
-    """The first message that differs: tick, key, field and both values; empty if none does."""
+    """First different message: tick, key, field and both values; empty if there is none."""
     tick = 1
     for before, now in zip_longest(_messages(old), _messages(new)):
         if before is None or now is None or (before.key, before.sequence) != (now.key, now.sequence):
-            return f"tick {tick}: was {_named(before)}, now {_named(now)}"
+            return f"tick {tick}: was {_name(before)}, now {_name(now)}"
         if before.data != now.data:
             field, then, today = first_field(decoded(before), decoded(now))
             return f"tick {tick}, {now.key}, {field}: was {then}, now {today}"
@@ -43,7 +41,7 @@ def first_change(old: Path, new: Path) -> str:
 
 
 def outcome(run: ComparedRun) -> str:
-    """How a run ended, and how long its actions took."""
+    """Result of a run and durations of its actions."""
     actions = ", ".join(
         f"{a.action} {'' if a.outcome == 'done' else a.outcome + ' '}{a.actual_s:.1f}" for a in run.actions
     )
@@ -57,20 +55,20 @@ def _outcome(before: ComparedRun, now: ComparedRun) -> Iterator[str]:
     yield f"now       {is_now}" + ("" if was != is_now else " (as before)")
 
 
-def _made_of(before: dict[str, Any], now: dict[str, Any]) -> Iterator[str]:
-    """Models and settings that changed; the machine does not count, nor does a setting that is new."""
+def _provenance_changes(before: dict[str, Any], now: dict[str, Any]) -> Iterator[str]:
+    """Changed models and settings; the platform and new settings are ignored."""
     names = sorted({*before["models"], *now["models"]})
     models = [name for name in names if before["models"].get(name) != now["models"].get(name)]
     if models:
-        yield f"models    others: {', '.join(models)}"
-    was, is_now = _leaves(before["config"]), _leaves(now["config"])
-    for name, value in was.items():
-        if is_now.get(name) != value:
-            yield f"settings  {name} was {value}, now {is_now.get(name, 'gone')}"
+        yield f"models    changed: {', '.join(models)}"
+    then, today = _leaves(before["config"]), _leaves(now["config"])
+    for name, value in then.items():
+        if today.get(name) != value:
+            yield f"settings  {name} was {value}, now {today.get(name, 'removed')}"
 
 
 def _leaves(settings: Any, name: str = "") -> dict[str, Any]:
-    """Settings by their full names: "settings.refinement.horizon"."""
+    """Settings by their full names, e.g. "settings.refinement.horizon"."""
     if not isinstance(settings, dict):
         return {name: settings}
     inner = (_leaves(value, f"{name}.{key}".strip(".")) for key, value in settings.items())
@@ -85,5 +83,5 @@ def _messages(path: Path) -> Iterator[Recorded]:
     return (message for message in open_recording(path).messages() if message.key != PROVENANCE_KEY)
 
 
-def _named(message: MESSAGE) -> str:
+def _name(message: Recorded | None) -> str:
     return "the end" if message is None else f"{message.key} number {message.sequence}"

@@ -1,4 +1,4 @@
-"""Make the golden recordings of the tests anew: one run in lock-step of every scenario, and what has changed in it.
+"""Renew the golden recordings of the tests, one lock-step run per scenario, and print the changes.
 
 `make goldens` prints the changes and then overwrites. `python -m tailor.tools.goldens.renew --check` only prints them;
 its exit code is 1 if there are any.
@@ -26,13 +26,13 @@ from tailor.tools.lockstep.worlds import make_world
 from tailor.tools.recordings.comparison import compared_run
 
 FOLDER = Path(__file__).resolve().parents[2] / "tests" / "data" / "golden"
-LETTERS = ("word-I",)  # the arm's scenarios are without number
-CHECKS = 40  # a tick: so few that a deliberation takes several ticks and is resumed, as on a slow machine
+LETTERS = ("word-I",)  # the arm has a scenario for every word
+CHECKS = 40  # per tick: so few that a deliberation takes several ticks and is resumed, as on a slow machine
 
 
 @dataclass(frozen=True, slots=True)
 class Golden:
-    """One golden recording, and the run that it is of."""
+    """One golden recording: scenario and seed of its run."""
 
     domain: str
     scenario: str
@@ -40,24 +40,24 @@ class Golden:
 
     @property
     def name(self) -> str:
-        """Of its file, without the ending."""
+        """Name of the file, without its suffix."""
         return f"{self.domain}-{self.scenario}"
 
 
 def goldens() -> list[Golden]:
-    """All golden recordings: every scenario that soccer declares, and a letter of the arm."""
+    """All golden recordings: every scenario of soccer, and one letter of the arm."""
     soccer = [Golden("soccer", scenario) for scenario in domains.scenarios("soccer")]
     return [*soccer, *(Golden("arm", letter) for letter in LETTERS)]
 
 
 def record(golden: Golden, path: Path) -> None:
-    """Run it in lock-step and write it down; the same bytes every time on the same kind of machine."""
-    order = ExecutiveConfig(golden.domain, golden.scenario, Settings(seed=golden.seed))
-    context = build_context(order, SENDER)
+    """Run the scenario in lock-step and write the recording; equal bytes on every platform of the same kind."""
+    config = ExecutiveConfig(golden.domain, golden.scenario, Settings(seed=golden.seed))
+    context = build_context(config, SENDER)
     _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
     world = make_world(context.domain.robot, golden.scenario, golden.seed)
-    tape = RunWriter(path, context, {**provenance(order, context), "machine": platform_fingerprint()}, compact=True)
-    recording = LockstepRecording(tape)
+    writer = RunWriter(path, context, {**provenance(config, context), "machine": platform_fingerprint()}, compact=True)
+    recording = LockstepRecording(writer)
     run_lockstep(
         context,
         world.body,
@@ -68,23 +68,23 @@ def record(golden: Golden, path: Path) -> None:
         on_tick=recording.on_tick,
         transport=recording.transport,
     )
-    tape.close()
+    writer.close()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Compare and overwrite; 0, or with --check 1 if something has changed."""
+    """Compare and overwrite; 0, or 1 with --check if there are changes."""
     parser = argparse.ArgumentParser(prog="python -m tailor.tools.goldens.renew", description=__doc__)
-    parser.add_argument("names", nargs="*", help="only these, e.g. soccer-waypoints (default: all)")
-    parser.add_argument("--check", action="store_true", help="only print what has changed")
+    parser.add_argument("names", nargs="*", help="golden recordings, e.g. soccer-waypoints (default: all)")
+    parser.add_argument("--check", action="store_true", help="only print the changes")
     arguments = parser.parse_args(argv)
-    known = {golden.name: golden for golden in goldens()}
-    unknown = [name for name in arguments.names if name not in known]
+    by_name = {golden.name: golden for golden in goldens()}
+    unknown = [name for name in arguments.names if name not in by_name]
     if unknown:
-        print(f"no golden recording {unknown[0]!r}, expected one of: {', '.join(known)}", file=sys.stderr)
+        print(f"no golden recording {unknown[0]!r}, expected one of: {', '.join(by_name)}", file=sys.stderr)
         return 2
-    changed = [name for name in arguments.names or known if _renewed(known[name], write=not arguments.check)]
-    for path in [] if arguments.names else _left_over(set(known)):
-        print(f"{path.stem}: there is no such scenario any more{'' if arguments.check else ', removed'}")
+    changed = [name for name in arguments.names or by_name if _renewed(by_name[name], write=not arguments.check)]
+    for path in [] if arguments.names else _obsolete(set(by_name)):
+        print(f"{path.stem}: the scenario no longer exists{'' if arguments.check else ', removed'}")
         changed.append(path.stem)
         if not arguments.check:
             path.unlink()
@@ -92,13 +92,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _renewed(golden: Golden, write: bool) -> bool:
-    """Run a golden's scenario again, print what has changed, and only then put the new recording in its place."""
+    """Run the scenario again, print the changes, and replace the recording if `write` is set."""
     kept = FOLDER / f"{golden.name}.mcap"
     with tempfile.TemporaryDirectory() as folder:
         new = Path(folder) / kept.name
         record(golden, new)
-        lines = _told(kept, new)
-        print(f"{golden.name}: {('changed' if kept.exists() else 'new') if lines else 'as before'}")
+        lines = _changes(kept, new)
+        print(f"{golden.name}: {('changed' if kept.exists() else 'new') if lines else 'unchanged'}")
         for line in lines:
             print(f"  {line}")
         if lines and write:
@@ -107,7 +107,7 @@ def _renewed(golden: Golden, write: bool) -> bool:
     return bool(lines)
 
 
-def _told(kept: Path, new: Path) -> list[str]:
+def _changes(kept: Path, new: Path) -> list[str]:
     if not kept.exists():
         return [f"now       {outcome(compared_run(new))}"]
     try:
@@ -116,7 +116,7 @@ def _told(kept: Path, new: Path) -> list[str]:
         return [f"the old one cannot be read: {error}", f"now       {outcome(compared_run(new))}"]
 
 
-def _left_over(names: set[str]) -> list[Path]:
+def _obsolete(names: set[str]) -> list[Path]:
     return sorted(path for path in FOLDER.glob("*.mcap") if path.stem not in names)
 
 

@@ -71,7 +71,7 @@ class RunWriter:
           OSError: The disk is full; the file is readable up to there.
         """
         if not self._file.close():
-            raise OSError(0, self._file.trouble, str(self._file.path))
+            raise OSError(0, self._file.disk_error, str(self._file.path))
 
     def _publish(self, key: str, message: Message, now_ns: int) -> None:
         self._sequences[key] += 1

@@ -1,4 +1,4 @@
-"""Puts two recorded runs side by side: what each commanded, planned, chose, and how long its actions took."""
+"""Reduces recorded runs to what is compared: commands, plans, subgoals and durations of the actions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.pri
 
 @dataclass(frozen=True, slots=True)
 class ComparedRun:
-    """One executive's run, reduced to what gets compared."""
+    """Run of one executive, reduced to the compared quantities."""
 
     name: str
     actions: tuple[ActionFinished, ...]
@@ -30,45 +30,45 @@ class ComparedRun:
 
     @property
     def total_s(self) -> float:
-        """Sum of all actions' durations."""
+        """Sum of the durations of all actions."""
         return sum(action.actual_s for action in self.actions)
 
 
 def compared_run(path: Path) -> ComparedRun:
-    """The first executive's run in a recording.
+    """First run in a recording.
 
     Raises:
-      UsageError: The file is no recording or holds no run.
+      UsageError: The file is not a recording, or holds no run.
     """
     run = RecordedRuns(path).runs[0]
-    status = _said(run, "status", ExecStatus)
+    status = _published(run, "status", ExecStatus)
     results = [result_text(s.result, s.result_reason, s.result_detail) for s in status if s.result]
     return ComparedRun(
         name=path.stem,
-        actions=tuple(_said(run, "finished", ActionFinished)),
-        plans=tuple(_said(run, "plan", PlanReport)),
-        subgoals=tuple(_said(run, "subgoals", Subgoals)),
+        actions=tuple(_published(run, "finished", ActionFinished)),
+        plans=tuple(_published(run, "plan", PlanReport)),
+        subgoals=tuple(_published(run, "subgoals", Subgoals)),
         commands=_commands(run),
         result=results[-1] if results else "",
     )
 
 
 def chosen(subgoals: Subgoals) -> dict[str, float]:
-    """The free variables of an action sequence, each under its first name: "action.parameter" -> chosen value."""
+    """Free variables of an action sequence, each under its first name: "action.parameter" -> chosen value."""
     named: dict[int, tuple[str, float]] = {}
     for action in subgoals.actions:
         for parameter in action.parameters:
-            if not parameter.bound:  # equal ids are one variable (paper 6.2.2)
+            if not parameter.bound:  # parameters with equal ids are one variable (paper 6.2.2)
                 named.setdefault(parameter.id, (f"{action.action}.{parameter.name}", parameter.value))
     return dict(named.values())
 
 
-def commands_apart(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
-    """How far the commands of two runs are apart over the time that both drove, matched by time since setting off.
+def command_differences(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
+    """Differences of the commands of two runs, matched by the time since the first command that is not zero.
 
     Returns:
-      seconds: How long both drove; first_s: when they first differ (nan: never); rms, max: of the difference, over all
-      axes, in the axes' own units.
+      seconds: Duration of the shorter run; first_s: time of the first difference (nan if there is none); rms, max: of
+      the difference over all axes, in their units.
     """
     count = min(len(a.commands), len(b.commands))
     width = min(a.commands.shape[1], b.commands.shape[1])
@@ -82,13 +82,13 @@ def commands_apart(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
     }
 
 
-def _said(run: RecordedRun, topic: str, kind: type) -> list[Any]:
+def _published(run: RecordedRun, topic: str, kind: type) -> list[Any]:
     messages = (decoded(recorded) for recorded in run.published.get(TOPICS[topic].key, ()))
     return [message for message in messages if isinstance(message, kind)]
 
 
 def _commands(run: RecordedRun) -> NDArray[np.float64]:
-    """The commands from the first that is not zero on."""
+    """Commands from the first one that is not zero."""
     keys = [key for key in run.published if key.endswith(COMMANDS)]
     rows = [(r.log_ns / 1e9, *_values(decoded(r))) for key in keys for r in run.published[key]]
     table = np.array(rows, dtype=np.float64).reshape(len(rows), -1) if rows else np.zeros((0, 1))

@@ -1,4 +1,4 @@
-"""What an executive said in a run against what today's core says, message by message."""
+"""Compares the recorded outputs of an executive with those of today's core, message by message."""
 
 from __future__ import annotations
 
@@ -20,36 +20,36 @@ REFINEMENT = TOPICS["refinement"].key
 
 
 class RunComparison:
-    """Counts what it has compared; hand it every tick, then ask for what was left unsaid.
+    """Comparison of one run: call `tick` for every tick, then `missing`.
 
     Args:
-      run: What was said.
-      robot: Whose topics.
-      exact: Whether every bit counts; else rounding is forgiven, and counted.
-      proofs: Whether the proofs of how near a choice is to the optimum are compared, too.
+      run: Recorded run.
+      robot: Name of the robot, part of its topics.
+      exact: Whether every bit counts; else rounding is tolerated and counted.
+      proofs: Whether optimality gaps are compared, too.
     """
 
     def __init__(self, run: RecordedRun, robot: str, exact: bool, proofs: bool = True) -> None:
         self.ticks = self.compared = self.rounded = 0
         self._robot, self._exact, self._proofs = robot, exact, proofs
         self._last_tick = run.ticks[-1].tick
-        self._said: dict[str, list[Recorded]] = dict(run.published)
-        self._taken: dict[str, int] = defaultdict(int)
-        self._told: Message | None = None  # of refinement, last, without proof
+        self._published: dict[str, list[Recorded]] = dict(run.published)
+        self._n_compared: dict[str, int] = defaultdict(int)
+        self._last_report: Message | None = None  # of refinement, without its gap
         if not proofs and REFINEMENT in run.published:
-            self._said[REFINEMENT] = _without_proofs(run.published[REFINEMENT])
+            self._published[REFINEMENT] = _without_proofs(run.published[REFINEMENT])
 
     def tick(self, tick: int, outputs: tuple[Output, ...]) -> Difference | None:
-        """The first difference in what is said in a tick."""
+        """First difference between the recorded outputs of a tick and today's."""
         self.ticks = tick
         for output in outputs:
             key = key_of(output.topic, self._robot)
-            if not self._proofs and key == REFINEMENT and self._is_retold(output.message):
+            if not self._proofs and key == REFINEMENT and self._is_repeated(output.message):
                 continue
-            recorded, number = self._said.get(key, []), self._taken[key]
-            self._taken[key] += 1
+            recorded, number = self._published.get(key, []), self._n_compared[key]
+            self._n_compared[key] += 1
             if number >= len(recorded) and tick == self._last_tick:
-                continue  # the recording ended within this tick
+                continue  # the recording ends within this tick
             self.compared += 1
             if number >= len(recorded):
                 return Difference(tick, key, "message", "none", str(output.message))
@@ -58,12 +58,12 @@ class RunComparison:
                 return difference
         return None
 
-    def unsaid(self) -> Difference | None:
-        """A recorded message that today's core has not said by the end."""
-        key = next((key for key, messages in self._said.items() if len(messages) > self._taken[key]), None)
+    def missing(self) -> Difference | None:
+        """A recorded message that today's core did not publish by the end of the run."""
+        key = next((key for key, messages in self._published.items() if len(messages) > self._n_compared[key]), None)
         if key is None:
             return None
-        return Difference(self.ticks, key, "message", f"number {self._taken[key] + 1}", "none")
+        return Difference(self.ticks, key, "message", f"number {self._n_compared[key] + 1}", "none")
 
     def _message(self, tick: int, recorded: Recorded, today: Message) -> Difference | None:
         if recorded.data == encode(today):
@@ -75,26 +75,26 @@ class RunComparison:
         field, old, new = first_field(then, today)
         return Difference(tick, recorded.key, field, str(old), str(new))
 
-    def _is_retold(self, message: Message) -> bool:
-        before, self._told = self._told, _timeless(message)
-        return self._told == before
+    def _is_repeated(self, message: Message) -> bool:
+        before, self._last_report = self._last_report, _timeless(message)
+        return self._last_report == before
 
 
 def without_proofs(context: Context) -> Context:
-    """The context in which no choice is proven. Proving comes last in a tick and changes no answer."""
+    """Context without proofs of optimality gaps. They come last in a tick and change no other output."""
     refinement = replace(context.settings.refinement, certify_checks=0)
     return replace(context, settings=replace(context.settings, refinement=refinement))
 
 
 def _without_proofs(messages: Iterable[Recorded]) -> list[Recorded]:
-    """The reports of refinement without their gaps; those that told of nothing else are left out."""
+    """Refinement reports without their gaps; reports that change nothing else are omitted."""
     kept: list[Recorded] = []
-    told: Any = None
+    last: Any = None
     for recorded in messages:
         report = decoded(recorded)
         assert isinstance(report, RefinementReport)
-        before, told = told, _timeless(report)
-        if told != before:
+        before, last = last, _timeless(report)
+        if last != before:
             kept.append(replace(recorded, data=encode(replace(report, gap_pct=-1.0))))
     return kept
 

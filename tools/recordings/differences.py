@@ -1,4 +1,4 @@
-"""Where two messages differ: the first field, and whether rounding may be all that lies between them."""
+"""Differences of two messages: the first different field, and whether they are equal except for rounding."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
-ROUNDING = 1e-9  # of 1 or of the value: last bits (1e-16), grown over a run; what the machines' libm may account for
+ROUNDING = 1e-9  # of 1 or of the value: errors of libm in the last bit (1e-16), amplified over a run
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The first place where today's core says something else."""
+    """First difference between a recording and the outputs of today's core."""
 
     tick: int
     key: str
@@ -24,18 +24,18 @@ class Difference:
 
 
 def first_field(then: Any, now: Any) -> tuple[str, Any, Any]:
-    """Name and both values of the first field in which two messages differ; "type" if they are of two types."""
+    """Name and values of the first different field of two messages; name "type" if their types differ."""
     if type(then) is not type(now):
         return "type", type(then).__name__, type(now).__name__
     for entry in dataclasses.fields(then):
         old, new = getattr(then, entry.name), getattr(now, entry.name)
         if old != new:
             return _first_element(entry.name, old, new)
-    return "bytes", "other bytes for the same values", ""
+    return "bytes", "different bytes for equal values", ""
 
 
 def rounding_apart(then: Any, now: Any) -> bool:
-    """Whether two values, messages or tuples differ by no more than `ROUNDING` in any number, and in nothing else."""
+    """Whether two values, messages or tuples are equal, except for at most `ROUNDING` in their numbers."""
     if type(then) is not type(now):
         return False
     if isinstance(then, float):
@@ -49,10 +49,10 @@ def rounding_apart(then: Any, now: Any) -> bool:
 
 
 def _first_element(name: str, old: Any, new: Any) -> tuple[str, Any, Any]:
-    """Goes into tuples and messages inside a message: "belief[3]", "actions[0].parameters[2].value"."""
+    """First different element of nested tuples and messages, named e.g. "actions[0].parameters[2].value"."""
     if isinstance(old, tuple) and isinstance(new, tuple) and len(old) == len(new):
-        place = next(i for i, pair in enumerate(zip(old, new, strict=True)) if pair[0] != pair[1])
-        return _first_element(f"{name}[{place}]", old[place], new[place])
+        index = next(i for i, pair in enumerate(zip(old, new, strict=True)) if pair[0] != pair[1])
+        return _first_element(f"{name}[{index}]", old[index], new[index])
     if dataclasses.is_dataclass(old) and type(old) is type(new):
         inner, then, now = first_field(old, new)
         return f"{name}.{inner}", then, now

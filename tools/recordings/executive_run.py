@@ -1,4 +1,4 @@
-"""What one executive said in a recording, sorted: its ticks, what it is made of, and all the rest by key."""
+"""Messages of one executive in a recording: ticks, provenance, and all other messages by key."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PROVENANCE_KEY = TOPICS["provenance"].key
 
 @dataclass(slots=True)
 class RecordedRun:
-    """One executive's run. `said` holds its messages by key, in the order of their sequence numbers."""
+    """Run of one executive; `published` holds its messages by key, ordered by sequence number."""
 
     sender: str
     provenance: dict[str, Any] = field(default_factory=dict)
@@ -30,7 +30,7 @@ class RecordedRun:
 
 
 def decoded(recorded: Recorded) -> Message:
-    """The value of a recorded message of our own types; raises UsageError if it is damaged."""
+    """Value of a recorded message of a Tailor type; raises UsageError if it is damaged."""
     kind = type_of(recorded.ros_type)
     message = decode(kind, recorded.data) if kind is not None else Rejected(f"unknown type {recorded.ros_type}")
     if isinstance(message, Rejected):
@@ -39,20 +39,20 @@ def decoded(recorded: Recorded) -> Message:
 
 
 def executives(messages: Iterable[Recorded]) -> list[str]:
-    """Who said ticks and what it is made of; where nobody said the latter, who said ticks. In order of appearance."""
+    """Senders of both ticks and provenance; senders of ticks if there is no provenance. In order of appearance."""
     keys: dict[str, set[str]] = defaultdict(set)
     for message in messages:
         keys[message.sender].add(message.key)
-    ticking = [sender for sender, said in keys.items() if TICK_KEY in said]
+    ticking = [sender for sender, published in keys.items() if TICK_KEY in published]
     return [sender for sender in ticking if PROVENANCE_KEY in keys[sender]] or ticking
 
 
-def take(run: RecordedRun, message: Recorded) -> str:
-    """Put a message into its run; returns why it was left out, or ""."""
+def add(run: RecordedRun, message: Recorded) -> str:
+    """Add a message to its run; returns the reason if it is not usable, or ""."""
     if message.key == PROVENANCE_KEY:
-        said = decoded(message)
-        if isinstance(said, Provenance):
-            run.provenance = _table(said)
+        provenance = decoded(message)
+        if isinstance(provenance, Provenance):
+            run.provenance = _table(provenance)
     elif message.key == TICK_KEY:
         kind = type_of(message.ros_type)
         report = decode(kind, message.data) if kind is not None else None
@@ -64,15 +64,15 @@ def take(run: RecordedRun, message: Recorded) -> str:
     return ""
 
 
-def _table(said: Provenance) -> dict[str, Any]:
-    table = table_of(said.json)
+def _table(provenance: Provenance) -> dict[str, Any]:
+    table = table_of(provenance.json)
     if isinstance(table, Rejected):
-        raise UsageError(f"{PROVENANCE_KEY}: {table.reason}, expected what an executive says of itself")
+        raise UsageError(f"{PROVENANCE_KEY}: {table.reason}, expected the provenance of an executive")
     return table
 
 
-def in_order(run: RecordedRun) -> None:
-    """Sort what a run holds by its numbers."""
+def sort_by_number(run: RecordedRun) -> None:
+    """Sort ticks and messages of a run by their numbers."""
     run.ticks.sort(key=lambda report: report.tick)
     for messages in run.published.values():
         messages.sort(key=lambda message: message.sequence)

@@ -1,4 +1,4 @@
-"""Which messages of a recording a replay sends, and under which keys."""
+"""Part of a recording that a replay publishes, and the publishers for it."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from tailor.runtime.recordings.selection import Selection
 from tailor.schemas.errors import UsageError
 
 
-def _same(recorded: Recorded) -> Recorded:
+def _unchanged(recorded: Recorded) -> Recorded:
     return recorded
 
 
-NOTHING_BARRED = Selection()
+ALL_KEYS = Selection()
 
 
 @dataclass(frozen=True, slots=True)
-class Passage:
-    """A part of a recording."""
+class RecordingPart:
+    """Messages of a recording, selected by topic and time, optionally under other keys."""
 
     recording: Recording
     wanted: Selection
     remap: Mapping[str, str] = field(default_factory=dict)  # old key -> new key
-    start_s: float = 0.0  # after the recording's first message, wanted or not
+    start_s: float = 0.0  # after the first message of the recording, selected or not
     duration_s: float = 0.0  # 0: to the end
-    barred: Selection = NOTHING_BARRED  # new keys that are left out all the same
-    rewrite: Callable[[Recorded], Recorded] = _same
+    excluded_keys: Selection = ALL_KEYS  # applied to the new keys
+    rewrite: Callable[[Recorded], Recorded] = _unchanged
 
     def messages(self) -> Iterator[Recorded]:
-        """The messages, in file order."""
+        """Selected messages in file order."""
         start_ns, end_ns = self.bounds_ns()
-        start_ns = start_ns if self.start_s else 0  # what comes first need not be earliest
+        start_ns = start_ns if self.start_s else 0  # the first message need not be the earliest
         for recorded in self.recording.messages():
             if start_ns <= recorded.log_ns < end_ns and self.wanted.wants(recorded.key, recorded.ros_type):
                 key = self.remap.get(recorded.key, recorded.key)
-                if self.barred.allows(key):
+                if self.excluded_keys.allows(key):
                     yield self.rewrite(replace(recorded, key=key))
 
     def bounds_ns(self) -> tuple[int, int]:
-        """Log times of the passage, the second one exclusive.
+        """Log times of the part, the second one exclusive.
 
         Raises:
-          UsageError: The recording is empty.
+          UsageError: The recording holds no message.
         """
         first = next(self.recording.messages(), None)
         if first is None:
@@ -54,43 +54,43 @@ class Passage:
         start_ns = first.log_ns + round(self.start_s * 1e9)
         return start_ns, start_ns + round(self.duration_s * 1e9) if self.duration_s else 2**63
 
-    def places(self) -> set[tuple[str, str]]:
-        """Keys and ROS types that it will publish.
+    def channels(self) -> set[tuple[str, str]]:
+        """Keys and ROS types of the selected messages.
 
         Raises:
-          UsageError: Nothing is left to play.
+          UsageError: No message is selected.
         """
-        places = {(recorded.key, recorded.ros_type) for recorded in self.messages()}
-        if not places:
-            raise UsageError(f"{self.recording.path}: no message of these topics and times, expected something to play")
-        return places
+        channels = {(recorded.key, recorded.ros_type) for recorded in self.messages()}
+        if not channels:
+            raise UsageError(f"{self.recording.path}: no message of these topics and times, expected at least one")
+        return channels
 
 
-class Outlets:
-    """A publisher for each key and type of a passage, declared before the first message."""
+class Publishers:
+    """One publisher per key and ROS type, declared before the first message."""
 
-    def __init__(self, session: Session, places: set[tuple[str, str]]) -> None:
-        self._publishers = {place: session.player(*place) for place in sorted(places)}
+    def __init__(self, session: Session, channels: set[tuple[str, str]]) -> None:
+        self._publishers = {channel: session.player(*channel) for channel in sorted(channels)}
 
     def __call__(self, key: str, ros_type: str) -> Publisher:
-        """The publisher for a key and a type."""
+        """Publisher for a key and a ROS type."""
         return self._publishers[key, ros_type]
 
     def wait(self, timeout_s: float) -> list[str]:
-        """Wait until somebody listens to every key; those that nobody listens to after `timeout_s`."""
+        """Wait until every key has a subscriber; returns the keys without one after `timeout_s`."""
         ends = time.monotonic() + timeout_s
         while True:
-            deaf = sorted({key for (key, _), outlet in self._publishers.items() if not outlet.matched()})
-            if not deaf or time.monotonic() >= ends:
-                return deaf
+            unmatched = sorted({key for (key, _), each in self._publishers.items() if not each.matched()})
+            if not unmatched or time.monotonic() >= ends:
+                return unmatched
             time.sleep(0.02)
 
 
 def remapping(words: Sequence[str]) -> dict[str, str]:
-    """OLD=NEW words as a table.
+    """Table of OLD=NEW words: old key -> new key.
 
     Raises:
-      UsageError: A word of another form.
+      UsageError: A word has another form.
     """
     pairs = [word.split("=") for word in words]
     for word, pair in zip(words, pairs, strict=True):

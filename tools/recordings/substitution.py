@@ -1,4 +1,4 @@
-"""Another executive in a recorded one's place: it hears the recorded sensors, and what the old one said is left out."""
+"""Substitutes a live executive for a recorded one: it receives the recorded sensors, without the recorded outputs."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
 
 SUBSTITUTES = ("executive",)
-SILENCED = tuple(name for name, topic in TOPICS.items() if topic.source in ("executive", "people"))
-WAIT_S = 10.0  # for the live executive to show itself
+OMITTED = tuple(name for name, topic in TOPICS.items() if topic.source in ("executive", "people"))
+WAIT_S = 10.0  # for a status of the live executive
 
 
 def live_executive(session: Session) -> str:
     """Sender id of the executive that runs on this bus.
 
     Raises:
-      UsageError: None shows itself in time.
+      UsageError: No executive publishes its status in time.
     """
     inbox, ends = session.inbox(["status"], ""), time.monotonic() + WAIT_S
     while time.monotonic() < ends:
@@ -30,12 +30,12 @@ def live_executive(session: Session) -> str:
             return sample.sender
         time.sleep(0.02)
     raise UsageError(
-        f"--substitute executive: none runs on this bus ({WAIT_S:g} s), expected `tailor executive DOMAIN`"
+        f"--substitute executive: no executive on this bus within {WAIT_S:g} s, expected `tailor executive DOMAIN`"
     )
 
 
 def armed_for(sender: str, recorded: Recorded) -> Recorded:
-    """The message as this executive must hear it: a driver that obeyed the recorded one seems to obey it."""
+    """The message for the live executive `sender`: a driver that obeyed the recorded one appears to obey it."""
     if type_of(recorded.ros_type) is not DriverState:
         return recorded
     state = decode(DriverState, recorded.data)

@@ -20,11 +20,11 @@ from tailor.models.training.gate_trees import LEARNERS
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import RefinementReport
 from tailor.tools.commands.learn import train
-from tailor.tools.commands.look.verify import verify
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.goldens import renew
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import RecordedRuns
+from tailor.tools.recordings.verification import verify
 from tailor.tools.viewer.recorded_messages import timed
 
 KIND = ("approachBall", "dribbleBall")

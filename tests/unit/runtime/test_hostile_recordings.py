@@ -19,7 +19,7 @@ from tailor.schemas.messages import Provenance
 from tailor.schemas.topics import TOPICS
 from tailor.tools.main import main
 from tailor.tools.recordings import recorded_run
-from tailor.tools.recordings.playback import Passage
+from tailor.tools.recordings.playback import RecordingPart
 from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.survey import survey
 from tests.support.bus_system import bus_system
@@ -172,17 +172,20 @@ def test_what_a_sender_cannot_be_counts_as_unsigned(tmp_path):
         pack(Origin(message.sequence, message.publish_ns, message.sender or "00" * 16))
 
 
-def test_nothing_to_play_is_a_mistake_and_no_endless_loop(tmp_path):
+def test_an_empty_selection_is_an_error_instead_of_an_endless_loop(tmp_path):
     path = foreign(tmp_path / "a.mcap")
-    for passage in (Passage(open_recording(path), Selection(), start_s=99.0), Passage(open_recording(path), NOTHING)):
-        with pytest.raises(UsageError, match="something to play"):
-            passage.places()
+    for part in (
+        RecordingPart(open_recording(path), Selection(), start_s=99.0),
+        RecordingPart(open_recording(path), NOTHING),
+    ):
+        with pytest.raises(UsageError, match="expected at least one"):
+            part.channels()
 
 
-def test_what_is_barred_is_barred_under_its_new_key_as_well(tmp_path):
+def test_excluded_keys_are_excluded_after_remapping_as_well(tmp_path):
     recording = open_recording(foreign(tmp_path / "a.mcap", [(1, "x"), (2, "y")]))
-    passage = Passage(recording, Selection(), {"x": "agilo/cmd_vel"}, barred=Selection(exclude=("cmd_vel",)))
-    assert [m.key for m in passage.messages()] == ["y"]
+    part = RecordingPart(recording, Selection(), {"x": "agilo/cmd_vel"}, excluded_keys=Selection(exclude=("cmd_vel",)))
+    assert [m.key for m in part.messages()] == ["y"]
 
 
 @pytest.mark.parametrize("key", ["", "/", "a/", "**", "agilo/*", "a#b", "x" * 70_000])

@@ -30,28 +30,28 @@ def test_every_message_is_the_one_that_mcaps_own_reader_finds():
     assert len(ours) > 300
 
 
-def test_a_message_is_read_and_an_unknown_record_passed_over():
+def test_messages_are_read_and_unknown_records_skipped():
     plain = record(0x77, b"later versions") + MESSAGE
     (found,) = records_of(plain, zlib.crc32(plain))
     assert (found.channel_id, found.sequence, found.log_time, found.publish_time) == (3, 7, 10, 9)
     assert found.data == b"data"
 
 
-def test_where_no_checksum_is_given_none_is_asked_for():
+def test_a_missing_checksum_is_not_checked():
     assert len(records_of(MESSAGE, 0)) == 1
 
 
 @pytest.mark.parametrize(
-    ("plain", "crc", "why"),
+    ("plain", "crc", "reason"),
     [
         (MESSAGE, 1, "checksum"),
-        (MESSAGE[:-1], 0, "beyond its end"),
-        (record(5, b"short"), 0, "no room"),
-        (struct.pack("<BQ", 5, 2**64 - 1), 0, "beyond its end"),
+        (MESSAGE[:-1], 0, "exceeds the end"),
+        (record(5, b"short"), 0, "shorter than its head"),
+        (struct.pack("<BQ", 5, 2**64 - 1), 0, "exceeds the end"),
     ],
 )
-def test_what_was_not_written_so_is_refused(plain, crc, why):
-    with pytest.raises(ValueError, match=why):
+def test_damaged_content_is_refused(plain, crc, reason):
+    with pytest.raises(ValueError, match=reason):
         records_of(plain, crc)
 
 

@@ -198,14 +198,14 @@ def test_a_full_disk_leaves_whole_blocks_and_the_rest_is_written_when_there_is_s
     assert (tmp_path / "f").read_bytes() == b"firstsecondthird"
 
 
-def make_recorder(tmp_path, intake, wanted=EVERYTHING, **limits):
-    return Recorder(tmp_path / "r.mcap", intake, wanted, Limits(**limits), RecordingMetadata("1", 0))
+def make_recorder(tmp_path, queue, wanted=EVERYTHING, **limits):
+    return Recorder(tmp_path / "r.mcap", queue, wanted, Limits(**limits), RecordingMetadata("1", 0))
 
 
 def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 2000)
-    intake = IngestQueue()
-    recorder = make_recorder(tmp_path, intake)
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue)
     real = os.write
 
     def full(*_):
@@ -213,15 +213,15 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
 
     monkeypatch.setattr(os, "write", full)
     for sequence in range(1, 31):
-        intake.put(odometry(sequence))
+        queue.put(odometry(sequence))
         recorder.step(sequence * S)
-    assert recorder.health.trouble == "No space left on device"
+    assert recorder.health.disk_error == "No space left on device"
     lost = recorder.health.drops["agilo/odom"]
     assert 0 < lost < 30
     monkeypatch.setattr(os, "write", real)
     recorder.step(100 * S)
-    assert recorder.health.trouble == ""
-    intake.put(odometry(31))
+    assert recorder.health.disk_error == ""
+    queue.put(odometry(31))
     assert recorder.close().messages == 31 - lost
     recording = open_recording(tmp_path / "r.mcap")
     assert [m.sequence for m in recording.messages()][-1] == 31
@@ -229,19 +229,19 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
 
 
 def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
-    intake = IngestQueue(most_bytes=2000)
+    queue = IngestQueue(max_bytes=2000)
     for sequence in range(100):
-        intake.put(odometry(sequence))
-    kept = len(intake.drain())
+        queue.put(odometry(sequence))
+    kept = len(queue.drain())
     assert kept == 2000 // len(odometry(1).payload)
-    assert intake.drops == Counter({"agilo/odom": 100 - kept})
+    assert queue.drops == Counter({"agilo/odom": 100 - kept})
 
 
 def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
-    intake = IngestQueue()
-    recorder = make_recorder(tmp_path, intake, most_bytes=1)
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue, max_bytes=1)
     for sequence in range(1, 4):
-        intake.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
+        queue.put(raw(Provenance(0, '{"seed": 1}'), sequence, "exec/provenance"))
         recorder.step(sequence * S)
     recorder.close()
     parts = sorted(tmp_path.glob("r_*.mcap"))
@@ -253,11 +253,11 @@ def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
 
 
 def test_deletes_and_unwanted_topics_are_not_recorded(tmp_path):
-    intake = IngestQueue()
-    recorder = make_recorder(tmp_path, intake, selection(["odom"], []))
-    intake.put(odometry(1, is_put=False))
-    intake.put(raw(EStop(True), 1, "estop"))
-    intake.put(odometry(2))
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue, selection(["odom"], []))
+    queue.put(odometry(1, is_put=False))
+    queue.put(raw(EStop(True), 1, "estop"))
+    queue.put(odometry(2))
     assert recorder.close().messages == 1
 
 
@@ -322,20 +322,20 @@ def test_a_ring_keeps_the_last_seconds_only(tmp_path):
 
 
 def test_a_ring_is_bounded_in_bytes_too(tmp_path):
-    buffer = SnapshotBuffer(1000 * S, most_bytes=10 * len(odometry(1).payload))
+    buffer = SnapshotBuffer(1000 * S, max_bytes=10 * len(odometry(1).payload))
     for k in range(1, 21):
         buffer.add(odometry(k), k * S)
     assert buffer.write(tmp_path / "ring.mcap", {}) == 10
 
 
 def test_a_snapshot_of_nothing_is_refused(tmp_path):
-    intake = IngestQueue()
+    queue = IngestQueue()
     recorder = SnapshotRecorder(
-        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+        tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
     )
     assert not recorder.request_snapshot("by hand", 0)
     recorder.step(0)
-    intake.put(odometry(1))
+    queue.put(odometry(1))
     recorder.step(1)
     assert list(tmp_path.iterdir()) == []
     assert recorder.request_snapshot("by hand", 2)
@@ -356,16 +356,16 @@ def full_disk(monkeypatch):
 
 
 def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
-    intake = IngestQueue()
+    queue = IngestQueue()
     recorder = SnapshotRecorder(
-        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+        tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
     )
-    intake.put(odometry(1))
+    queue.put(odometry(1))
     recorder.step(0)
     full_disk(True)
     recorder.request_snapshot("by hand", 1)
     recorder.step(1)
-    assert recorder.health.trouble == "No space left on device"
+    assert recorder.health.disk_error == "No space left on device"
     assert (recorder.health.files, list(tmp_path.iterdir())) == ([], [])
     full_disk(False)
     recorder.request_snapshot("again", 2)
@@ -375,11 +375,11 @@ def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_writ
 
 def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
     (tmp_path / "s_000.mcap").write_text("of yesterday")
-    intake = IngestQueue()
+    queue = IngestQueue()
     recorder = SnapshotRecorder(
-        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+        tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
     )
-    intake.put(odometry(1))
+    queue.put(odometry(1))
     recorder.step(0)
     for k in (1, 2):
         recorder.request_snapshot("by hand", k)
@@ -399,15 +399,15 @@ def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_p
 
 
 def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path):
-    intake = IngestQueue()
+    queue = IngestQueue()
     recorder = SnapshotRecorder(
-        tmp_path / "s.mcap", intake, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+        tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
     )
     for k, message in enumerate([odometry(1), status("READY", 2), status("FAULT", 3)]):
-        intake.put(message)
+        queue.put(message)
         recorder.step(k * S // 10)
     assert list(tmp_path.iterdir()) == []
-    intake.put(odometry(4))
+    queue.put(odometry(4))
     recorder.step(2 * S)
     recorder.request_snapshot("by hand", 3 * S)
     recorder.step(3 * S)

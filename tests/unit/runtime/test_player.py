@@ -11,7 +11,7 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState
 from tailor.schemas.own import example
-from tailor.tools.recordings.playback import Passage, remapping
+from tailor.tools.recordings.playback import RecordingPart, remapping
 from tailor.tools.recordings.substitution import armed_for
 from tests.unit.runtime.test_loop import SteppedClock
 from tests.unit.runtime.test_mcap_writer import S, write_tape
@@ -53,7 +53,7 @@ def test_the_rate_changes_from_now_on_and_stays_in_its_bounds():
     assert playback.rate == 100.0
 
 
-class Outlet:
+class FakePublisher:
     def __init__(self, clock):
         self.clock, self.sent = clock, []
 
@@ -68,24 +68,24 @@ class Outlet:
 def play(tmp_path, watch=lambda playback: True, **passage):
     recording = open_recording(write_tape(tmp_path / "a.mcap", count=10, chunks=1))
     clock = SteppedClock(7)
-    outlet = Outlet(clock)
+    publisher = FakePublisher(clock)
     ticks = []
-    player = Player(outlet, clock, watch, ticks.append, tick_ns=S)
-    part = Passage(recording, selection([], []), **passage)
+    player = Player(publisher, clock, watch, ticks.append, tick_ns=S)
+    part = RecordingPart(recording, selection([], []), **passage)
     finished = player.play(part.messages(), PlaybackClock(part.bounds_ns()[0], clock.now_ns(), rate=2.0))
-    return outlet.sent, player.played, finished, ticks
+    return publisher.sent, player.stats, finished, ticks
 
 
-def test_a_replay_sends_the_same_bytes_at_the_recorded_distances(tmp_path):
-    sent, played, finished, ticks = play(tmp_path)
+def test_a_replay_publishes_the_same_bytes_at_the_recorded_intervals(tmp_path):
+    sent, stats, finished, ticks = play(tmp_path)
     assert finished
     assert [at for at, *_ in sent] == [7 + k * S // 2 for k in range(10)]
     recorded = list(open_recording(tmp_path / "a.mcap").messages())
     assert [(data, o.sequence, o.source_ns, o.sender) for _, _, data, o in sent] == [
         (m.data, m.sequence, m.publish_ns, m.sender) for m in recorded
     ]
-    assert played.messages == 10
-    assert max(played.lateness_ns) == 0
+    assert stats.messages == 10
+    assert max(stats.lateness_ns) == 0
     assert ticks[:3] == [S, 3 * S, 5 * S]
 
 
@@ -94,9 +94,9 @@ def test_a_replay_can_start_later_end_earlier_and_use_another_key(tmp_path):
     assert [(key, origin.sequence) for _, key, _, origin in sent] == [("ghost/odom", k) for k in (3, 4, 5)]
 
 
-def test_the_one_who_watches_may_end_a_replay(tmp_path):
-    looks = iter([True] * 5 + [False])
-    sent, _, finished, _ = play(tmp_path, watch=lambda playback: next(looks))
+def test_the_watch_function_may_end_a_replay(tmp_path):
+    polls = iter([True] * 5 + [False])
+    sent, _, finished, _ = play(tmp_path, watch=lambda playback: next(polls))
     assert not finished
     assert len(sent) < 10
 
@@ -107,7 +107,7 @@ def test_remap_words_are_checked():
         remapping(["a/b"])
 
 
-def test_a_recorded_driver_seems_to_obey_the_live_executive(tmp_path):
+def test_a_recorded_driver_appears_to_obey_the_live_executive(tmp_path):
     from dataclasses import replace
 
     from tailor.runtime.recordings.recording import Recorded

@@ -1,4 +1,4 @@
-"""A domain and a driver that do not fit never meet."""
+"""A domain and a driver that do not match are refused at start-up."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from tailor.tools.launch.driver_check import check_driver, driver_of
 
 
 @pytest.mark.parametrize("name", domains.DOMAINS)
-def test_every_domain_fits_the_driver_of_its_robot(name):
+def test_every_domain_matches_the_driver_of_its_robot(name):
     domain = domains.load(name)
     check_driver(domain, shipped_driver_spec(domain.robot))
 
 
-def test_all_mismatches_are_told_at_once():
+def test_all_mismatches_are_reported_at_once():
     driver = shipped_driver_spec("agilo")
     slow = dataclasses.replace(driver, command_topic="joint_cmd", limits=(Limit(-0.5, 0.5), driver.limits[1]))
     with pytest.raises(UsageError) as caught:
         check_driver(domains.load("soccer"), slow)
-    assert "commands cmd_vel, the driver takes joint_cmd" in str(caught.value)
-    assert "v goes from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
+    assert "publishes cmd_vel, the driver expects joint_cmd" in str(caught.value)
+    assert "v ranges from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
 
 
-def test_a_file_that_is_no_declaration_is_refused(tmp_path):
+def test_a_file_that_specifies_no_driver_is_refused(tmp_path):
     file = tmp_path / "driver.toml"
     file.write_text("[robot]\n")
-    with pytest.raises(UsageError, match="expected a driver's declaration"):
+    with pytest.raises(UsageError, match="expected the specification of a driver"):
         driver_of("agilo", str(file))
 
 
@@ -47,7 +47,7 @@ def test_a_file_that_is_no_declaration_is_refused(tmp_path):
         ("upper = 0.9", "upper = -2.0", "v goes from -0.9 to -2, expected the lower limit first"),
     ],
 )
-def test_a_declaration_that_would_leave_the_guard_without_teeth_is_refused(tmp_path, line, wrong, expected):
+def test_a_specification_that_would_disable_the_guard_is_refused(tmp_path, line, wrong, expected):
     text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
     assert line in text
     (tmp_path / "driver.toml").write_text(text.replace(line, wrong))

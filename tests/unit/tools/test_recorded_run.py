@@ -49,7 +49,7 @@ def test_a_strangers_garbage_on_the_tick_topic_costs_nothing(tmp_path, capsys, w
     assert main(["verify", str(path)]) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[0].startswith("equal: ")
-    assert said[1] == f"  left out of exec/tick: 3 said by {sender[:8] or 'nobody'}, not by an executive"
+    assert said[1] == f"  ignored on exec/tick: 3 from {sender[:8] or 'an unknown sender'}, not an executive"
 
 
 def test_a_strangers_well_formed_ticks_are_no_run(tmp_path, whole, executive):
@@ -63,20 +63,20 @@ def test_garbage_under_the_executives_own_name_is_told_and_the_run_is_verified(t
     stop = encode(EStop(True))
     said = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
     assert main(["verify", str(written(tmp_path / "a.mcap", whole, said))]) == 0
-    assert "left out of exec/tick: 2 malformed, 1 std_msgs/msg/Bool" in capsys.readouterr().out
+    assert "ignored on exec/tick: 2 malformed, 1 std_msgs/msg/Bool" in capsys.readouterr().out
 
 
 def test_a_tick_that_is_damaged_itself_is_missed_by_its_number_and_the_damage_told(tmp_path, capsys, whole, executive):
     kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
     path = written(tmp_path / "a.mcap", kept, [(executive, GARBAGE, TICK)])
     assert main(["verify", str(path)]) == 2
-    assert "tick 7 is missing (left out of exec/tick: 1 malformed)" in capsys.readouterr().err
+    assert "tick 7 is missing (ignored on exec/tick: 1 malformed)" in capsys.readouterr().err
 
 
 def test_a_file_with_nothing_but_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):
     others = [m for m in whole if m.key not in (TICK_KEY, PROVENANCE_KEY)]
     path = written(tmp_path / "a.mcap", others, [(STRANGER, GARBAGE, TICK)])
-    with pytest.raises(UsageError, match=r"no message of exec/tick to be used \(left out of exec/tick: 1 malformed\)"):
+    with pytest.raises(UsageError, match=r"no usable message of exec/tick \(ignored on exec/tick: 1 malformed\)"):
         RecordedRuns(path)
 
 

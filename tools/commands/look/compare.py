@@ -1,4 +1,4 @@
-"""Show two recorded runs side by side: commands, plans, subgoals and durations, as tables and on request as plots."""
+"""Compare two recorded runs: commands, plans, subgoals and durations, as tables and optionally as plots."""
 
 from __future__ import annotations
 
@@ -16,36 +16,36 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.terminal import table_console
-from tailor.tools.recordings.comparison import ComparedRun, chosen, commands_apart, compared_run
+from tailor.tools.recordings.comparison import ComparedRun, chosen, command_differences, compared_run
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor compare`."""
-    parser.add_argument("first", type=Path, help="recording (MCAP) of an executive's run")
-    parser.add_argument("second", type=Path, help="another one, e.g. of the same sensors with other models")
+    parser.add_argument("first", type=Path, help="recording (MCAP) of a run")
+    parser.add_argument("second", type=Path, help="recording of another run, e.g. with other models")
     parser.add_argument("--plot", type=Path, metavar="PNG", help="draw commands and durations")
-    parser.add_argument("--json", action="store_true", help="tell it as JSON")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 when both ended alike and commanded the same, 1 when not."""
+    """0 if results and commands are equal, 1 if not."""
     if arguments.plot and arguments.plot.suffix != ".png":
         raise UsageError(f"--plot {arguments.plot}: expected a name that ends in .png")
     a, b = compared_run(arguments.first), compared_run(arguments.second)
-    told = _told(a, b)
+    comparison = _comparison(a, b)
     if arguments.json:
-        print(json.dumps(told))
+        print(json.dumps(comparison))
     else:
-        _show(a, b, told)
+        _show(a, b, comparison)
     if arguments.plot:
         from tailor.tools.figures.comparison_plot import draw_comparison
 
         draw_comparison(a, b, arguments.plot)
-    return 0 if told["equal"] else 1
+    return 0 if comparison["equal"] else 1
 
 
-def _told(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
-    apart = {name: None if math.isnan(value) else round(value, 6) for name, value in commands_apart(a, b).items()}
+def _comparison(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
+    apart = {name: None if math.isnan(value) else round(value, 6) for name, value in command_differences(a, b).items()}
     same_commands = apart["first_s"] is None and len(a.commands) == len(b.commands)
     return {
         "equal": same_commands and a.result == b.result,
@@ -73,7 +73,7 @@ def _action(action: ActionFinished) -> dict[str, Any]:
     }
 
 
-def _show(a: ComparedRun, b: ComparedRun, told: dict[str, Any]) -> None:
+def _show(a: ComparedRun, b: ComparedRun, comparison: dict[str, Any]) -> None:
     console = table_console()
     actions = [[_brief(action) for action in run.actions] for run in (a, b)]
     console.print(_side_by_side("action, predicted → actual s", a, b, *actions))
@@ -83,12 +83,12 @@ def _show(a: ComparedRun, b: ComparedRun, told: dict[str, Any]) -> None:
     if a.total_s > 0:
         total += f" ({b.total_s / a.total_s - 1:+.1%})"
     console.print(f"durations: {total}; results: {a.result or 'none'}, {b.result or 'none'}")
-    apart = told["commands"]
+    apart = comparison["commands"]
     if apart["first_s"] is None:
         console.print(f"commands: equal over {apart['seconds']:.1f} s")
     else:
-        first, rms, most = (apart[name] for name in ("first_s", "rms", "max"))
-        console.print(f"commands: first differ {first:.1f} s after setting off; RMS {rms:.3f}, largest {most:.3f}")
+        first, rms, largest = (apart[name] for name in ("first_s", "rms", "max"))
+        console.print(f"commands: first differ {first:.1f} s after the start; RMS {rms:.3f}, largest {largest:.3f}")
 
 
 def _brief(action: ActionFinished) -> str:
@@ -97,12 +97,12 @@ def _brief(action: ActionFinished) -> str:
 
 
 def _changes(run: ComparedRun) -> list[str]:
-    """The chosen subgoals, without repetitions."""
+    """Chosen subgoals without repetitions."""
     return _distinct([", ".join(f"{name} {value:.2f}" for name, value in chosen(s).items()) for s in run.subgoals])
 
 
 def _steps(plan: PlanReport) -> str:
-    """The steps of a plan in VHPOP's form, in its order, or why there is none."""
+    """Steps of a plan in VHPOP's form, in the order of the plan, or the reason why there is none."""
     steps = re.findall(r"^Step \d+\s*: (\(.*\))", plan.plan, flags=re.MULTILINE)
     return " ".join(steps) or (
         f"{plan.status}: {reason_text(plan.reason, plan.detail)}" if plan.reason else "nothing left to do"
@@ -110,12 +110,12 @@ def _steps(plan: PlanReport) -> str:
 
 
 def _distinct(texts: list[str]) -> list[str]:
-    """Without empty ones and without repetitions in a row."""
+    """Texts without empty ones and without consecutive repetitions."""
     return [text for text, before in zip(texts, ["", *texts], strict=False) if text and text != before]
 
 
-def _side_by_side(what: str, a: ComparedRun, b: ComparedRun, left: list[str], right: list[str]) -> Table:
-    table = Table(title=what, title_justify="left", box=None, show_lines=False)
+def _side_by_side(title: str, a: ComparedRun, b: ComparedRun, left: list[str], right: list[str]) -> Table:
+    table = Table(title=title, title_justify="left", box=None, show_lines=False)
     table.add_column(a.name, ratio=1)
     table.add_column(b.name, ratio=1)
     for row in zip_longest(left, right, fillvalue=""):

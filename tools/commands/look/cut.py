@@ -1,4 +1,4 @@
-"""Cut a piece out of a recording: a span of time, some topics; bytes and metadata stay as they are."""
+"""Cut a time span or some topics out of a recording; bytes and metadata are unchanged."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.errors import UsageError
 
-MAX_S = 1e10  # what the file's clock can tell
+MAX_S = 1e10  # limit of the clock in the file
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor cut`."""
     add = parser.add_argument
     add("file", help="recording (MCAP)")
-    add("-o", "--output", metavar="FILE", help="file to make (default: NAME-cut.mcap)")
+    add("-o", "--output", metavar="FILE", help="new file (default: NAME-cut.mcap)")
     add(
         "--from", dest="start", type=float, default=0.0, metavar="S", help="seconds after the first message (default 0)"
     )
@@ -28,12 +28,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="seconds after the first message, exclusive (default: the end)",
     )
-    add("--topics", action="append", default=[], metavar="WORDS", help="only these: odom, 'agilo/*', a ROS type; a,b,c")
-    add("--exclude", action="append", default=[], metavar="WORDS", help="all but these")
+    add(
+        "--topics",
+        action="append",
+        default=[],
+        metavar="WORDS",
+        help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
+    )
+    add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 when something is left, 1 when nothing is."""
+    """0, or 1 if no message was selected."""
     if not 0 <= arguments.start < MAX_S:
         raise UsageError(f"--from is {arguments.start:g}, expected seconds from 0 on")
     if arguments.end is not None and not arguments.start < arguments.end < MAX_S:
@@ -42,7 +48,9 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = selection(arguments.topics, arguments.exclude)
     first = next(recording.messages(), None)
     zero_ns = 0 if first is None else first.log_ns
-    start_ns = zero_ns + round(arguments.start * 1e9) if arguments.start else 0  # what comes first need not be earliest
+    start_ns = (
+        zero_ns + round(arguments.start * 1e9) if arguments.start else 0
+    )  # the first message need not be the earliest
     end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
     target = Path(arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap"))
 

@@ -1,4 +1,4 @@
-"""Tell what a recording holds: topics with rates and gaps, drops, damage, episodes, actions, modes and tick timing."""
+"""Summarise a recording: topics with rates and gaps, drops, damage, runs, actions, modes and tick timing."""
 
 from __future__ import annotations
 
@@ -16,50 +16,50 @@ from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.survey import Stream, Survey, percentiles, survey
 
-MAX_ROWS = 500  # of the table of topics: a run has some 30; laying out thousands takes minutes
+MAX_ROWS = 500  # of the table of topics: a run has about 30, and formatting thousands takes minutes
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor info`."""
     parser.add_argument("file", help="recording (MCAP)")
-    parser.add_argument("--json", action="store_true", help="tell it as JSON")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0; 1 when the file is damaged or messages were dropped."""
+    """0; 1 if the file is damaged or messages were dropped."""
     recording = open_recording(arguments.file)
-    told = _told(recording, survey(recording))
+    summary = _summary(recording, survey(recording))
     if arguments.json:
-        print(json.dumps(told))
+        print(json.dumps(summary))
     else:
-        _show(told)
-    return 1 if told["damage"] or told["drops"] else 0
+        _show(summary)
+    return 1 if summary["damage"] or summary["drops"] else 0
 
 
-def _told(recording: Recording, found: Survey) -> dict[str, Any]:
-    start_ns, end_ns = found.span_ns
+def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
+    start_ns, end_ns = counted.span_ns
     metadata = dict(recording.metadata())
     return {
         "file": str(recording.path),
         "bytes": recording.path.stat().st_size,
-        "start": _time(start_ns) if found.streams else "",
+        "start": _time(start_ns) if counted.streams else "",
         "duration_s": round((end_ns - start_ns) / 1e9, 3),
-        "messages": sum(stream.count for stream in found.streams.values()),
+        "messages": sum(stream.count for stream in counted.streams.values()),
         "damage": recording.damage.text(),
         "drops": {key: int(count) if count.isdecimal() else count for key, count in metadata.get("drops", {}).items()},
-        "topics": [_stream(s) for s in sorted(found.streams.values(), key=lambda s: (s.key, s.first_ns))],
-        "episodes": [{"goal": goal, "result": result} for goal, result in found.results],
+        "topics": [_stream(s) for s in sorted(counted.streams.values(), key=lambda s: (s.key, s.first_ns))],
+        "episodes": [{"goal": goal, "result": result} for goal, result in counted.results],
         "actions": [
             {"action": a.action, "outcome": a.outcome, "predicted_s": a.predicted_s, "actual_s": a.actual_s}
-            for a in found.actions
+            for a in counted.actions
         ],
-        "modes": dict(found.modes),
-        "faults": found.faults,
-        "driver_stops": found.stops,
+        "modes": dict(counted.modes),
+        "faults": counted.faults,
+        "driver_stops": counted.stops,
         "ticks": {
-            "late_ms": percentiles(found.late_ms),
-            "work_ms": percentiles(found.work_ms),
-            "skipped_periods": found.skipped,
+            "late_ms": percentiles(counted.late_ms),
+            "work_ms": percentiles(counted.work_ms),
+            "skipped_periods": counted.skipped,
         },
         "provenance": _parsed(metadata.get("provenance", {}).get("json", "{}")),
         "recorder": metadata.get("recorder", {}),
@@ -88,27 +88,29 @@ def _parsed(text: str) -> Any:
     return text if isinstance(table, Rejected) else table
 
 
-def _show(told: dict[str, Any]) -> None:
+def _show(summary: dict[str, Any]) -> None:
     console = table_console()
-    size, since = told["bytes"] / 1e6, f" from {told['start']}" if told["start"] else ""
-    console.print(f"{told['file']}: {told['messages']} messages, {told['duration_s']:.1f} s{since}, {size:.2f} MB")
-    if told["damage"]:
-        console.print(f"damaged: {told['damage']}", style="red")
-    for key, count in told["drops"].items():
+    size, since = summary["bytes"] / 1e6, f" from {summary['start']}" if summary["start"] else ""
+    console.print(
+        f"{summary['file']}: {summary['messages']} messages, {summary['duration_s']:.1f} s{since}, {size:.2f} MB"
+    )
+    if summary["damage"]:
+        console.print(f"damaged: {summary['damage']}", style="red")
+    for key, count in summary["drops"].items():
         console.print(f"dropped: {count} of {plain(key)}", style="red")
-    console.print(_topics(told["topics"][:MAX_ROWS]))
-    if len(told["topics"]) > MAX_ROWS:
-        console.print(f"and {len(told['topics']) - MAX_ROWS} topics more; --json tells all")
-    if told["actions"]:
-        console.print(_actions(told["actions"]))
-    for episode in told["episodes"]:
+    console.print(_topics(summary["topics"][:MAX_ROWS]))
+    if len(summary["topics"]) > MAX_ROWS:
+        console.print(f"and {len(summary['topics']) - MAX_ROWS} topics more; --json prints all")
+    if summary["actions"]:
+        console.print(_actions(summary["actions"]))
+    for episode in summary["episodes"]:
         console.print(plain(f"episode {episode['goal']}: {episode['result']}"))
-    for name, what in (("fault", told["faults"]), ("driver stopped", told["driver_stops"])):
-        for reason in what:
+    for name, reasons in (("fault", summary["faults"]), ("driver stopped", summary["driver_stops"])):
+        for reason in reasons:
             console.print(plain(f"{name}: {reason}"))
-    if told["modes"]:
-        ticks = told["ticks"]
-        console.print("ticks by mode: " + ", ".join(f"{mode} {count}" for mode, count in told["modes"].items()))
+    if summary["modes"]:
+        ticks = summary["ticks"]
+        console.print("ticks by mode: " + ", ".join(f"{mode} {count}" for mode, count in summary["modes"].items()))
         console.print(f"ticks late (ms): {ticks['late_ms']}, work (ms): {ticks['work_ms']}")
         console.print(f"periods skipped: {ticks['skipped_periods']}")
 

@@ -1,6 +1,6 @@
-"""Play a recording on the bus at its recorded times: same bytes, same numbers, same senders.
+"""Play a recording on the bus at its recorded times, with the recorded bytes, sequence numbers and senders.
 
-Keys: space pauses and goes on, right (or s) sends the next message while paused, up and down change the rate, q ends.
+Keys: space pauses and resumes, right (or s) sends the next message while paused, up and down change the rate, q quits.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import numpy as np
 
 from tailor.runtime.bus.session import Session, open_client
 from tailor.runtime.clock import MonotonicClock
-from tailor.runtime.recordings.playback_clock import FASTEST, SLOWEST, PlaybackClock
-from tailor.runtime.recordings.player import Played, Player
+from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, PlaybackClock
+from tailor.runtime.recordings.player import PlaybackStats, Player
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection, selection
 from tailor.runtime.stopping import Stop, stop_on_signals
@@ -28,43 +28,65 @@ from tailor.schemas.topics import TOPICS
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import check_within
-from tailor.tools.recordings.playback import Outlets, Passage, remapping
-from tailor.tools.recordings.substitution import SILENCED, SUBSTITUTES, armed_for, live_executive
+from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
+from tailor.tools.recordings.substitution import OMITTED, SUBSTITUTES, armed_for, live_executive
 
 DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.priority == "real_time"))
-LISTEN_S = 0.5  # for a live driver; they speak at 10 Hz
-MAX_S = 1e9  # a recording has no such length
-FASTEST_CLOCK_HZ = 10_000.0
+LISTEN_S = 0.5  # for a live driver; drivers publish at 10 Hz
+MAX_S = 1e9  # beyond any recording
+MAX_CLOCK_HZ = 10_000.0
 LAST_CLOCK_NS = (2**31 - 1) * 10**9  # ROS's clock ends in 2038
-TAIL_S = 0.2  # for the last messages to leave before the session closes
+TAIL_S = 0.2  # for the last messages to be sent before the session closes
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor replay`."""
     add = parser.add_argument
     add("file", help="recording (MCAP)")
-    add("--rate", type=float, default=1.0, metavar="X", help=f"recorded seconds per second, {SLOWEST:g} to {FASTEST:g}")
-    add("--start", type=float, default=0.0, metavar="S", help="begin so long after the first message")
-    add("--duration", type=float, default=0.0, metavar="S", help="end after so much recorded time")
-    add("--loop", action="store_true", help="again and again")
-    add("--topics", action="append", default=[], metavar="WORDS", help="only these: odom, 'agilo/*', a ROS type; a,b,c")
-    add("--exclude", action="append", default=[], metavar="WORDS", help="all but these")
-    add("--remap", action="append", default=[], metavar="OLD=NEW", help="another key, e.g. agilo/odom=ghost/odom")
+    add(
+        "--rate",
+        type=float,
+        default=1.0,
+        metavar="X",
+        help=f"recorded s per s, {MIN_RATE:g} to {MAX_RATE:g}",
+    )
+    add("--start", type=float, default=0.0, metavar="S", help="begin this long after the first message")
+    add("--duration", type=float, default=0.0, metavar="S", help="end after this much recorded time")
+    add("--loop", action="store_true", help="repeat until stopped")
+    add(
+        "--topics",
+        action="append",
+        default=[],
+        metavar="WORDS",
+        help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
+    )
+    add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
+    add(
+        "--remap",
+        action="append",
+        default=[],
+        metavar="OLD=NEW",
+        help="replace a key, e.g. agilo/odom=ghost/odom",
+    )
     add("--clock", type=float, default=0.0, metavar="HZ", help="publish the recorded time on /clock")
     add("--paused", action="store_true", help="begin paused")
-    add("--wait", type=float, default=2.0, metavar="S", help="wait so long for somebody to listen (default 2)")
-    add("--drive", action="store_true", help="send commands and arming requests even to a live driver")
-    add("--substitute", choices=SUBSTITUTES, help="leave out what this one said, and let a live one answer")
-    add("--json", action="store_true", help="tell the result as JSON")
+    add("--wait", type=float, default=2.0, metavar="S", help="wait this long for subscribers (default 2)")
+    add("--drive", action="store_true", help="publish commands and arming requests even if a driver is live")
+    add(
+        "--substitute",
+        choices=SUBSTITUTES,
+        help="replace the recorded messages of this process by a live one",
+    )
+    add("--json", action="store_true", help="print the result as JSON")
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Play until the end; 0, or 1 when the bus went away."""
-    if not SLOWEST <= arguments.rate <= FASTEST:
-        raise UsageError(f"--rate is {arguments.rate:g}, expected {SLOWEST:g} to {FASTEST:g}")
-    for name, most in (("start", MAX_S), ("duration", MAX_S), ("wait", MAX_S), ("clock", FASTEST_CLOCK_HZ)):
-        check_within(getattr(arguments, name), most, f"--{name}")
+    """Play to the end; 0, or 1 if the bus disconnected."""
+    if not MIN_RATE <= arguments.rate <= MAX_RATE:
+        raise UsageError(f"--rate is {arguments.rate:g}, expected {MIN_RATE:g} to {MAX_RATE:g}")
+    for name, maximum in (("start", MAX_S), ("duration", MAX_S), ("wait", MAX_S), ("clock", MAX_CLOCK_HZ)):
+        check_within(getattr(arguments, name), maximum, f"--{name}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
     stop = stop_on_signals()
@@ -72,52 +94,54 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         changes: dict[str, Any] = {}
         if arguments.substitute:
-            wanted = Selection(wanted.include, wanted.exclude + SILENCED)
+            wanted = Selection(wanted.include, wanted.exclude + OMITTED)
             changes = {"rewrite": partial(armed_for, live_executive(session))}
         elif not arguments.drive and _driver_is_live(session):
-            _say("a driver is live: commands, arming requests and e-stops are left out (--drive sends them)")
+            _warn("a driver is live: commands, arming requests and e-stops are omitted (--drive publishes them)")
             wanted = Selection(wanted.include, wanted.exclude + DRIVING)
-            changes = {"barred": Selection(exclude=DRIVING)}
-        passage = Passage(recording, wanted, remap, arguments.start, arguments.duration, **changes)
-        outlets = Outlets(session, passage.places())
-        damage = recording.damage.text()  # now that all of it was read once; what follows may end early
-        played = _play(arguments, session, passage, outlets, stop)
-        gone = not session.connected
-    _tell(played, arguments.json)
+            changes = {"excluded_keys": Selection(exclude=DRIVING)}
+        part = RecordingPart(recording, wanted, remap, arguments.start, arguments.duration, **changes)
+        publishers = Publishers(session, part.channels())
+        damage = recording.damage.text()  # all of it has been read; the playback may end early
+        stats = _play(arguments, session, part, publishers, stop)
+        disconnected = not session.connected
+    _report(stats, arguments.json)
     if damage:
-        _say(f"{recording.path}: {damage}")
-    if gone:
-        _say("the bus is gone: the replay ended early")
-    return int(gone)
+        _warn(f"{recording.path}: {damage}")
+    if disconnected:
+        _warn("bus disconnected: the replay ended early")
+    return int(disconnected)
 
 
-def _play(arguments: argparse.Namespace, session: Session, passage: Passage, outlets: Outlets, stop: Stop) -> Played:
+def _play(
+    arguments: argparse.Namespace, session: Session, part: RecordingPart, publishers: Publishers, stop: Stop
+) -> PlaybackStats:
     clock = MonotonicClock()
-    deaf = outlets.wait(arguments.wait)
-    if deaf:
-        _say(f"nobody listens to: {', '.join(deaf)}")
+    unmatched = publishers.wait(arguments.wait)
+    if unmatched:
+        _warn(f"no subscriber of: {', '.join(unmatched)}")
     with Keyboard() as keyboard:
 
         def watch(playback: PlaybackClock) -> bool:
             return session.connected and not stop.requested and _steer(playback, keyboard.pressed(), clock.now_ns())
 
         def tick(recorded_ns: int) -> None:
-            clock_outlet.publish(Clock(min(recorded_ns, LAST_CLOCK_NS)))
+            clock_publisher.publish(Clock(min(recorded_ns, LAST_CLOCK_NS)))
 
-        clock_outlet = session.publisher("clock", "")
+        clock_publisher = session.publisher("clock", "")
         tick_ns = round(1e9 / arguments.clock) if arguments.clock else 0
-        player = Player(outlets, clock, watch, tick, tick_ns)
-        start_ns, _ = passage.bounds_ns()
-        again = True
-        while again:
+        player = Player(publishers, clock, watch, tick, tick_ns)
+        start_ns, _ = part.bounds_ns()
+        repeat = True
+        while repeat:
             playback = PlaybackClock(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
-            again = player.play(passage.messages(), playback) and arguments.loop
+            repeat = player.play(part.messages(), playback) and arguments.loop
     time.sleep(TAIL_S)
-    return player.played
+    return player.stats
 
 
 def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
-    """Do what a key says; False ends the replay."""
+    """Apply a key to the playback; False ends the replay."""
     if key == "space":
         playback.toggle(now_ns)
     elif key == "right":
@@ -128,21 +152,21 @@ def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
 
 
 def _driver_is_live(session: Session) -> bool:
-    intake, subscribe_all = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
+    queue, subscription = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
     time.sleep(LISTEN_S)
-    subscribe_all.undeclare()
-    return bool(intake.drain())
+    subscription.undeclare()
+    return bool(queue.drain())
 
 
-def _tell(played: Played, as_json: bool) -> None:
-    late_ms = np.array(played.lateness_ns or [0]) / 1e6
+def _report(stats: PlaybackStats, as_json: bool) -> None:
+    late_ms = np.array(stats.lateness_ns or [0]) / 1e6
     p50, p99, worst = (float(np.percentile(late_ms, q)) for q in (50, 99, 100))
     if as_json:
         figures = {"p50_ms": round(p50, 3), "p99_ms": round(p99, 3), "max_ms": round(worst, 3)}
-        print(json.dumps({"messages": played.messages, "bytes": played.bytes, "lateness": figures}))
+        print(json.dumps({"messages": stats.messages, "bytes": stats.bytes, "lateness": figures}))
     else:
-        print(f"{played.messages} messages, late by p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms")
+        print(f"{stats.messages} messages, late by p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms")
 
 
-def _say(line: str) -> None:
+def _warn(line: str) -> None:
     print(line, file=sys.stderr)

@@ -25,8 +25,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 if every driver on the bus has stopped, 1 if one has not or there is none."""
     with open_client(endpoint_of(arguments)) as session:
-        intake, subscription = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
-        modes = _stop(session.publisher("estop", ""), intake)
+        queue, subscription = session.subscribe_all(TOPICS["driver"].key.format(robot="*"))
+        modes = _stop(session.publisher("estop", ""), queue)
         subscription.undeclare()
     for robot, mode in sorted(modes.items()):
         print(f"{robot} is {mode}")
@@ -35,14 +35,14 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if modes and set(modes.values()) == {"estopped"} else 1
 
 
-def _stop(publisher: Publisher, intake: IngestQueue) -> dict[str, str]:
+def _stop(publisher: Publisher, queue: IngestQueue) -> dict[str, str]:
     """Send the emergency stop repeatedly for WAIT_S; returns the mode of each robot's driver."""
     modes: dict[str, str] = {}
     ends = time.monotonic() + WAIT_S
     while time.monotonic() < ends:
         publisher.publish(EStop(True))
         time.sleep(REPEAT_S)
-        for raw in intake.drain():
+        for raw in queue.drain():
             state = decode(DriverState, raw.payload)
             if isinstance(state, DriverState):
                 modes[raw.key.partition("/")[0]] = state.mode

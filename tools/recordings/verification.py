@@ -1,0 +1,104 @@
+"""Verifies recorded runs: feeds their inputs through today's core and compares the outputs bit for bit."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import tee
+from typing import Protocol
+
+from tailor.executive.core.context import Context
+from tailor.executive.core.state import Output
+from tailor.executive.replay import RecordedTick, replay
+from tailor.runtime.gc_freeze import gc_frozen
+from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind
+from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
+from tailor.tools.recordings.differences import ROUNDING, Difference
+from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
+
+
+class TickWriter(Protocol):
+    """Writes the ticks of today's core, e.g. tailor.tools.lockstep.run_writer.RunWriter."""
+
+    def write(self, tick: RecordedTick, inputs: Sequence[bytes], outputs: tuple[Output, ...]) -> None:
+        """Write one tick."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Result of a verification; the run is equal if `difference` is None."""
+
+    sender: str
+    ticks: int
+    compared: int  # messages
+    rounded: int  # of them equal except for rounding; 0 unless recorded on a platform of another kind
+    difference: Difference | None
+    machines: str  # differences between the recording platform and this one
+    left_out: str  # messages on exec/tick that are not ticks of an executive; empty if none
+    took_s: float  # without reading the file, loading models and compiling codecs
+
+    @property
+    def times_real_time(self) -> float:
+        """Recorded seconds per second of verification, at ten ticks a second."""
+        return self.ticks / 10 / self.took_s
+
+
+def verify(
+    runs: RecordedRuns, run: RecordedRun, context: Context, writer: TickWriter | None = None, proofs: bool = True
+) -> Verdict:
+    """Compare one recorded run with the outputs of today's core, up to the first difference.
+
+    Rounding is tolerated only if the recording platform is of another kind (see `platform_fingerprint`).
+
+    Args:
+      runs: The recording.
+      run: One of its runs.
+      context: Context for today's core, from `rebuild_context`.
+      writer: Receives the outputs of today's core; the comparison then continues to the end of the run.
+      proofs: Whether to compute and compare optimality gaps, too.
+    """
+    here, there = platform_fingerprint(), run.provenance.get("machine", {})
+    comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
+    with gc_frozen():  # as live
+        began_s = time.perf_counter()
+        difference = _first_difference(comparison, runs, run, context if proofs else without_proofs(context), writer)
+        took_s = time.perf_counter() - began_s
+    return Verdict(
+        run.sender,
+        comparison.ticks,
+        comparison.compared,
+        comparison.rounded,
+        difference,
+        contrast(there, here),
+        runs.left_out_text(),
+        took_s,
+    )
+
+
+def _first_difference(
+    comparison: RunComparison, runs: RecordedRuns, run: RecordedRun, context: Context, writer: TickWriter | None
+) -> Difference | None:
+    difference = None
+    ticks, inputs = tee(runs.ticks(run))
+    for tick, (_, outputs) in zip(ticks, replay(context, inputs), strict=True):
+        difference = difference or comparison.tick(tick.tick, outputs)
+        if writer is not None:
+            writer.write(tick, runs.inputs(tick), outputs)
+        elif difference is not None:
+            break
+    return difference or comparison.missing()
+
+
+def verdict_text(verdict: Verdict) -> str:
+    """The verdict in one line; further lines on platforms and ignored messages if there is something to report."""
+    summary = f"{verdict.compared} messages of {verdict.ticks} ticks ({verdict.times_real_time:.0f} times real time)"
+    left_out = f"\n  {verdict.left_out}" if verdict.left_out else ""
+    machines = f"\n  recorded on {verdict.machines}" if verdict.machines else ""
+    if verdict.difference is not None:
+        return f"different: {verdict.difference}{machines}{left_out}"
+    if verdict.rounded:
+        rounded = f"{verdict.rounded} of them not to the last bit"
+        return f"equal within {ROUNDING:g}: {summary}; {rounded}{machines}{left_out}"
+    return f"equal: {summary}{left_out}"
