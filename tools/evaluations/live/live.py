@@ -1,6 +1,6 @@
-"""Whether episodes in lock-step are like live ones: the same starts over the bus, in real processes and real time.
+"""Agreement of live runs with lock-step: the same starts over the bus, in real processes and real time.
 
-Evaluations run in lock-step, because that is faster than time. A sample of live runs shows that nothing hangs on it.
+Evaluations run in lock-step, which is faster than real time. A sample of live runs validates them.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ from tailor.tools.evaluations.report import Report, configure_report, publish_re
 from tailor.tools.evaluations.task_runs import dependencies, run_all
 from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
 
-OTHER_NOISE = 500_000  # from one lock-step run of a start to the next
-MARGIN_PCT = 5.0  # fixed before the first run: half of what refinement gains
-LIVE, LUCK = "live", "lock-step, once more"
+NOISE_STRIDE = 500_000  # between the noise seeds of two lock-step runs of a start
+MARGIN_PCT = 5.0  # fixed before the first run: half of the improvement by refinement
+LIVE, REPEATED = "live", "lock-step, repeated"
 Runs = Mapping[int, Outcome]  # by seed
 Repeats = Mapping[int, Sequence[Outcome]]
 REMARKS = (
-    "Each run against the lock-step runs of the same start, which differ by their noise alone. The second row is one "
-    "more lock-step run of each start, treated alike: what perfect agreement looks like with so few starts.",
-    "difference_pct, ci95_pct, p_value: of the geometric means, paired; p_rank: whether a run's rank among its start's "
-    "lock-step runs is as often high as low; within_range_pct: runs between the shortest and longest of their start's.",
-    f"equivalent: both one-sided t-tests (TOST) say at 5 % that the means are less than {MARGIN_PCT:g} % apart.",
+    "Each run against the lock-step runs of the same start, which differ only by their noise. The second row is one "
+    "more lock-step run of each start: the reference of perfect agreement with so few starts.",
+    "difference_pct, ci95_pct, p_value: of the geometric means, paired; p_rank: whether the ranks of the runs among "
+    "their start's lock-step runs are uniform; within_range_pct: runs between the shortest and longest of their start.",
+    f"equivalent: both one-sided t-tests (TOST) reject at 5 % a difference of the means of {MARGIN_PCT:g} % or more.",
 )
 
 
@@ -52,17 +52,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--episodes", type=at_least(2, "--episodes"), default=20, help="starts (default %(default)s, about 20 s each)"
     )
-    parser.add_argument("--scenario", default="approach-dribble", help="of soccer's (default %(default)s)")
+    parser.add_argument("--scenario", default="approach-dribble", help="soccer scenario (default %(default)s)")
     parser.add_argument(
         "--horizon",
         type=at_least(1, "--horizon"),
         default=2,
-        help="actions looked ahead; 1 is greedy (default %(default)s)",
+        help="horizon of refinement; 1 is greedy (default %(default)s)",
     )
     parser.add_argument(
-        "--repeats", type=at_least(2, "--repeats"), default=15, help="lock-step runs a start (default %(default)s)"
+        "--repeats",
+        type=at_least(2, "--repeats"),
+        default=15,
+        help="lock-step runs of each start (default %(default)s)",
     )
-    parser.add_argument("--recordings", type=Path, metavar="DIR", help="keep the recordings of the runs there")
+    parser.add_argument("--recordings", type=Path, metavar="DIR", help="keep the recordings of the runs in DIR")
     configure_report(parser)
 
 
@@ -75,9 +78,9 @@ def run(arguments: argparse.Namespace) -> int:
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
     seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
     repeats = _lockstep(task, arguments, seeds)
-    once_more = {seed: some.pop() for seed, some in repeats.items()}
+    repeated = {seed: some.pop() for seed, some in repeats.items()}
     stop = stop_on_signals()
-    found = {LIVE: _live(task, arguments, seeds, stop), LUCK: once_more}
+    found = {LIVE: _live(task, arguments, seeds, stop), REPEATED: repeated}
     if stop.requested:
         return 130
     rows = [_row(name, arguments.horizon, runs, repeats) for name, runs in found.items()]
@@ -93,21 +96,21 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _lockstep(task: Task, arguments: argparse.Namespace, seeds: Sequence[int]) -> dict[int, list[Outcome]]:
-    """Every start's lock-step runs, one more than asked for."""
+    """Lock-step runs of every start, one more than requested."""
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
-    variants = [Variant(f"noise-{k}", refinement, noise=k * OTHER_NOISE) for k in range(arguments.repeats + 1)]
+    variants = [Variant(f"noise-{k}", refinement, noise=k * NOISE_STRIDE) for k in range(arguments.repeats + 1)]
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "lock-step")
     return {seed: [found[variant.name][seed] for variant in variants] for seed in seeds}
 
 
 def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop: Stop) -> dict[int, Outcome]:
-    """The live outcomes by seed; those of earlier runs are taken from the store."""
+    """Live outcomes by seed; stored ones are reused."""
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
     journal = Journal(arguments.store, task, Variant(LIVE, refinement), dependencies(task))
     missing = [seed for seed in seeds if seed not in journal.known]
     for seed in track(missing, "live", transient=True):
-        order = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
-        outcome = run_live(order, stop, arguments.recordings)
+        config = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
+        outcome = run_live(config, stop, arguments.recordings)
         if stop.requested:
             break
         journal.note(outcome)
@@ -115,23 +118,23 @@ def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop:
     return {seed: journal.known[seed] for seed in seeds if seed in journal.known}
 
 
-def run_live(order: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> Outcome:
-    """One whole system from start to goal over a bus of its own, and what came of it, from its recording alone.
+def run_live(config: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> Outcome:
+    """Run a whole system over a bus of its own; the outcome is read from its recording.
 
     Args:
-      order: What the executive runs; its seed is that of the world too.
+      config: Configuration of the executive; its seed is also that of the world.
       stop: Ends the run early when requested.
-      keep: Folder for the recording; None throws it away.
+      keep: Folder for the recording; None deletes it.
     """
-    seed = order.settings.seed
+    seed = config.settings.seed
     with tempfile.TemporaryDirectory() as folder:
         kept = Path(folder) if keep is None else keep
         kept.mkdir(parents=True, exist_ok=True)
-        recording = kept / f"{order.scenario}-h{order.settings.refinement.horizon}-{seed}.mcap"
+        recording = kept / f"{config.scenario}-h{config.settings.refinement.horizon}-{seed}.mcap"
         recording.unlink(missing_ok=True)
-        result = run_system(LaunchConfig(order, free_endpoint(), recording, once=True), NullScreen(), stop)
+        result = run_system(LaunchConfig(config, free_endpoint(), recording, once=True), NullScreen(), stop)
         run = run_of(_messages(recording), result or "failed: stopped")
-    return outcome_of(run, domains.load(order.domain), LIVE, seed)
+    return outcome_of(run, domains.load(config.domain), LIVE, seed)
 
 
 def _messages(recording: Path) -> list[tuple[str, Message]]:
