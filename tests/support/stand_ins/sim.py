@@ -20,7 +20,7 @@ LIMITS = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.
 
 
 class Traced(FakeBody):
-    """Notes when the motors are told something new."""
+    """Writes every change of the set-points to a file."""
 
     def __init__(self, path):
         self.trace = open(path, "w", buffering=1)  # noqa: SIM115  lives as long as the process
