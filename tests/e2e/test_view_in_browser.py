@@ -195,7 +195,7 @@ def test_a_robot_that_is_no_point_on_the_plane_gets_plots_over_time(browser: Bro
 
 def test_an_empty_run_is_a_page_and_not_an_error(browser: Browser, tmp_path: Path) -> None:
     opened(browser, written(tmp_path / "empty.html", []))
-    assert "Nothing chosen yet" in text(browser, "#choice .body")
+    assert "No subgoals yet" in text(browser, "#choice .body")
     assert browser.errors == []
 
 

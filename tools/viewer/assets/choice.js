@@ -1,4 +1,4 @@
-// What was chosen for the free parameters, against what greedy would have chosen, and what the models say of the rest.
+// The chosen values of the free parameters, the greedy ones, and the predictions for their alternatives.
 
 class ChoicePanel {
   constructor(run, target) {
@@ -20,23 +20,23 @@ class ChoicePanel {
       this.show(at);
     };
     this.panel.note.textContent = report ? this.search(report) : "";
-    if (!subgoals) this.panel.body.replaceChildren(html("p", { class: "empty", text: "Nothing chosen yet." }));
-    else this.panel.body.replaceChildren(...(fitting ? this.explained(fitting) : this.told(subgoals)));
+    if (!subgoals) this.panel.body.replaceChildren(html("p", { class: "empty", text: "No subgoals yet." }));
+    else this.panel.body.replaceChildren(...(fitting ? this.explained(fitting) : this.listed(subgoals)));
   }
 
   search(report) {
-    const state = report.finished ? "search finished" : "still searching";
+    const state = report.finished ? "search finished" : "searching";
     const found =
       report.greedy === null || report.best === null
         ? ""
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
-    const risk = report.pSlowdown === null ? "" : `risks time (${(100 * report.pSlowdown).toFixed(0)} %)`;
-    const advice = risk && `, ${report.keptGreedy ? "greedy kept, refining" : "refined, which"} ${risk}`;
+    const risk = report.pSlowdown === null ? "" : `slowdown predicted with ${(100 * report.pSlowdown).toFixed(0)} %`;
+    const advice = risk && `, ${report.keptGreedy ? "greedy kept" : "refined"}, ${risk}`;
     const gap = report.gap === null ? "" : `, within ${report.gap.toFixed(1)} % of the models' optimum`;
     return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}${advice}`;
   }
 
-  /** With the models at hand: chosen against greedy, and the alternatives. */
+  /** With models: chosen against greedy values, and the alternatives. */
   explained(why) {
     const free = why.parameters;
     const key = (a) => `${a.place} ${a.quantity}`;
@@ -63,7 +63,7 @@ class ChoicePanel {
     ];
   }
 
-  /** The objective, which is what refinement minimised: duration, its spread, and the risk of failing. */
+  /** The objective of refinement: duration, its spread, and the risk of failure. */
   verdict(why) {
     const [chosen, greedy] = why.cost;
     const words = why.actions.length === 1 ? "the next action" : `the next ${why.actions.length} actions`;
@@ -75,11 +75,11 @@ class ChoicePanel {
         `, over ${words}.`,
       );
     const saved = greedy - chosen;
-    const said =
+    const verdict =
       Math.abs(saved) < 0.005
         ? "as good as greedy"
         : `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "better" : "worse"} than greedy (${((100 * Math.abs(saved)) / greedy).toFixed(1)} %)`;
-    return html("p", { class: "verdict" }, html("b", { text: said }), ` by the objective over ${words}.`);
+    return html("p", { class: "verdict" }, html("b", { text: verdict }), ` in the objective over ${words}.`);
   }
 
   table(why, chosen, greedy) {
@@ -101,7 +101,7 @@ class ChoicePanel {
       html("tr", { class: "sum" }, ...cells("sum", seconds(chosen), seconds(greedy), signed(chosen - greedy, 2))),
       html(
         "tr",
-        { title: "duration, its spread, and the risk of failing: what refinement minimised" },
+        { title: "objective of refinement: duration, its spread, and the risk of failure" },
         ...cells(
           "objective",
           ...why.cost.map((s) => seconds(s)),
@@ -111,26 +111,26 @@ class ChoicePanel {
     );
   }
 
-  plots(why, said) {
+  plots(why, parameter) {
     const first = this.firstIndex(why.at);
-    const curves = said.touched.map((i, k) => ({
+    const curves = parameter.touched.map((i, k) => ({
       name: why.actions[i],
-      seconds: said.seconds[k],
+      seconds: parameter.seconds[k],
       kind: colour(first + i),
     }));
     const both =
-      said.touched.length > 1 || why.actions.length > 1
-        ? [{ name: "sum", seconds: said.total, kind: "sum", beside: said.cost }]
+      parameter.touched.length > 1 || why.actions.length > 1
+        ? [{ name: "sum", seconds: parameter.total, kind: "sum", beside: parameter.cost }]
         : [];
     const common = {
-      values: said.values,
-      valid: said.cost.map((s) => s !== null),
-      chosen: said.chosen,
-      greedy: said.greedy,
-      unit: said.unit,
+      values: parameter.values,
+      valid: parameter.cost.map((s) => s !== null),
+      chosen: parameter.chosen,
+      greedy: parameter.greedy,
+      unit: parameter.unit,
     };
-    if (!said.periodic)
-      return flatPlot({ ...common, curves: [...curves, ...both], caption: `${said.quantity} at ${said.place}` });
+    if (!parameter.periodic)
+      return flatPlot({ ...common, curves: [...curves, ...both], caption: `${parameter.quantity} at ${parameter.place}` });
     return html(
       "div",
       { class: "plots" },
@@ -140,14 +140,14 @@ class ChoicePanel {
     );
   }
 
-  /** The place in the run of the action that a decision begins with, for its colour. */
+  /** Index of the first action of a decision, for its colour. */
   firstIndex(at) {
-    const running = this.run.actions().find((a) => a.until > at + 0.15); // the last action's end is told a little late
+    const running = this.run.actions().find((a) => a.until > at + 0.15); // the end of the last action is published late
     return running?.index ?? 0;
   }
 
-  /** Without models: what the messages tell. */
-  told(subgoals) {
+  /** Without models: the contents of the messages. */
+  listed(subgoals) {
     const rows = subgoals.actions.flatMap((action) =>
       action.parameters
         .filter((p) => !p.bound)
@@ -171,7 +171,7 @@ class ChoicePanel {
       table(["action", "predicted", "spread"], durations),
       rows.length
         ? table(["free parameter", "chosen", "range"], rows)
-        : html("p", { class: "empty", text: "Nothing was free to choose." }),
+        : html("p", { class: "empty", text: "No parameter was free." }),
     ];
   }
 }

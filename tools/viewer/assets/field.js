@@ -1,4 +1,4 @@
-// The field from above in the manner of the paper's Figure 1: lines across the heading, as long as the robot is fast.
+// The field from above like the paper's Figure 1: lines across the heading, whose length is the speed.
 
 const LINE_S = 0.32; // metres of line for each metre a second: 0.9 m/s draws 0.29 m
 const ROBOT = [0.41, 0.32]; // length and breadth of the drawn robot, metres
@@ -11,7 +11,7 @@ class Field {
     this.drawn = -1;
   }
 
-  /** Show a moment. What stands still is drawn anew only when rows have come or another episode is shown. */
+  /** Show a time. Static parts are redrawn only after new events or for another episode. */
   show(at) {
     if (this.drawn !== this.run.version) this.lay();
     const [from, to] = this.run.episode(at);
@@ -20,7 +20,7 @@ class Field {
     this.moving.replaceChildren(...this.movingParts(at));
   }
 
-  /** The frame for the whole run: two drawings, so that what moves does not make the rest be painted again. */
+  /** The frame of the run: two layers, so that moving parts do not repaint static ones. */
   lay() {
     this.drawn = this.run.version;
     this.from = null;
@@ -41,7 +41,7 @@ class Field {
     this.panel.note.replaceChildren(this.legend());
   }
 
-  /** One episode's path: a drawing for each action, pale until it has happened. */
+  /** Path of one episode: a drawing for each action, pale in the future. */
   layEpisode(from, to) {
     this.from = from;
     this.path = this.run.between(this.run.source(), from, to);
@@ -77,7 +77,7 @@ class Field {
     }
   }
 
-  /** Pixels for metres: everything that is ever drawn, with a margin, y upwards. */
+  /** Map from metres to pixels: all drawn places, with a margin, y upwards. */
   frame() {
     const path = this.run.all(this.run.source());
     const places = this.run.all("subgoals").flatMap(placesOf);
@@ -175,7 +175,7 @@ class Field {
   legend() {
     const named = new Map(this.run.actions().map((a) => [`${colour(a.index)} ${a.action}`, a]));
     const pairs = [...named.values()].slice(0, 6).map((a) => [colour(a.index), a.action]);
-    return legend([...pairs, ...(this.run.source() === "truth" ? [["idle", "dotted: as believed"]] : [])]);
+    return legend([...pairs, ...(this.run.source() === "truth" ? [["idle", "dotted: believed path"]] : [])]);
   }
 }
 

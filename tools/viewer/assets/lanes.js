@@ -35,7 +35,7 @@ function actionLane(run, x, top) {
         "g",
         {},
         svg("title", {
-          text: `${action.action}: predicted ${seconds(action.predicted)}, took ${seconds(action.until - action.begin)}${reason}`,
+          text: `${action.action}: predicted ${seconds(action.predicted)}, actual ${seconds(action.until - action.begin)}${reason}`,
         }),
         label,
         ...parts.splice(-2),

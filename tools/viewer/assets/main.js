@@ -1,4 +1,4 @@
-// Puts the panels together, feeds them from the embedded rows or the server, and keeps the address's #t= in step.
+// Assembles the panels, feeds them from embedded events or the server, and reads #t= of the address.
 
 const given = JSON.parse(document.getElementById("data").textContent);
 const root = document.documentElement;
@@ -15,7 +15,7 @@ const views = [
 ];
 let scene = null;
 
-/** A field for what moves on a plane, small multiples for everything else. */
+/** A field for a robot on the plane, small multiples for other robots. */
 function sceneNow() {
   const wanted = run.source() ? Field : Series;
   if (!(scene instanceof wanted)) scene = new wanted(run, panel("scene"));
@@ -29,9 +29,9 @@ player.watch((at) => {
   root.dataset.rows = String(run.version);
 });
 
-/** Start over, as after a reconnection: the server tells everything again. */
+/** Restart after a reconnection: the server sends all events again. */
 function forget() {
-  Object.assign(run, new Run(), { version: run.version + 1 }); // the version goes on: it tells what is drawn already
+  Object.assign(run, new Run(), { version: run.version + 1 }); // the version continues: it marks what is drawn
 }
 
 function listen() {
@@ -51,7 +51,7 @@ function listen() {
   };
 }
 
-const asked = /^#t=([0-9.]+)$/.exec(location.hash);
-player.set(asked ? Number(asked[1]) : given.live ? Infinity : run.end);
+const hash = /^#t=([0-9.]+)$/.exec(location.hash);
+player.set(hash ? Number(hash[1]) : given.live ? Infinity : run.end);
 if (given.live) listen();
 root.dataset.ready = "yes";

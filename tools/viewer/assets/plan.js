@@ -1,4 +1,4 @@
-// The plan that is being executed, and how far it has come.
+// The plan in execution and its progress.
 
 class PlanGraph {
   constructor(run, target) {
@@ -17,7 +17,7 @@ class PlanGraph {
     else this.panel.body.replaceChildren(html("p", { class: "empty", text: "No plan yet." }));
   }
 
-  /** The plan as it was searched, which of its steps are done and which is running; a suffix is what is left of it. */
+  /** The plan as it was searched, which of its steps are done and which is running; a suffix is its rest. */
   progress(now, at) {
     const ids = (row) => new Set((row.steps ?? []).map((step) => step.id));
     let base = now;
@@ -40,8 +40,8 @@ class PlanGraph {
   lay(now, { base, done, running }) {
     const counted = now.generated ? `, ${now.generated} plans generated, ${now.visited} visited` : "";
     const words = {
-      suffix: "what is left of the last plan",
-      improved: "better than what was left of the last plan",
+      suffix: "suffix of the last plan",
+      improved: "better than the suffix of the last plan",
       external: "by the external planner",
     };
     const way = words[now.way] ?? now.way;

@@ -1,12 +1,12 @@
-// The shown moment: a scrubber, play and pause, the keyboard, and following a live run.
+// The shown time: slider, play and pause, keyboard, and following a live run.
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 class Player {
   constructor(run, live) {
     this.run = run;
-    this.live = live; // whether rows may still come
-    this.follow = live; // whether to show the newest moment
+    this.live = live; // whether events may still arrive
+    this.follow = live; // whether to show the newest time
     this.playing = false;
     this.at = 0;
     this.speed = 1;
@@ -49,19 +49,19 @@ class Player {
       class: "keys",
       text: "space ← → ⇧ [ ] home end + −",
       title:
-        "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: event before and after; + and −: speed; shift and wheel over the timeline: zoom",
+        "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: previous and next event; + and −: speed; shift and wheel over the timeline: zoom",
     });
     document
       .getElementById("player")
       .replaceChildren(...[this.button, this.slider, this.clock, this.speeds, this.newest, keys].filter(Boolean));
   }
 
-  /** Call back with the shown moment whenever it or the run changes. */
+  /** Call back with the shown time whenever it or the run changes. */
   watch(callback) {
     this.watchers.push(callback);
   }
 
-  /** Show a moment, clipped to the run; whoever moves by hand stops following. */
+  /** Show a time, clipped to the run; manual moves stop following. */
   go(at) {
     this.follow = false;
     this.set(at);
@@ -78,7 +78,7 @@ class Player {
     this.set(this.run.end);
   }
 
-  /** Rows came. */
+  /** Update after new events. */
   grown() {
     if (this.follow) this.set(this.run.end);
     else this.refresh();

@@ -1,16 +1,16 @@
-// The run as it was told: rows by kind, in order of time. Knows nothing of drawing.
+// The events of a run by kind, in order of time. Independent of drawing.
 
-const SOURCES = ["truth", "believed", "seen", "odom"]; // where a robot on the plane may be known from, best first
+const SOURCES = ["truth", "believed", "seen", "odom"]; // sources of the robot's pose, best first
 
 class Run {
   constructor() {
     this.kinds = new Map();
     this.start = 0;
     this.end = 0;
-    this.version = 0; // changes with every row that came
+    this.version = 0; // changes with every event
   }
 
-  /** Take in one row as the server writes it: [at, kind, fields]. */
+  /** Add one event as the server writes it: [at, kind, fields]. */
   add([at, kind, fields]) {
     if (!this.kinds.has(kind)) this.kinds.set(kind, []);
     const rows = this.kinds.get(kind);
@@ -25,7 +25,7 @@ class Run {
     return this.kinds.get(kind) ?? [];
   }
 
-  /** How many rows of a kind there are up to a time, that time included. */
+  /** Number of events of a kind up to a time, inclusive. */
   count(kind, at) {
     const rows = this.all(kind);
     let low = 0;
@@ -38,12 +38,12 @@ class Run {
     return low;
   }
 
-  /** The newest row of a kind at a time, or null. */
+  /** The newest event of a kind at a time, or null. */
   last(kind, at = Infinity) {
     return this.all(kind)[this.count(kind, at) - 1] ?? null;
   }
 
-  /** The rows of a kind from a time to a time. */
+  /** The events of a kind between two times. */
   between(kind, from, to) {
     return this.all(kind).slice(this.count(kind, from - 1e-9), this.count(kind, to));
   }
@@ -52,21 +52,21 @@ class Run {
     return this.last("about") ?? {};
   }
 
-  /** The best source of the robot's pose on the plane, or null for a robot that is no point on it. */
+  /** The best source of the robot's pose on the plane, or null without one. */
   source() {
     return SOURCES.find((source) => this.all(source).length > 0) ?? null;
   }
 
-  /** Kinds that are plain series of numbers: topics that the page does not know. */
+  /** Kinds that are series of numbers: topics without a view of their own. */
   series() {
     return [...this.kinds.keys()].filter((kind) => kind.startsWith("series "));
   }
 
-  /** Every action that was started: when it began, ended and was predicted to end. */
+  /** Every started action with its start, end and predicted duration. */
   actions() {
-    if (this.actionsOf === this.version) return this.known;
+    if (this.actionsOf === this.version) return this.started;
     const started = this.all("action");
-    const found = [];
+    const actions = [];
     started.forEach((row, position) => {
       if (row.index < 0) return;
       const next = started[position + 1]?.at ?? Infinity;
@@ -76,7 +76,7 @@ class Run {
       const first = this.all("belief")[this.count("belief", row.at - 1e-9)];
       const begin = first ? first.at - first.elapsed : row.at;
       const until = ended ? begin + ended.actual : Math.min(next, this.end);
-      found.push({
+      actions.push({
         index: row.index,
         action: row.action,
         begin,
@@ -86,11 +86,11 @@ class Run {
       });
     });
     this.actionsOf = this.version;
-    this.known = found;
-    return found;
+    this.started = actions;
+    return actions;
   }
 
-  /** When each episode begins: the first at the start, the others where the count of actions begins anew. */
+  /** Starts of the episodes: the start of the run, and each restart of the action count. */
   episodes() {
     const starts = [this.start];
     this.actions().forEach((action, i, all) => {
@@ -99,14 +99,14 @@ class Run {
     return starts;
   }
 
-  /** The stretch of time of the episode at a moment: [from, to). */
+  /** Interval of the episode at a time: [from, to). */
   episode(at) {
     const starts = this.episodes();
     const number = Math.max(0, starts.filter((start) => start <= at).length - 1);
     return [starts[number], starts[number + 1] ?? Infinity];
   }
 
-  /** Times at which something happened, for jumping to. */
+  /** Times of events, as targets of jumps. */
   landmarks() {
     const kinds = ["state", "plan", "action", "finished", "subgoals", "estop"];
     return [...new Set(kinds.flatMap((kind) => this.all(kind).map((row) => row.at)))].sort((a, b) => a - b);

@@ -37,7 +37,7 @@ class Series {
     );
     this.panel.title.textContent = "State";
     this.panel.note.textContent = beliefs.length
-      ? "as believed; dots are the goals where they are due, hollow ones were free to choose"
+      ? "believed values; dots: goals of the actions at their end, hollow: free parameters"
       : "";
   }
 
@@ -84,7 +84,7 @@ class Series {
     });
   }
 
-  /** Topics that the page knows nothing of, without what never moves. */
+  /** Series of topics without a view of their own, except constant ones. */
   others() {
     return this.run.series().flatMap((kind) => {
       const rows = this.run.all(kind);

@@ -22,11 +22,11 @@ class SubgoalMarks {
     const heading = place.free.find((p) => p.quantity === "phi");
     const parts = [];
     if (heading) {
-      const said = why?.parameters.find((a) => a.place === place.label && a.quantity === "phi");
-      parts.push(...(said ? this.petals(place, said) : [this.arc(place, heading)]));
+      const alternatives = why?.parameters.find((a) => a.place === place.label && a.quantity === "phi");
+      parts.push(...(alternatives ? this.petals(place, alternatives) : [this.arc(place, heading)]));
       for (const phi of earlierHeadings(this.run, at, place.label))
         parts.push(this.arrow(place, phi, "place free before", 0.3));
-      if (said) parts.push(this.arrow(place, said.greedy, "place lone", 0.34));
+      if (alternatives) parts.push(this.arrow(place, alternatives.greedy, "place lone", 0.34));
     }
     const [x, y] = this.map(place.x, place.y);
     if (Number.isFinite(place.phi)) parts.push(this.arrow(place, place.phi, free ? "place free" : "place", 0.36));
@@ -62,11 +62,11 @@ class SubgoalMarks {
   }
 
   /** The objective by heading: a petal on the side from which the robot would come, the longer the better. */
-  petals(place, said) {
-    const known = said.cost.filter((cost) => cost !== null);
+  petals(place, alternatives) {
+    const known = alternatives.cost.filter((cost) => cost !== null);
     const [best, worst] = [Math.min(...known), Math.max(...known)];
-    return said.values.map((phi, i) => {
-      const good = said.cost[i] === null ? 0 : (worst - said.cost[i]) / (worst - best || 1);
+    return alternatives.values.map((phi, i) => {
+      const good = alternatives.cost[i] === null ? 0 : (worst - alternatives.cost[i]) / (worst - best || 1);
       const [inner, outer] = [RING_M[0], RING_M[0] + 0.02 + (RING_M[1] - RING_M[0]) * good];
       const [c, s] = [Math.cos(phi + Math.PI), Math.sin(phi + Math.PI)];
       const d = through([
@@ -74,7 +74,7 @@ class SubgoalMarks {
         this.map(place.x + outer * c, place.y + outer * s),
       ]);
       const paint =
-        said.cost[i] !== null
+        alternatives.cost[i] !== null
           ? `color-mix(in oklab, var(--good) ${Math.round(100 * good ** 2)}%, var(--faint))`
           : "var(--line)";
       return svg("path", { class: "petal", style: `stroke:${paint};opacity:${0.35 + 0.5 * good}`, d });
