@@ -22,7 +22,7 @@ class ApproachBall:
 
     go: GoToPose
     behind_m: float  # from the axle to the ball where an approach ends
-    follow_m: float  # a ball farther off has been moved: another task, for which the executive thinks again
+    follow_m: float  # a ball farther off has been moved; the executive then deliberates anew
 
     def __call__(self, state: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""

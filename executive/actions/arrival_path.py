@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from tailor.executive.actions.dubins import DubinsPath, Pose2
 from tailor.executive.belief.angles import difference
 
-NO_BEND = 1e-6  # rad short of a full circle: a bend of nothing, but for rounding
+NO_BEND = 1e-6  # rad short of a full circle: a bend of zero length with rounding errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ class ArrivalPath:
         return DubinsPath((x - self.run_in_m, y, side * heading), radius, pieces)
 
     def _roughly_s(self, path: DubinsPath, heading: float) -> float:
-        """How long facing the way, driving it and turning at its end may take, s."""
+        """Approximate time (s) to turn towards the path, drive it and turn at its end."""
         facing = abs(difference(path.start[2], heading)) / self.facing_radps
         if stops(path):
             turning = self.stop_s + abs(path.start[2]) / self.spot_radps

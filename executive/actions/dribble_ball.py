@@ -1,4 +1,4 @@
-"""dribbleBall: push the ball in the rail to a pose, on a path that the ball can follow; fetch it when it is lost."""
+"""dribbleBall: push the ball in the rail to a pose, on a path that the ball can follow; fetch a lost ball."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
 
 TICK_S = 0.1  # the controller's period
-SEEKING_NS = 8_000_000_000  # a full turn takes 7 s
+SEEKING_NS = 8_000_000_000  # limit of a search; a full turn takes 7 s
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,37 +36,37 @@ class Fetching:
     """Controller state while the ball is lost."""
 
     stage: Stage
-    since_ns: int = 0  # begin of a search
+    since_ns: int = 0  # start of the search
 
 
 @dataclass(frozen=True, slots=True)
 class DribbleBall:
-    """Follows a Dubins path, gentle enough for the rail, with feedback from the ball's slip in it."""
+    """Follows a Dubins path within the limits of the rail's grip, with feedback from the ball's slip."""
 
     fetch: FetchBall
     grip: RailGrip
     v_max_mps: float = 0.75
-    bend_radps: float = 0.60  # what bends are planned for
-    omega_max_radps: float = 0.66  # the rest is for corrections; the rail holds 0.75 for ever
-    yaw_radps2: float = 1.0  # the ball must follow
+    bend_radps: float = 0.60  # planned in bends
+    omega_max_radps: float = 0.66  # the difference is for corrections; the rail holds 0.75 permanently
+    yaw_radps2: float = 1.0  # so that the ball follows
     tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.35  # the ball must not roll out of the rail: it slows by 0.53 by itself
     bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
-    least_braking_mps2: float = 0.05  # it must be able to stop
-    preview_s: float = 0.6  # turning lags so far behind the command
+    min_braking_mps2: float = 0.05  # so that it can stop
+    preview_s: float = 0.6  # lag of turning behind the command
     settle_m: float = 0.4
     slip_aside_m: float = 0.035  # so far aside or ahead of the rail's bottom the ball is slipping out
-    slip_ahead_m: float = 0.09  # the camera sees how far aside it is twice as well
-    mended_m: float = 0.012
+    slip_ahead_m: float = 0.09  # the camera measures the offset aside twice as precisely
+    seated_again_m: float = 0.012
     catch_up_mps: float = 0.1  # faster than the path's limit, at most
     chase_radps: float = 1.0  # rad/s per rad of the ball's bearing when it slips
     lost_m: float = 0.17  # from the bottom of the rail: to be fetched
-    gone_m: float = 0.90  # farther it is not worth fetching: another approach is
+    gone_m: float = 0.90  # beyond, another approach is faster than fetching
     seated_ahead_m: float = 0.035  # pushing begins when the ball is this near to the bottom
     seated_aside_m: float = 0.035
     off_path_m: float = 0.60  # plan a new path
-    near_m: float = 0.35  # past the end and not farther from the goal, it has arrived: another round is not worth it
+    near_m: float = 0.35  # past the end and within this distance of the goal it has arrived; another round costs more
     heading_rad: float = 1.50
     reached_m: float = 0.05
     speed_mps: float = 0.10
@@ -117,29 +117,29 @@ class DribbleBall:
         return Control(Pushing(progress, v, omega, slipping), (v, omega))
 
     def _slips(self, ball: BallTrack, before: bool) -> bool:
-        """Whether the ball is leaving the rail, or has been and is not back at the bottom."""
+        """Whether the ball is leaving the rail, or was and is not yet back at the bottom."""
         ahead, aside = ball.ahead - self.grip.in_rail_m, abs(ball.left)
         if before:
-            return aside > self.mended_m or ahead > self.slip_ahead_m
+            return aside > self.seated_again_m or ahead > self.slip_ahead_m
         return aside > self.slip_aside_m or ahead > self.slip_ahead_m
 
     def _pace(self, radius: float) -> Pace:
         return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking_mps2)
 
     def _ramp(self, state: Pushing, limit: float) -> float:
-        """The next commanded speed: towards the limit as fast as the ball allows."""
-        braking = min(self.braking_mps2, max(self.least_braking_mps2, self.grip.braking_mps2(state.v, state.omega)))
+        """The next commanded speed: towards the limit within the ball's acceleration limits."""
+        braking = min(self.braking_mps2, max(self.min_braking_mps2, self.grip.braking_mps2(state.v, state.omega)))
         return max(state.v - braking * TICK_S, min(limit, state.v + self.speeding_up_mps2 * TICK_S))
 
     def _turn(self, state: Pushing, braking_mps2: float, wanted: float) -> float:
-        """The next commanded turning: more of it only as quickly as the ball follows."""
+        """The next commanded yaw rate; it grows only as fast as the ball follows."""
         growth = min(self.yaw_radps2, self.grip.yaw_radps2(state.v, state.omega, braking_mps2))
         up, down = growth * TICK_S, self.yaw_radps2 * TICK_S
         left, right = (up, down) if state.omega >= 0.0 else (down, up)
         return max(state.omega - right, min(state.omega + left, wanted))
 
     def _missed(self, progress: Progress, pose: Pose, goal: tuple[float, ...]) -> bool:
-        """Past the end without having arrived."""
+        """Whether the robot is past the end of the path without having arrived."""
         if progress.remaining_m > 0.0:
             return False
         return self._ball_off_m(pose, goal) > self.near_m or abs(difference(goal[2], pose.phi)) > self.heading_rad
@@ -154,17 +154,17 @@ class DribbleBall:
         )
 
     def _ball_off_m(self, pose: Pose, goal: tuple[float, ...]) -> float:
-        """How far from where the goal has it a ball in the rail is, m."""
+        """Distance (m) between a ball in the rail and its place at the goal."""
         dx = goal[0] - pose.x + self.grip.in_rail_m * (math.cos(goal[2]) - math.cos(pose.phi))
         dy = goal[1] - pose.y + self.grip.in_rail_m * (math.sin(goal[2]) - math.sin(pose.phi))
         return math.hypot(dx, dy)
 
     def _seek(self, state: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
-        """Turn, always the same way, until the ball is seen."""
+        """Turn in one direction until the ball is seen."""
         if not (isinstance(state, Fetching) and state.stage in SEEKING):
             state = Fetching("seek left" if ball.left > 0.0 else "seek right", now_ns)
         if now_ns - state.since_ns > SEEKING_NS:
-            return Control(state, (0.0, 0.0), "failed", "the ball is not to be found")
+            return Control(state, (0.0, 0.0), "failed", "the ball was not found")
         _, command = self.fetch(state.stage, ball, 0.0)
         return Control(state, command)
 

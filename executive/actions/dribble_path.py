@@ -38,19 +38,19 @@ class DribblePath:
         candidates = []
         for slant in self.slants_rad:
             for aside in self.asides_m:
-                blemish_s = self.slant_s_per_rad * abs(slant) + self.aside_s_per_m * abs(aside)
+                penalty_s = self.slant_s_per_rad * abs(slant) + self.aside_s_per_m * abs(aside)
                 end = self._end(goal, slant, aside)
-                candidates += [(shortest(start, end, radius), blemish_s) for radius in radii]
+                candidates += [(shortest(start, end, radius), penalty_s) for radius in radii]
         best, _ = min(candidates, key=lambda path: self.driving_s(path[0]) + path[1])
         return best.between(self.run_in_m, self.run_out_m)
 
     def driving_s(self, path: DubinsPath) -> float:
-        """Roughly how long a path takes, s."""
+        """Approximate time to drive a path, s."""
         bend, straight = self.bend_radps * path.radius, 0.85 * self.v_max_mps
         return sum(length / (bend if turn else straight) for turn, length in path.pieces)
 
     def _end(self, goal: tuple[float, ...], slant: float, aside: float) -> Pose2:
-        """Where the run-out begins: the ball ends where the goal has it, or beside it."""
+        """Start pose of the run-out: the ball ends at its place at the goal, or beside it."""
         heading = goal[2] + slant
         c, s = math.cos(heading), math.sin(heading)
         ball_x, ball_y, _ = straight_on((goal[0], goal[1], goal[2]), self.ahead_m)

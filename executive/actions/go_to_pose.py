@@ -1,4 +1,4 @@
-"""goToPose: drive to a pose and arrive there with a given speed. Knows nothing of balls or obstacles."""
+"""goToPose: drive to a pose and arrive there with a given speed. Ignores balls and obstacles."""
 
 from __future__ import annotations
 
@@ -19,39 +19,39 @@ ALIGN = "align"  # controller state while the robot turns on the spot at its goa
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Turns to face the way into the goal, follows it, and turns on the spot only where that is planned or it missed.
+    """Turns towards the path into the goal, follows it, and turns on the spot only if planned or after a miss.
 
-    The way is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
-    deviations are taken back over `settle_m`: steered anew at the goal, a few centimetres of noise beside it would
-    swing the robot round right where it is to face ahead.
+    The path is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
+    deviations decay over `settle_m`. With a new path near the goal, a few centimetres of noise beside it would swing
+    the robot round where it must face ahead.
 
-    Controller state: None, then a `Progress` on the way that is kept, then perhaps ALIGN.
+    Controller state: None, then a `Progress` on the kept path, then perhaps ALIGN.
     """
 
     v_max_mps: float
     omega_max_radps: float
     ways: ArrivalPath
     steer_gain: float = 3.5  # rad/s per rad of heading error
-    braking_mps2: float = 0.55  # what the motor board does, with a reserve
+    braking_mps2: float = 0.55  # of the motor board, with a reserve
     keep_m: float = 0.15  # the way is kept when its bend is so near,
     keep_s: float = 0.5  # and so much time,
     keep_rad: float = 0.6  # and the robot faces it
-    preview_s: float = 0.40  # turning lags so far behind the command
-    swing_s: float = 0.18  # so long the robot turns on as it does
+    preview_s: float = 0.40  # lag of turning behind the command
+    swing_s: float = 0.18  # for which the robot keeps turning
     settle_m: float = 0.35
-    off_path_m: float = 0.25  # plan a new way
+    off_path_m: float = 0.25  # beyond, a new path is planned
     off_path_rad: float = 0.8
     past_m: float = 0.10
     stopping_m: float = 0.10  # before a goal where it stops
-    near_m: float = 0.15  # so close to the goal only the heading is left to correct
-    stay_m: float = 0.30  # turning on the spot may have carried it so far
+    near_m: float = 0.15  # within this distance of the goal only the heading is corrected
+    stay_m: float = 0.30  # maximum drift while turning on the spot
     reached_m: float = 0.03  # along the goal's heading
     heading_rad: float = 0.20
-    aligned_rad: float = 0.10  # turning on the spot goes on until here
-    stopping_radps2: float = 1.3  # what the motor board does, with a reserve
+    aligned_rad: float = 0.10  # turning on the spot ends within this error
+    stopping_radps2: float = 1.3  # of the motor board, with a reserve
     still_radps: float = 0.4
-    speed_mps: float = 0.10  # by which the arrival may be too fast
-    crawl_mps: float = 0.10  # never slower, or it would not arrive
+    speed_mps: float = 0.10  # tolerance of the arrival speed
+    crawl_mps: float = 0.10  # minimum, so that it arrives
 
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
@@ -65,7 +65,7 @@ class GoToPose:
         return followed or self._face(belief, pose, vg)
 
     def _face(self, belief: PlanarBelief, pose: Pose, vg: float) -> Control:
-        """Turn to where the way leads, the faster ahead the better it is faced."""
+        """Turn towards the path; the speed grows as the heading error falls."""
         way = Progress(self.ways.quickest((pose.x, pose.y, pose.phi), vg), 0.0)
         error = difference(way.path.start[2], pose.phi)
         if abs(error) < self.keep_rad and way.path.pieces[0][1] < self.keep_m + self.keep_s * max(0.0, belief.v):
@@ -75,7 +75,7 @@ class GoToPose:
         return Control(None, (self._speed(way, vg) * max(0.0, math.cos(error)), self._turn(error)))
 
     def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
-        """Along the way that is kept; None when it is lost."""
+        """Follow the kept path; None when the robot has left it."""
         way, off = project(way, pose, 0.3)
         if abs(off.aside_m) > self.off_path_m or abs(off.turned) > self.off_path_rad or way.remaining_m < -self.past_m:
             return None
@@ -93,14 +93,14 @@ class GoToPose:
         return max(self.crawl_mps, speed_limit(way, 0.0 if stops(way.path) else vg, pace))
 
     def _aligns(self, state: Any, pose: Pose) -> bool:
-        """Whether it has come to its goal, or past it, headed wrongly; with hysteresis against noise."""
+        """Whether the robot is at its goal, or past it, with a wrong heading; with hysteresis against noise."""
         distance = math.hypot(pose.x, pose.y)
         if state == ALIGN:
             return distance < self.stay_m
         return distance < self.near_m and -pose.x < self.reached_m and abs(pose.phi) > self.heading_rad
 
     def _arrived(self, belief: PlanarBelief, pose: Pose, vg: float, state: Any) -> bool:
-        """Near enough, headed right, and past the goal's line or done with turning; not too fast."""
+        """Whether position, heading and speed are within tolerance, past the goal's line or after turning."""
         if belief.v > vg + self.speed_mps:
             return False
         distance = math.hypot(pose.x, pose.y)

@@ -1,4 +1,4 @@
-"""Following a bounded-curvature path: where on it the robot is, how to steer, how fast it may go."""
+"""Following of a bounded-curvature path: progress, curvature command, speed limit."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from tailor.executive.actions.dubins import DubinsPath
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.planar_ekf import Pose
 
-BEND_RESERVE_M = 0.15  # braking ends so far before a bend
+BEND_RESERVE_M = 0.15  # braking ends this distance before a bend
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """A path and how far along it the robot is, m."""
+    """A path and the robot's arc length on it, m."""
 
     path: DubinsPath
     s: float
 
     @property
     def remaining_m(self) -> float:
-        """To the path's end; negative beyond it."""
+        """Distance to the path's end, m; negative beyond it."""
         return self.path.length - self.s
 
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Where the robot is against the path: m aside, left positive, and rad turned left of the path's heading."""
+    """The robot relative to the path: metres aside, left positive, and radians left of the path's heading."""
 
     aside_m: float
     turned: float
 
 
 def project(progress: Progress, pose: Pose, reach_m: float) -> tuple[Progress, Deviation]:
-    """Move the progress to where the robot is now, at most `reach_m` on."""
+    """Update the progress from the robot's pose, by at most `reach_m`; it never decreases."""
     s = progress.s
     for _ in range(2):  # the path is smooth: two tangent steps are within a millimetre
         x, y, heading, _ = progress.path.at(s)
@@ -46,12 +46,12 @@ def project(progress: Progress, pose: Pose, reach_m: float) -> tuple[Progress, D
 
 
 def tracking_curvature(progress: Progress, deviation: Deviation, preview_m: float, settle_m: float) -> float:
-    """Curvature (1/m, left positive) that follows the path and takes deviations back critically damped.
+    """Curvature (1/m, left positive) that follows the path; deviations decay critically damped.
 
     Args:
-      progress: Where on the path the robot is.
-      deviation: How far off it is.
-      preview_m: How far the robot goes until its turning has followed.
+      progress: The robot's place on the path.
+      deviation: The robot relative to the path.
+      preview_m: Distance that the robot drives until its turning has followed the command.
       settle_m: Length over which a deviation decays.
     """
     ahead = progress.path.at(progress.s + preview_m)[3]
@@ -60,7 +60,7 @@ def tracking_curvature(progress: Progress, deviation: Deviation, preview_m: floa
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How fast a path may be driven: m/s, and m/s² of braking on straights and in bends."""
+    """Limits for a path: speeds in m/s, and braking in m/s² on straights and in bends."""
 
     v_max: float
     v_bend: float
@@ -69,7 +69,7 @@ class Pace:
 
 
 def speed_limit(progress: Progress, v_end: float, pace: Pace) -> float:
-    """The highest speed (m/s) from which the next bend and the end can be met braking no harder than the pace's."""
+    """The highest speed (m/s) from which next bend and end can be met within the braking limits of `pace`."""
     energy_end = v_end * v_end
     to_bend: float | None = None
     begin = 0.0

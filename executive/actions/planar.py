@@ -1,4 +1,4 @@
-"""What controllers of driving robots ask of a belief, and the order of their arguments."""
+"""Belief interface of the controllers of driving robots, and the order of their arguments."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PlanarBelief(Protocol):
 
 
 class BallBelief(PlanarBelief, Protocol):
-    """A belief that also knows a ball: its track in the robot's frame, and its place in the map; None if never seen."""
+    """A belief with a ball: its track in the robot's frame, and its place in the map; None if never seen."""
 
     @property
     def ball(self) -> BallTrack | None: ...  # noqa: D102

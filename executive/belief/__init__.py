@@ -1,1 +1,1 @@
-"""State estimation: pure filters from samples to beliefs. Knows no robot and no clock."""
+"""State estimation: pure filters from samples to beliefs. They use no clock and no robot's constants."""

@@ -30,7 +30,7 @@ class BallTrack:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A percept of the ball: where, in the robot's frame (m), and how surely (m²)."""
+    """A percept of the ball: position in the robot's frame (m), with its covariance (m²)."""
 
     ahead: float
     left: float
@@ -40,12 +40,12 @@ class Seen:
 
 
 def move(track: BallTrack, v: float, turn: float, phi: float, duration_s: float, rolling_mps2: float) -> BallTrack:
-    """Let the ball roll and the robot drive under it for `duration_s`.
+    """Predict the track: the ball rolls and the robot drives for `duration_s`.
 
     Args:
       track: The ball before.
       v: The robot's speed, m/s.
-      turn: How far the robot turns meanwhile, rad.
+      turn: The robot's turn during the step, rad.
       phi: The robot's heading in the middle of the step, map frame.
       duration_s: Seconds, >= 0.
       rolling_mps2: Deceleration of a rolling ball.
@@ -83,11 +83,11 @@ def carry(track: BallTrack, v: float, omega: float, phi: float, duration_s: floa
 
 
 def see(track: BallTrack | None, seen: Seen, phi: float, now_ns: int) -> BallTrack:
-    """Fuse a percept; one far off what was believed starts a new track.
+    """Fuse a percept; one far from the believed place starts a new track.
 
     Args:
       track: The ball before; None if it was never seen.
-      seen: What is seen now.
+      seen: The percept.
       phi: The robot's heading, map frame.
       now_ns: Time of the percept.
     """

@@ -108,7 +108,7 @@ class Action:
       subgoal_action: Name of the action that is put before this one when it is predicted to fail (Algorithm 3).
       subgoal_risk: Risk that the subgoal spoils this action; None: there is no such risk.
       arguments: Maps parameters, shape (n, p), to the arguments of controller and models, shape (n, k). An example: a
-        parameter names the ball's place, the argument is the robot's pose behind it.
+        parameter names the ball's place, the argument is the pose behind it.
       spans: `arguments` on intervals, for certificates. None: unknown, unless `arguments` is `unchanged`.
       time_limit_factor: Times the predicted duration; a longer action fails.
       time_limit_floor_s: Minimum of that limit, seconds.

@@ -176,7 +176,7 @@ def test_ball_that_should_be_in_view_and_is_not_is_sought_during_one_turn():
             break
         state = control.state
         assert control.command == (0.0, 1.0)
-    assert control.detail == "the ball is not to be found"
+    assert control.detail == "the ball was not found"
     assert tick > 63, "a full turn at 1 rad/s"
 
 
