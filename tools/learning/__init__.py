@@ -1,1 +1,1 @@
-"""Gathering of episodes and the inputs of training."""
+"""Gathering of episodes and training of models."""

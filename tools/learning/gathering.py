@@ -1,7 +1,7 @@
-"""Makes episodes part by part: random arguments, one lock-step run each, a Parquet part every few episodes.
+"""Gathers episodes with random arguments, one lock-step run each, in Parquet parts.
 
-Every episode has a generator of its own, seeded by its purpose, the seed, the action and its number: any number of
-processes and any order give the same bits, and what is evaluated was never trained on.
+Each episode has its own random generator, seeded by stream, seed, action and number. So any number of processes and any
+order give the same bits, and evaluation never uses training episodes.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
-PART = 20  # episodes in a part: what a kill -9 loses at most, per process
-RANGE_DRAWS = 4096  # to learn the ranges of the arguments as the controller gets them
-COUNTS = ("episodes", "runs", "software")  # of a manifest: may differ when a data set is gone on with
-RANGE_STEP = 0.05  # to which they are rounded outwards
+PART = 20  # episodes in a part: the most that a kill -9 loses, per process
+RANGE_DRAWS = 4096  # samples that determine the ranges of the controller's arguments
+COUNTS = ("episodes", "runs", "software")  # entries of a manifest that may differ when a data set is resumed
+RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
 ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True, slots=True)
 class DataSetSpec:
-    """One data set to make."""
+    """One data set to gather: episodes of one action with random arguments."""
 
     domain: str
     action: str
@@ -44,23 +44,31 @@ class DataSetSpec:
     stream: int = TRAINING_STREAM
 
     def rng(self, number: int) -> np.random.Generator:
-        """The generator of one episode: its arguments and all its noise."""
+        """Random generator of one episode: its arguments and all its noise."""
         return np.random.default_rng([self.stream, self.seed, zlib.crc32(self.action.encode()), number])
 
 
 def domain_of(robot: str) -> str:
-    """Name of the domain that a robot acts in; raises UsageError listing the robots."""
-    known = {domains.load(name).robot: name for name in domains.DOMAINS}
-    if robot not in known:
-        raise UsageError(f"no robot '{robot}' (expected one of: {', '.join(known)})")
-    return known[robot]
+    """Name of the domain of a robot.
+
+    Raises:
+      UsageError: There is no such robot.
+    """
+    robots = {domains.load(name).robot: name for name in domains.DOMAINS}
+    if robot not in robots:
+        raise UsageError(f"no robot '{robot}' (expected one of: {', '.join(robots)})")
+    return robots[robot]
 
 
 def check_action(domain: str, action: str) -> None:
-    """Raises UsageError, listing a domain's actions, where there is none of that name."""
-    known = domains.load(domain).actions
-    if action not in known:
-        raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(known)})")
+    """Check the name of an action.
+
+    Raises:
+      UsageError: The domain has no such action.
+    """
+    declared = domains.load(domain).actions
+    if action not in declared:
+        raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(declared)})")
 
 
 def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episode:
@@ -72,21 +80,25 @@ def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episod
 
 
 def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
-    """Make the part that starts with episode `first`; returns episodes, simulated and wall seconds."""
+    """Gather the part that starts with episode `first`.
+
+    Returns:
+      Number of episodes, simulated seconds and wall seconds.
+    """
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
-    made = [run_one(spec, domain, body, number) for number in range(first, min(first + PART, spec.episodes))]
-    write_part(part_path(spec, first), made, argument_names(domain, spec.action))
-    return len(made), sum(episode.duration_s for episode in made), time.perf_counter() - started
+    episodes = [run_one(spec, domain, body, number) for number in range(first, min(first + PART, spec.episodes))]
+    write_part(part_path(spec, first), episodes, argument_names(domain, spec.action))
+    return len(episodes), sum(episode.duration_s for episode in episodes), time.perf_counter() - started
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
-    """Where the part that starts with episode `first` lies: part-000020-000040.parquet holds 20 to 39."""
+    """Path of the part that starts with episode `first`: part-000020-000040.parquet holds 20 to 39."""
     return spec.folder / f"part-{first:06d}-{min(first + PART, spec.episodes):06d}.parquet"
 
 
 def missing_parts(spec: DataSetSpec) -> list[int]:
-    """First episodes of the parts that are still to be made."""
+    """First episodes of the parts that are missing."""
     return [first for first in range(0, spec.episodes, PART) if not part_path(spec, first).exists()]
 
 
@@ -96,7 +108,7 @@ def argument_names(domain: Domain, action: str) -> list[str]:
 
 
 def prepare(spec: DataSetSpec, resume: bool) -> None:
-    """Make the folder with its manifest, or check that it is the one to go on with.
+    """Create the folder with its manifest, or check that it can be resumed.
 
     Raises:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
@@ -107,12 +119,12 @@ def prepare(spec: DataSetSpec, resume: bool) -> None:
     expected = {part_path(spec, first).name for first in range(0, spec.episodes, PART)}
     for path in (*spec.folder.glob("*.tmp"), *spec.folder.glob("part-*.parquet")):
         if path.name not in expected:
-            path.unlink()  # half-written, or a last part that was shorter
+            path.unlink()  # incomplete, or a last part that was shorter
     write_manifest(spec.folder, manifest)
 
 
 def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> None:
-    """Whether the data set that `manifest` describes may be made in a folder, or gone on with there.
+    """Check that a data set can be gathered into a folder, or resumed there.
 
     Raises:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
@@ -120,14 +132,14 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
     if not (folder / MANIFEST).exists():
         return
     if not resume:
-        raise UsageError(f"{folder}: holds episodes already (expected another --out, or --resume to go on)")
-    found = read_manifest(folder)
+        raise UsageError(f"{folder}: holds episodes already (expected another --out, or --resume to continue)")
+    existing = read_manifest(folder)
     for key, value in manifest.items():
-        if key not in COUNTS and found.get(key) != value:
-            raise UsageError(f"{folder}: was gathered with {key} = {found.get(key)!r}, expected {value!r} to resume")
-    if manifest["episodes"] < found.get("episodes", 0):  # to go on must not throw finished ones away
+        if key not in COUNTS and existing.get(key) != value:
+            raise UsageError(f"{folder}: was gathered with {key} = {existing.get(key)!r}, expected {value!r} to resume")
+    if manifest["episodes"] < existing.get("episodes", 0):  # resuming must not delete finished episodes
         raise UsageError(
-            f"{folder}: --episodes is {manifest['episodes']}, expected at least {found['episodes']} "
+            f"{folder}: --episodes is {manifest['episodes']}, expected at least {existing['episodes']} "
             "as the folder was made for, to resume"
         )
 
@@ -150,7 +162,7 @@ def _manifest(spec: DataSetSpec) -> dict[str, Any]:
 
 
 def argument_ranges(domain: Domain, action: str) -> list[dict[str, Any]]:
-    """Name, unit and range of each controller argument, as sampling gives them."""
+    """Name, unit and range of each controller argument, from samples."""
     rng = np.random.default_rng(0)
     drawn = np.stack([action_run.sample_arguments(domain, action, rng) for _ in range(RANGE_DRAWS)])
     low, high = np.floor(drawn.min(axis=0) / RANGE_STEP), np.ceil(drawn.max(axis=0) / RANGE_STEP)
@@ -161,7 +173,7 @@ def argument_ranges(domain: Domain, action: str) -> list[dict[str, Any]]:
 
 
 def source_hash(robot: str, domain: str) -> str:
-    """SHA-256 over the source of controllers, belief, domain and body: another hash, another robot to learn."""
+    """SHA-256 over the source code of controllers, belief, domain and body: models are valid for one hash."""
     folders = ("executive/actions", "executive/belief", f"executive/domains/{domain}", f"simnodes/{robot}")
     digest = hashlib.sha256()
     for path in sorted(path for folder in folders for path in (ROOT / folder).glob("*.py")):
@@ -170,7 +182,7 @@ def source_hash(robot: str, domain: str) -> str:
 
 
 def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:
-    """Make parts in parallel, on whatever joblib backend is active; yields what `run_part` returns, as it comes."""
+    """Gather parts in parallel on the active joblib backend; yields the results of `run_part` as they complete."""
     from joblib import Parallel, delayed
 
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(run_part)(spec, p) for p in parts)

@@ -1,6 +1,6 @@
-"""What `tailor models rules` prints: the rules of one of a model's own trees, or of a tree that stands for all of them.
+"""Rules of `tailor models rules`: of one of a model's trees, or of a tree distilled from the model.
 
-Says how faithful they are: how much they differ from the whole model, where its episodes were.
+The first line gives their mean difference from the model, and R², over its episodes.
 """
 
 from __future__ import annotations
@@ -22,45 +22,45 @@ Array = NDArray[np.float64]
 Model = OnnxDuration | OnnxSuccess
 
 DISTILLED = 0  # in place of a tree's number
-ASKED = 3000  # arguments, where no episodes are at hand
+RANDOM_ARGUMENTS = 3000  # to compare on, if there are no episodes
 
 
 def rules(model: Model, file: Path, tree: int | None, data: Path | None) -> str:
-    """A model as rules.
+    """Print a model as rules.
 
     Args:
       model: The loaded model.
       file: Its ONNX file.
       tree: Number of the tree to print, from 1; DISTILLED; or None: the only tree, or else the distilled one.
-      data: Folder with a data set per action, whose first ticks are asked; None looks in data/ROBOT.
+      data: Folder with a data set per action, to compare on at its first ticks; None for data/ROBOT.
 
     Raises:
       UsageError: The model has no such tree.
     """
     quantities, unit = space_of(model.card).features, UNITS.get(model.card["kind"], "")
-    arguments, where = _asked(model.card, data)
-    features, whole = space_of(model.card)(arguments), _answers(model, arguments)
+    arguments, where = _arguments(model.card, data)
+    features, whole = space_of(model.card)(arguments), _predictions(model, arguments)
     boxes = tree_boxes(file.read_bytes(), len(quantities))
     if tree is None:
         tree = 1 if boxes is not None and len(boxes.first) == 1 else DISTILLED
     if tree == DISTILLED:
-        said, answers = _distilled(model, features)
+        lines, predictions = _distilled(model, features)
         what = "a tree distilled from it"
     else:
-        said, answers = _own(model.card, boxes, tree, features)
+        lines, predictions = _own(model.card, boxes, tree, features)
         what = "its only tree" if boxes and len(boxes.first) == 1 else f"its tree {tree}"
-    off = np.abs(answers - whole)
+    off = np.abs(predictions - whole)
     mean = f"{np.nanmean(off):.3f} {unit}" if unit else f"{100 * np.nanmean(off):.1f} %"
-    faithful = f"differ from the model by {mean} on average, R² {_r2(answers, whole):.3f}, {where}"
+    faithful = f"differ from the model by {mean} on average, R² {_r2(predictions, whole):.3f}, {where}"
     name = "/".join(model.card[key] for key in ("robot", "action", "kind"))
-    return "\n\n".join([f"{name}: {len(said)} rules of {what}, which {faithful}", *said])
+    return "\n\n".join([f"{name}: {len(lines)} rules of {what}, which {faithful}", *lines])
 
 
 def tree_number(text: str) -> int:
-    """The number in "bag:3", "forest:3" or "3".
+    """Number of a tree in "bag:3", "forest:3" or "3".
 
     Raises:
-      UsageError: There is none.
+      UsageError: The text has no such number.
     """
     number = text.rpartition(":")[2]
     if not number.isdecimal() or int(number) < 1:
@@ -71,11 +71,11 @@ def tree_number(text: str) -> int:
 def _own(card: Card, boxes: TreeBoxes | None, tree: int, features: NDArray[np.float32]) -> tuple[list[str], Array]:
     if boxes is None:
         raise UsageError(
-            f"a {card['learner']['name']} has no trees to print (--distilled prints one that stands for it)"
+            f"a {card['learner']['name']} has no trees to print (--distilled prints a tree distilled from it)"
         )
     quantities, unit = space_of(card).features, UNITS.get(card["kind"], "")
-    said = leaf_rules.rules_of(boxes, tree, quantities, unit)
-    return said, leaf_rules.predictions_of(boxes, tree, features).astype(np.float64)
+    lines = leaf_rules.rules_of(boxes, tree, quantities, unit)
+    return lines, leaf_rules.predictions_of(boxes, tree, features).astype(np.float64)
 
 
 def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], Array]:
@@ -87,23 +87,25 @@ def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], 
     return success_rules(splits, success, quantities), success[splits.leaf_of(features)].astype(np.float64)
 
 
-def _asked(card: Card, data: Path | None) -> tuple[Array, str]:
-    """Arguments to compare on, and where they are from."""
+def _arguments(card: Card, data: Path | None) -> tuple[Array, str]:
+    """Arguments to compare on, and their origin in words."""
     from tailor.models.episodes.episodes import read_data_set
 
     folder = (data or Path("data") / card["robot"]) / card["action"]
     if (folder / "manifest.json").exists():
         episodes = read_data_set(folder).episodes
         return np.stack([episode.ticks[0] for episode in episodes]), f"over the {len(episodes)} episodes in {folder}"
-    return random_arguments(card, ASKED, np.random.default_rng(1)), f"over {ASKED} random arguments"
+    return random_arguments(
+        card, RANDOM_ARGUMENTS, np.random.default_rng(1)
+    ), f"over {RANDOM_ARGUMENTS} random arguments"
 
 
-def _answers(model: Model, arguments: Array) -> Array:
+def _predictions(model: Model, arguments: Array) -> Array:
     return model.predict(arguments)[0] if isinstance(model, OnnxDuration) else model.probability(arguments)
 
 
-def _r2(answers: Array, whole: Array) -> float:
-    """Share of the model's variance that the rules explain; 1 where it says the same everywhere."""
-    known = np.isfinite(answers) & np.isfinite(whole)
-    variance = float(np.var(whole[known]))
-    return 1.0 - float(np.mean((answers[known] - whole[known]) ** 2)) / variance if variance > 0 else 1.0
+def _r2(predictions: Array, whole: Array) -> float:
+    """Share of the model's variance that the rules explain; 1 if the model is constant."""
+    finite = np.isfinite(predictions) & np.isfinite(whole)
+    variance = float(np.var(whole[finite]))
+    return 1.0 - float(np.mean((predictions[finite] - whole[finite]) ** 2)) / variance if variance > 0 else 1.0

@@ -1,6 +1,6 @@
-"""Episodes out of whole runs: the executive's own choices in lock-step (on-policy), or recordings of real robots.
+"""Gathers episodes from whole runs: the executive's choices in lock-step (on-policy), or recordings of real robots.
 
-A model is wrong where it has not looked, and refinement goes exactly there; these episodes are from there.
+Refinement prefers arguments where models err. On-policy episodes come from there.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from tailor.tools.learning import gathering
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
-FIRST_SEED = 2_000_000_000  # of scenarios and noise; evaluations count from elsewhere
-CHUNK = 10  # runs whose episodes are kept together
+FIRST_SEED = 2_000_000_000  # of scenarios and noise; disjoint from the seeds of evaluations
+CHUNK = 10  # runs whose episodes are written together
 READ = (Subgoals, ExecStatus, SoccerGroundTruth, JointState, Odometry, ActionFinished)
-MAX_ACTIONS = 100  # of one run; spaces the numbers of its episodes
-UNPROVEN = RefinementSettings(certify_checks=0)  # a proof of how good a choice is takes time and changes nothing
+MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
+UNPROVEN = RefinementSettings(certify_checks=0)  # certificates take time and do not change choices
 
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """Scenarios to run with the current models, and where their episodes go: a data set per action."""
+    """Scenarios to run with the current models, and the folder of their data sets, one per action."""
 
     domain: str
     scenarios: tuple[str, ...]
-    runs: int  # of each scenario
+    runs: int  # per scenario
     seed: int
     zoo: str
     folder: Path
@@ -53,10 +53,10 @@ class Policy:
 
 
 def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
-    """Run what has not been run yet, in parallel; yields runs finished.
+    """Run the missing runs in parallel; yields numbers of finished runs.
 
     Raises:
-      UsageError: The folder holds other episodes, or the same ones without `resume`; models that cannot be trusted.
+      UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
     """
     from joblib import Parallel, delayed
 
@@ -68,22 +68,22 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     }
     about["episodes"] = policy.runs
     prepare(policy.domain, policy.folder, modelled_actions(policy.domain), about, policy.jobs, resume)
-    missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _mark(policy, first).exists()]
+    missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 
 
 def models_hash(robot: str, zoo: str) -> str:
-    """SHA-256 over the models whose choices are run: other models, other episodes."""
+    """SHA-256 over the models that choose the arguments: other models give other episodes."""
     loaded: Any = _models(robot, zoo)
     models = {**loaded.durations, **loaded.successes}
-    said = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
-    return hashlib.sha256("\n".join(said).encode()).hexdigest()
+    entries = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
+    return hashlib.sha256("\n".join(entries).encode()).hexdigest()
 
 
 def prepare(
     domain: str, folder: Path, names: Sequence[str], about: dict[str, Any], runs: Sequence[Any], resume: bool
 ) -> None:
-    """Make a data set folder, with its manifest, for each of some actions.
+    """Create a data set folder with its manifest for each action.
 
     Raises:
       UsageError: One of them holds other episodes, or the same ones without `resume`; nothing is written then.
@@ -110,12 +110,12 @@ def prepare(
 
 
 def modelled_actions(domain: str) -> list[str]:
-    """Names of the data sets: the actions whose duration models the domain's actions name."""
+    """Actions that have a duration model, which are the names of the data sets."""
     return sorted({action.duration_model.split("/")[0] for action in domains.load(domain).actions.values()})
 
 
 def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode]]) -> None:
-    """Write the episodes of some runs, each to its action's data set."""
+    """Write the episodes of some runs to the data sets of their actions."""
     loaded = domains.load(domain)
     for action in modelled_actions(domain):
         mine = [episode for name, episode in cut if name == action]
@@ -125,28 +125,31 @@ def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode
 
 
 def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dict[str, int]:
-    """Cut recordings into data sets; returns the number of episodes by action.
+    """Extract data sets from recordings.
+
+    Returns:
+      Number of episodes by action.
 
     Raises:
-      UsageError: A file is no recording of an executive's run, none holds a finished action, or the folder holds
+      UsageError: A file is not a recording of an executive's run, none holds a finished action, or the folder holds
         episodes already; nothing is written then.
     """
     cut = [EpisodeExtractor(domains.load(domain)).read(_messages(path)) for path in recordings]
     if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
     about = {"source": "recordings", "recordings": [path.name for path in recordings]}
-    found = Counter(action for one in cut for action, _ in one)
-    prepare(domain, folder, sorted(found), about, recordings, resume=False)
+    counts = Counter(action for one in cut for action, _ in one)
+    prepare(domain, folder, sorted(counts), about, recordings, resume=False)
     number = 0
     for one in cut:
         numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
         write(domain, folder, f"{number:06d}", numbered)
         number += len(one)
-    return {action: found[action] for action in modelled_actions(domain)}
+    return {action: counts[action] for action in modelled_actions(domain)}
 
 
 def _messages(path: Path) -> Iterator[Message]:
-    """What the cutter reads, in the order in which it was said."""
+    """Messages of the extractor's types, in the order in which they were published."""
     from tailor.runtime.recordings.recording import open_recording
     from tailor.schemas.codec import decode
     from tailor.schemas.typesystem import type_of
@@ -160,8 +163,8 @@ def _messages(path: Path) -> Iterator[Message]:
             yield message
 
 
-def _mark(policy: Policy, first: int) -> Path:
-    """Says that some runs are done; its name says how many, for a last chunk that was shorter may grow."""
+def _marker(policy: Policy, first: int) -> Path:
+    """Marker of finished runs; the name holds their number, because a shorter last chunk may grow."""
     return policy.folder / f"runs-{first:06d}-{min(first + CHUNK, len(policy.jobs)):06d}.done"
 
 
@@ -172,7 +175,7 @@ def _chunk(policy: Policy, first: int) -> int:
         base = MAX_ACTIONS * (first + k)
         cut += [(a, replace(e, number=base + i)) for i, (a, e) in enumerate(_run(policy, scenario, seed))]
     write(policy.domain, policy.folder, f"{first:06d}", cut)
-    _mark(policy, first).touch()
+    _marker(policy, first).touch()
     return len(some)
 
 
@@ -188,5 +191,5 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
 
 @lru_cache(maxsize=2)
 def _models(robot: str, zoo: str) -> Models:
-    """Loaded once a process."""
+    """Models, loaded once per process."""
     return load_models(robot, zoo)

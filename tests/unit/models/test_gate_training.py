@@ -182,7 +182,7 @@ def test_a_tree_that_asks_for_something_else_is_refused(zoo: Path, trained: Trai
 def test_models_commands_know_the_tree(zoo: Path, capsys) -> None:
     assert main(["models", "list", "--zoo", str(zoo), "--json"]) == 0
     listed = {row["model"]: row for row in json.loads(capsys.readouterr().out)}
-    assert "% right" in listed["agilo/refinement/benefit"]["test"]
+    assert "% correct" in listed["agilo/refinement/benefit"]["test"]
     assert main(["models", "check", "agilo/refinement", "--zoo", str(zoo)]) == 0
     assert main(["models", "rules", "agilo/refinement", "--zoo", str(zoo)]) == 0
     assert "then refining risks" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Run actions with random arguments in simulation, faster than real time, and keep the episodes to learn from."""
+"""Gather training episodes: run actions with random arguments in simulation, faster than real time."""
 
 from __future__ import annotations
 
@@ -28,27 +28,31 @@ examples:
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
 
-Each action's episodes go to OUT/ACTION: Parquet parts, and manifest.json that says how they were made. The same seed
-gives the same bits for any number of jobs."""
+The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
+seed gives the same bits for any number of jobs."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    parser.add_argument("robot", help="whose actions, e.g. agilo")
-    parser.add_argument("actions", nargs="*", metavar="ACTION", help="which actions (default: all that have a model)")
+    parser.add_argument("robot", help="name of the robot, e.g. agilo")
+    parser.add_argument("actions", nargs="*", metavar="ACTION", help="actions to run (default: all that have a model)")
     count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
-    parser.add_argument("--episodes", type=count, default=1000, help="how many of each (default: %(default)s)")
-    parser.add_argument("--jobs", type=processes, default=2, help="processes (default: %(default)s)")
-    parser.add_argument("--seed", type=seed, default=7, help="draws arguments and noise (default: %(default)s)")
+    parser.add_argument("--episodes", type=count, default=1000, help="number per action (default: %(default)s)")
+    parser.add_argument("--jobs", type=processes, default=2, help="number of processes (default: %(default)s)")
+    parser.add_argument("--seed", type=seed, default=7, help="random seed (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
     other = parser.add_mutually_exclusive_group()
-    other.add_argument("--on-policy", nargs="+", metavar="SCENARIO", help="whole runs that refine with current models")
-    other.add_argument("--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="cut recorded runs")
-    parser.add_argument("--zoo", default="", help="models for --on-policy (default: those that ship)")
-    parser.add_argument("--resume", action="store_true", help="go on where an interrupted run stopped")
-    parser.add_argument("--json", action="store_true", help="print figures as JSON, no progress bar")
+    other.add_argument(
+        "--on-policy", nargs="+", metavar="SCENARIO", help="run scenarios with the current models instead"
+    )
+    other.add_argument(
+        "--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="extract recorded runs instead"
+    )
+    parser.add_argument("--zoo", default="", help="models for --on-policy (default: the ones that ship)")
+    parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
+    parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -70,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         except KeyboardInterrupt:
             left = sum(min(gathering.PART, spec.episodes - first) for first in gathering.missing_parts(spec))
             Console(stderr=True).print(
-                f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume goes on"
+                f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues"
             )
             return 130
     if arguments.json:
@@ -79,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
-    """Episodes out of recordings, or out of whole runs with the current models."""
+    """Gather from recordings, or from whole runs with the current models."""
     from tailor.tools.learning import run_gathering
 
     if arguments.actions:
@@ -106,23 +110,25 @@ def _run_policy(policy: Policy, arguments: argparse.Namespace) -> int:
                 done += count
                 progress.update(task, advance=count)
     except KeyboardInterrupt:
-        console.print(f"{policy.folder}: kept {done} runs more; --resume goes on")
+        console.print(f"{policy.folder}: kept {done} more runs; --resume continues")
         return 130
     if arguments.json:
         print(json.dumps({"folder": str(policy.folder), "runs": len(policy.jobs), "run_now": done}))
     return 0
 
 
-def actions_of(domain: str, asked: list[str]) -> list[str]:
-    """Actions to gather: those asked for, or one for each duration model that the domain's actions name.
+def actions_of(domain: str, requested: list[str]) -> list[str]:
+    """Actions to gather: the requested ones, or all that have a duration model.
 
     Raises:
-      UsageError: An action that the domain does not have.
+      UsageError: The domain lacks a requested action.
     """
-    known = domains.load(domain).actions
-    for action in asked:
+    declared = domains.load(domain).actions
+    for action in requested:
         gathering.check_action(domain, action)
-    return list(dict.fromkeys(asked)) or sorted({action.duration_model.split("/")[0] for action in known.values()})
+    return list(dict.fromkeys(requested)) or sorted(
+        {action.duration_model.split("/")[0] for action in declared.values()}
+    )
 
 
 def _gather(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:

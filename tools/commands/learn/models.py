@@ -27,8 +27,8 @@ examples:
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
 
-MODEL is ROBOT/ACTION/KIND; KIND (duration, energy or success) may be left out for duration; ROBOT alone means all of
-its models, nothing all that there are."""
+MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), energy or success. ROBOT alone stands for all its models; no
+MODEL stands for all models in the zoo."""
 VERBS = ("list", "show", "rules", "plot", "check")
 
 
@@ -36,20 +36,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    said = "one line each; the card; rules in words; pictures; whether they can be trusted (exit code 1 if not)"
-    parser.add_argument("verb", choices=VERBS, help=said)
-    parser.add_argument("models", nargs="*", metavar="MODEL", help="which models (default: all)")
+    verbs = "one line per model; its card; its rules; pictures; run all checks (exit code 1 if one fails)"
+    parser.add_argument("verb", choices=VERBS, help=verbs)
+    parser.add_argument("models", nargs="*", metavar="MODEL", help="models (default: all)")
     parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
     parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
     which = parser.add_mutually_exclusive_group()
-    which.add_argument("--of", metavar="TREE", help="rules: one of the model's own trees, as bag:3 or forest:1")
-    which.add_argument("--distilled", action="store_true", help="rules: a tree that stands for all (default if many)")
+    which.add_argument("--of", metavar="TREE", help="rules: a single tree of the model, as bag:3 or forest:1")
+    which.add_argument(
+        "--distilled", action="store_true", help="rules: a tree distilled from the model (default if it has several)"
+    )
     parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
     parser.add_argument("--json", action="store_true", help="list, show, check: print JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it; exit code 0, or 1 when a check fails."""
+    """Run the verb; exit code 0, or 1 if a check fails."""
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
         return _check(names, arguments)
@@ -66,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         from tailor.tools.figures import learned
 
         for model in loaded:
-            if isinstance(model, OnnxGate):  # it has no surface that a plane could show; `rules` tells it
+            if isinstance(model, OnnxGate):  # has no plane to draw; `rules` prints it
                 continue
             for path in learned.draw(model, arguments.data, arguments.out):
                 print(path)
@@ -83,13 +85,13 @@ def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
 
 
 def _gate_rules(card: Card) -> str:
-    head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that say nearly the same"
-    kept = f"above {100 * card['threshold']:.0f} % the greedy choice is kept"
+    head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that approximate it"
+    kept = f"above a risk of {100 * card['threshold']:.0f} % the greedy choice is kept"
     return "\n\n".join([f"{head}; {kept}", *card["rules"]])
 
 
 def _full(name: str, zoo: Path) -> list[str]:
-    """What a name stands for: a robot for all its models, an action for how long it takes."""
+    """Full names of the models that a name stands for: a robot for all its models, an action for its duration."""
     if "/" not in name:
         mine = [each for each in _all(zoo) if each.startswith(f"{name}/")]
         if not mine:
@@ -102,10 +104,10 @@ def _full(name: str, zoo: Path) -> list[str]:
 
 
 def _all(zoo: Path) -> list[str]:
-    found = sorted("/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in zoo.glob("*/*/*.card.json"))
-    if not found:
-        raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` makes them)")
-    return found
+    names = sorted("/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in zoo.glob("*/*/*.card.json"))
+    if not names:
+        raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` writes them)")
+    return names
 
 
 def _quality(card: Card) -> str:
@@ -117,9 +119,9 @@ def _quality(card: Card) -> str:
             return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
         case "benefit":
             plain = test["ungated"]
-            return f"{test['right_pct']:.1f} % right; slower {plain['slower_pct']:.1f} -> {test['slower_pct']:.1f} %"
+            return f"{test['right_pct']:.1f} % correct; slower {plain['slower_pct']:.1f} -> {test['slower_pct']:.1f} %"
         case _:
-            return f"{test['accuracy_pct']:.1f} % right, {test['missed_failures_pct']:.1f} % missed"
+            return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed"
 
 
 def _list(cards: list[Card], as_json: bool) -> None:
@@ -153,8 +155,8 @@ def _show(card: Card, as_json: bool) -> None:
         if key == "golden":
             console.print(f"[bold]golden[/bold]: {len(value['arguments'])} inputs and outputs")
         elif key == "arguments":
-            said = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
-            console.print(f"[bold]arguments[/bold]: {said}")
+            ranges = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
+            console.print(f"[bold]arguments[/bold]: {ranges}")
         elif key == "rules":
             console.print(f"[bold]rules[/bold]: {len(value)}, which `tailor models rules` prints")
         else:
@@ -175,7 +177,7 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
     failed = {}
     for name in names:
         try:
-            if name.endswith(f"/{GATE}"):  # sound only with the action models that it was learned with
+            if name.endswith(f"/{GATE}"):  # valid only with the action models that it was trained with
                 load_models(name.removesuffix(f"/{GATE}"), str(arguments.zoo), gated=True)
             model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
