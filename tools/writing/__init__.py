@@ -1,1 +1,1 @@
-"""What the arm has written: tracks out of messages, what can be measured on them, and writing in lock-step."""
+"""Letters written by the arm: tracks from messages, measures, and writing in lock-step."""

@@ -1,4 +1,4 @@
-"""What can be measured on a piece of writing: how well it keeps to its waypoints, and how smooth it is."""
+"""Measures of a piece of writing: distance to its waypoints, and smoothness."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SMOOTHING = 5  # of them: set-points come every 0.1 s, and their corners are not
 
 
 def waypoint_errors_rad(track: WritingTrack) -> Array:
-    """How far the arm was from each waypoint when it was to pass it, shape (w,)."""
+    """Distance of the arm to each waypoint at its time of passing, radians, shape (w,)."""
     count = min(len(track.waypoints), len(track.arrivals_s))
     at = [np.interp(track.arrivals_s[:count], track.times_s, track.angles[:, joint]) for joint in (0, 1)]
     errors: Array = np.linalg.norm(np.stack(at, axis=1) - track.waypoints[:count], axis=1)

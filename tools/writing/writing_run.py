@@ -1,4 +1,4 @@
-"""Writes in lock-step, keeping all that the arm's sensors say: the whole executive, faster than real time."""
+"""Writes letters in lock-step with the whole executive, and records the arm's sensors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tailor.tools.writing.writing_track import WritingTrack, writing_track
 
 @dataclass(frozen=True, slots=True)
 class WritingMode:
-    """A way to write: with or without a halt at every waypoint, and how subgoals are refined."""
+    """A mode of writing: with or without a stop at every waypoint, and settings of refinement."""
 
     name: str
     refinement: RefinementSettings
@@ -28,14 +28,14 @@ class WritingMode:
 
 
 class RecordedBody(PowerCubeBody):
-    """The arm's body, with an ear on its sensors."""
+    """The arm's body; records its sensor readings."""
 
     def __init__(self) -> None:
         super().__init__()
         self.readings: list[Message] = []
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
-        """See Body.reset; forgets what was heard."""
+        """See Body.reset; clears the readings."""
         super().reset(rng, start)
         self.readings = []
 
@@ -49,7 +49,7 @@ class RecordedBody(PowerCubeBody):
 def write(text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody) -> WritingTrack:
     """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
     scenario, start = domains.seeded_scenario("arm", f"{'stops' if mode.stops else 'word'}-{text}", seed)
-    # a proof of how good a choice is takes time and changes nothing that is measured
+    # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(mode.refinement, certify_checks=0))
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
     run = run_lockstep(context, body, start, seed)

@@ -1,4 +1,4 @@
-"""A piece of writing reduced to what is drawn and measured: joint angles, waypoints and when they were reached."""
+"""Track of a piece of writing, for drawings and measures: joint angles, waypoints and their times."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class WritingTrack:
 
     Attributes:
       title: For pictures.
-      text: The capitals that it is to be.
+      text: The capitals to write.
       result: The executive's: "achieved", "failed: why", or "" if it was stopped.
       times_s: Since the start, shape (n,), about every 20 ms.
-      angles: Pan and lift in rad, shape (n, 2), as the encoders said.
+      angles: Pan and lift in rad, shape (n, 2), by the encoders.
       velocities: In rad/s, shape (n, 2).
       waypoints: In rad, shape (w, 2), in order.
       arrivals_s: When each waypoint was to be passed, shape (w,).

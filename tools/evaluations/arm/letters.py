@@ -1,4 +1,4 @@
-"""The arm's row of Table 3: every letter by several hands over the same starts, and what a perfect model would gain."""
+"""The arm's row of Table 3: every letter in several modes from equal starts, and the gain of a perfect model."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ Key = tuple[str, int]  # letter, seed
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What is kept of one letter by one hand."""
+    """Figures of one letter in one mode."""
 
     achieved: bool
     duration_s: float
@@ -77,14 +77,14 @@ Found = Mapping[str, Mapping[Key, Figures]]  # by hand
 
 
 def evaluate(arguments: argparse.Namespace) -> tuple[list[dict[str, Any]], dict[str, Path]]:
-    """One row for each hand, and the picture if a report is asked for."""
+    """One row for each mode, and the picture if a report is requested."""
     found = _write_all(arguments)
     rows = _rows(found)
     return rows, {} if arguments.report is None else _picture(arguments.report, arguments.zoo)
 
 
 def _write_all(arguments: argparse.Namespace) -> Found:
-    """Every letter at every seed by every hand."""
+    """Every letter at every seed in every mode."""
     hands = HANDS if arguments.no_oracle else (*HANDS, *ORACLES)
     keys = [(letter, FIRST_SEED + k) for k in range(arguments.seeds) for letter in sorted(font())]
     wanted = [(hand, key) for key in keys for hand in hands]
@@ -142,7 +142,7 @@ def _both_achieved(name: str, found: Found) -> list[Key]:
 
 
 def _row(name: str, found: Found) -> dict[str, Any]:
-    """One hand against the greedy one, over the letters that both finished."""
+    """One mode against the greedy one, over the letters that both finished."""
     keys = _both_achieved(name, found)
     mine, greedy = [found[name][key] for key in keys], [found["greedy"][key] for key in keys]
     comparison = compare([figures.duration_s for figures in greedy], [figures.duration_s for figures in mine])

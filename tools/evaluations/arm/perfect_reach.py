@@ -1,4 +1,4 @@
-"""What a reach really takes, as a model: the controller's own duration, for an oracle to choose by."""
+"""Perfect duration model of a reach: the controller's own duration, for an oracle."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HALVINGS = 22
 
 
 class PerfectReach:
-    """See `DurationModel`: exact but for the rounding to whole periods, and never unsure."""
+    """See `DurationModel`: exact except for the rounding to whole periods; its spread is 0."""
 
     card: ClassVar[dict[str, Any]] = {"sha256": "the controller itself"}
 

@@ -1,6 +1,6 @@
-"""The paper's Figure 15: where an asserted subgoal may lie and what it costs there, with the runs without and with it.
+"""The paper's Figure 15: valid places of an asserted subgoal and their cost, with the runs without and with it.
 
-The starts are Figure 16's: approaches of the ball to a random heading. Those that get a subgoal are looked at here.
+The starts are Figure 16's: approaches to a random heading. This evaluation selects those with an asserted subgoal.
 """
 
 from __future__ import annotations
@@ -35,10 +35,13 @@ REMARKS = (
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure15`."""
     parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=40, help="starts to look through (default %(default)s)"
+        "--episodes", type=at_least(2, "--episodes"), default=40, help="starts to run (default %(default)s)"
     )
     parser.add_argument(
-        "--drawn", type=at_least(0, "--drawn"), default=2, help="so many with a subgoal are drawn (default %(default)s)"
+        "--drawn",
+        type=at_least(0, "--drawn"),
+        default=2,
+        help="number of starts with a subgoal to draw (default %(default)s)",
     )
     configure_report(parser)
 

@@ -1,6 +1,6 @@
-"""The search space of an asserted subgoal over the ground (paper, Figure 15): what it costs to have it at every place.
+"""Cost of an asserted subgoal at every place on the ground (paper, Figure 15).
 
-At each place the heading and the speed are the best that there are; where none is predicted to succeed it is INVALID.
+Each place has its best heading and speed; a place without any that is predicted to succeed is INVALID.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 STEP_M = 0.1
 MARGIN_M = 1.2  # around start, goal and subgoal
-HEADINGS, SPEEDS = 20, 4  # tried at each place, beside those that were chosen
+HEADINGS, SPEEDS = 20, 4  # sampled at each place, besides the chosen ones
 ROWS_AT_ONCE = 20_000
 
 

@@ -1,4 +1,4 @@
-"""What episodes of the optimiser's own choices change: error and coverage where it goes, before and after a round."""
+"""Effect of on-policy episodes: error and coverage at the optimiser's choices, before and after a round."""
 
 from __future__ import annotations
 

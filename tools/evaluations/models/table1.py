@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     models = [model for _, model in sorted(loaded.items()) if model.card["kind"] == "duration"]  # not energies
     rows = [row(model, arguments) for model in models]
     plots = _plots(models, arguments) if arguments.report else {}
-    remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs, other noise"]
+    remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration; floor: repeated runs with other noise"]
     publish_report(Report("table1", "Table 1: duration models", rows, remarks, plots), arguments.json, arguments.report)
     known = [r for r in rows if r["paper_mae_s"] is not None]
     return 0 if all(r["relative_pct"] <= r["paper_relative_pct"] for r in known) else 1

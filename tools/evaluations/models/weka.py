@@ -1,4 +1,4 @@
-"""Runs WEKA's M5P and J48 where they are installed (Debian's package weka), to compare with what the paper used."""
+"""Runs WEKA's M5P and J48, the learners of the paper, if installed (Debian's package weka)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-JAR = Path("/usr/share/java/weka.jar")  # where Debian's package puts it
+JAR = Path("/usr/share/java/weka.jar")  # of Debian's package
 TIMEOUT_S = 600
 
 
@@ -49,7 +49,7 @@ def _run(command: Sequence[str], features: NDArray[Any], targets: NDArray[Any], 
         _write(test, fresh, np.full(len(fresh), targets[0]), kind)
         name, *options = command
         java = ["java", "-Xmx1g", "-cp", str(JAR), name, "-t", str(train), "-T", str(test)]
-        model = _call([*java, "-v", *options]) if kind == "numeric" else ""  # says how many rules there are
+        model = _call([*java, "-v", *options]) if kind == "numeric" else ""  # prints the number of rules
         return model + "\n" + _call([*java, "-p", "0", *options])
 
 

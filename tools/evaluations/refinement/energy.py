@@ -1,4 +1,4 @@
-"""Time against energy (paper 8): the same runs with a growing worth of a joule; work is measured, not predicted."""
+"""Time against energy (paper 8): equal starts with increasing weights of energy; work is measured, not predicted."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is co
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What an episode took."""
+    """Duration and energy of an episode."""
 
     achieved: bool
     duration_s: float
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def cost_of(task: Task, weight: float, seed: int) -> Cost:
-    """Run one episode with a joule worth so many seconds."""
+    """Run one episode with a weight of energy in s/J."""
     variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
     run, _ = run_task(task, variant, seed)
     return Cost(run.achieved, run.duration_s, energy_j(run, task.domain))

@@ -1,6 +1,6 @@
-"""The paper's Figure 1: the same actions from the same start, greedy and refined, drawn; and how they pass over.
+"""The paper's Figure 1: greedy and refined paths from the same starts, and the transition between actions.
 
-Greedy gets to the ball soonest and then has to turn around with it; refined comes later and goes straight on.
+Greedy reaches the ball sooner and then turns around with it; refined arrives later and continues straight on.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.track import Track
 
 MODES = (("greedy", 1), ("refined", 2))  # the paper's h
-SLOW_MPS = 0.1  # below it the robot stands, turns on the spot, or shuffles
+SLOW_MPS = 0.1  # below it the robot stands or turns on the spot
 Found = Mapping[tuple[str, int], TracedRun]
 
 
@@ -33,9 +33,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--episodes",
         type=at_least(2, "--episodes"),
         default=60,
-        help="starts that the figures are of (default %(default)s)",
+        help="starts (default %(default)s)",
     )
-    parser.add_argument("--drawn", type=at_least(0, "--drawn"), default=3, help="of them, the first so many are drawn")
+    parser.add_argument(
+        "--drawn", type=at_least(0, "--drawn"), default=3, help="number of starts to draw (default %(default)s)"
+    )
     configure_report(parser)
 
 
@@ -49,10 +51,10 @@ def run(arguments: argparse.Namespace) -> int:
     rows += [_example(name, horizon, found[name, s]) for s in seeds[: arguments.drawn] for name, horizon in MODES]
     plots = {} if arguments.report is None else _draw(found, seeds[: arguments.drawn], arguments.report)
     remarks = [
-        f"Drawn: the first {arguments.drawn} starts of the evaluation, not picked. Lines stand across the robot's "
-        "heading, ten a second; their width is its speed. Disc: ball at the start; circle: at the end; + subgoal that "
-        "was free to choose; * target.",
-        f"slow_s: how long the robot was slower than {SLOW_MPS} m/s between its start and the end",
+        f"Drawn: the first {arguments.drawn} starts of the evaluation, not selected. Lines stand across the robot's "
+        "heading, ten a second; their length is its speed. Disc: ball at the start; circle: at the end; + subgoal that "
+        "with a free parameter; * target.",
+        f"slow_s: time at less than {SLOW_MPS} m/s between the first and the last action",
     ]
     publish_report(
         Report("figure1", "Figure 1: greedy and refined", rows, remarks, plots),
@@ -108,14 +110,14 @@ def path_m(track: Track) -> float:
 
 
 def slow_s(track: Track) -> float:
-    """Seconds, between first and last action, in which the robot hardly moved."""
+    """Seconds between first and last action at less than SLOW_MPS."""
     times = np.array([point.time_s for point in track.points])
     speeds = np.array([abs(point.v) for point in track.points])
     return float(np.sum(np.diff(times)[speeds[1:] < SLOW_MPS])) if len(times) > 1 else 0.0
 
 
 def handover_mps(track: Track) -> float:
-    """Speed where the dribble took over from what came before; NaN without a dribble."""
+    """Speed at the start of the dribble; NaN without one."""
     speeds = [abs(point.v) for point in track.points if point.name == "dribbleBall"]
     return speeds[0] if speeds else float("nan")
 

@@ -40,10 +40,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--episodes", type=at_least(2, "--episodes"), default=10, help="starts at which to sweep (default %(default)s)"
     )
-    parser.add_argument("--drawn", type=at_least(0, "--drawn"), default=2, help="of them, the first so many are drawn")
+    parser.add_argument(
+        "--drawn", type=at_least(0, "--drawn"), default=2, help="number of starts to draw (default %(default)s)"
+    )
     parser.add_argument("--points", type=at_least(2, "--points"), default=36, help="angles (default %(default)s)")
     parser.add_argument(
-        "--repeats", type=at_least(1, "--repeats"), default=3, help="runs an angle, each with noise of its own"
+        "--repeats",
+        type=at_least(1, "--repeats"),
+        default=3,
+        help="runs of each angle, with different noise (default %(default)s)",
     )
     configure_report(parser)
 

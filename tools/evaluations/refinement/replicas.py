@@ -1,4 +1,4 @@
-"""Models trained anew, each from episodes of its own: how much of a result hangs on the one training that ships."""
+"""Replicas: models trained anew from other episodes, to measure the influence of training on a result."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _trained(recipe: Recipe, seed: int, zoo: Path, data: list[Path]) -> Path:
 def over_models(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The row over several models: the mean of theirs, with a 95 % interval between models.
 
-    The interval says what another training would give; each model's own says what other starts would give.
+    The interval covers other trainings; each model's own interval covers other starts.
     """
     gains = np.array([row["improvement_pct"] for row in rows])
     half = float(stats.t.ppf(0.975, len(gains) - 1) * stats.sem(gains)) if len(gains) > 1 else float("nan")

@@ -1,4 +1,4 @@
-"""The paper's Table 3: greedy (h = 1) against refined (h = 2) over the same episodes, and what an oracle would gain."""
+"""The paper's Table 3: greedy (h = 1) against refined (h = 2) from equal starts, and the gain of an oracle."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _of_other_models(name: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
-    """A row for each model that was trained anew, and one over all of them; no oracle, which knows no models."""
+    """A row for each set of models that was trained anew, and one over all of them; without the oracle."""
     domain = SCENARIOS[name][0]
     recipe = Recipe(domain, domains.load(domain).robot, arguments.model_episodes, arguments.model_runs)
     rows = []
