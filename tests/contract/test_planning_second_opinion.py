@@ -53,7 +53,7 @@ def test_both_refuse_the_same_plans(name):
                 assert (validate(other, domain, problem) == "") == accepted(TEXTS[name], other), format_plan(other)
 
 
-# --- what an external planner is asked -----------------------------------------------------------
+# --- requests to an external planner ---------------------------------------------------------------
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_problem_as_an_external_planner_gets_it_is_the_same_in_anothers_eyes(name):
     domain, problem = read(*TEXTS[name])

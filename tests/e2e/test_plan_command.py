@@ -20,8 +20,8 @@ DURATIVE = [str(OWN / "kitchen-durative-domain.pddl"), str(OWN / "kitchen-durati
 
 def plan(capsys, *arguments):
     code = main(["plan", *arguments])
-    told = capsys.readouterr()
-    return code, told.out, told.err
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
 
 
 def test_prints_the_plain_form(capsys):
@@ -106,8 +106,8 @@ def test_a_pipe_is_read_once_even_when_another_program_plans(tmp_path):
     for options in ([], ["--planner", f"{sys.executable} {echo}"]):
         done = subprocess.run([*command, *options], input=text, capture_output=True, text=True, cwd=DATA.parents[2])
         assert "IndexError" not in done.stderr
-        told = "unsound" if options else "1:(approachball pos1 pos2)"  # half a plan: the child got both texts
-        assert told in done.stdout + done.stderr
+        expected = "unsound" if options else "1:(approachball pos1 pos2)"  # half a plan: the child received both texts
+        assert expected in done.stdout + done.stderr
 
 
 def test_verbose_stands_before_the_files_as_well(capsys):
@@ -152,7 +152,7 @@ def hopeless(tmp_path):
     return str(path)
 
 
-def test_unsolvable_and_limit_are_told_apart(capsys, hopeless):
+def test_unsolvable_and_limit_are_distinguished(capsys, hopeless):
     code, out, err = plan(capsys, DOMAIN, hopeless)
     assert (code, out) == (1, "")
     assert err == "hopeless: no plan exists: the goal cannot be reached, not even without delete effects\n"
@@ -163,7 +163,7 @@ def test_unsolvable_and_limit_are_told_apart(capsys, hopeless):
     assert json.loads(plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "-T", "0", "--json")[1])["status"] == "limit"
 
 
-def test_pddl_outside_the_language_is_told_with_its_place(capsys, tmp_path):
+def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
     path = tmp_path / "goal.pddl"
     path.write_text("(define (problem p) (:domain kitchen)\n (:goal (preference tidy (hand-empty))))")
     code, out, err = plan(capsys, DOMAIN, str(path), "--json")
@@ -198,7 +198,7 @@ def test_bad_input_is_one_line_and_exit_code_2(capsys, arguments, message):
         assert message in err
 
 
-def test_a_huge_file_is_refused_before_it_is_read(capsys, tmp_path):
+def test_a_huge_file_is_rejected_before_it_is_read(capsys, tmp_path):
     path = tmp_path / "huge.pddl"
     with path.open("wb") as huge:
         huge.truncate(10_000_000)
@@ -217,7 +217,7 @@ def test_an_external_planners_plan_is_parsed_linked_and_validated(capsys, tmp_pa
     assert {"producer": 0, "literal": "(hand-empty)", "consumer": 2} in json.loads(out)["links"]
 
 
-def test_an_external_planners_unsound_plan_is_refused(capsys, tmp_path):
+def test_an_external_planners_unsound_plan_is_rejected(capsys, tmp_path):
     program = tmp_path / "vhpop.py"
     program.write_text(f"print({printed('kitchen-s1.ground.links').replace('table2', 'dock')!r})")
     code, out, err = plan(capsys, DOMAIN, PROBLEM, "--planner", f"{sys.executable} {program}")
@@ -226,13 +226,13 @@ def test_an_external_planners_unsound_plan_is_refused(capsys, tmp_path):
 
 
 def test_help_teaches():
-    told = subprocess.run(
+    printed = subprocess.run(
         [sys.executable, "-c", "from tailor.tools.main import main; main()", "plan", "--help"],
         capture_output=True,
         text=True,
     ).stdout
     for word in ("DOMAIN", "--links", "MW-Loc", "ADDR", "Exit codes", "Figure 10"):
-        assert word in told
+        assert word in printed
 
 
 def test_a_graph_is_sound_whatever_characters_names_have(capsys, tmp_path):

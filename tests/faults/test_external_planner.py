@@ -1,4 +1,4 @@
-"""The executive's line to an external planner: an answer whatever the child does, and no child left behind."""
+"""The executive's requests to an external planner: always an answer, and no child left behind."""
 
 import sys
 import time
@@ -17,7 +17,7 @@ def request(number=7):
     return PlanRequest(0, number, "(define (domain d))", "(define (problem p))")
 
 
-def asked(command, limit_s=LIMIT_S):
+def answer_of(command, limit_s=LIMIT_S):
     return repeat_on_stall(3, lambda: polled(command, limit_s))
 
 
@@ -39,7 +39,7 @@ def polled(command, limit_s):
 
 
 def test_a_planner_that_behaves_well_is_handed_on_with_number_and_time(tmp_path):
-    answer = asked(program(tmp_path, "print(open(sys.argv[1]).read(), open(sys.argv[2]).read())"))
+    answer = answer_of(program(tmp_path, "print(open(sys.argv[1]).read(), open(sys.argv[2]).read())"))
     assert answer == PlanAnswer(
         123, 7, "answered", "(define (domain d)) (define (problem p))\n", "the planner ended with code 0"
     )
@@ -55,19 +55,19 @@ def test_a_planner_that_behaves_well_is_handed_on_with_number_and_time(tmp_path)
     ],
 )
 def test_a_planner_that_does_not_end_well_has_an_outcome_and_no_output(tmp_path, body, outcome, reason):
-    answer = asked(program(tmp_path, body), 0.5 if outcome == "timeout" else LIMIT_S)
+    answer = answer_of(program(tmp_path, body), 0.5 if outcome == "timeout" else LIMIT_S)
     assert (answer.outcome, answer.output) == (outcome, "")
     assert reason in answer.reason
 
 
 def test_garbage_is_handed_on_as_text_that_survives_the_recording(tmp_path):
-    answer = asked(program(tmp_path, "sys.stdout.buffer.write(bytes(range(256)) * 20)"))
+    answer = answer_of(program(tmp_path, "sys.stdout.buffer.write(bytes(range(256)) * 20)"))
     assert answer.outcome == "answered"
     assert "\0" in answer.output
 
 
 def test_a_program_that_is_gone_at_run_time_is_an_answer_too():
-    answer = asked("no-such-planner-anywhere -g")
+    answer = answer_of("no-such-planner-anywhere -g")
     assert answer.outcome == "missing"
     assert "there is no program 'no-such-planner-anywhere'" in answer.reason
 

@@ -132,14 +132,14 @@ from tailor.runtime.processes.planner_process import PlannerProcess
 child = PlannerProcess({program(tmp_path, "time.sleep(60)")!r}, "", "", 60.0)
 print(child.pid, flush=True)
 time.sleep(60)"""
-    script = tmp_path / "asks.py"
+    script = tmp_path / "parent.py"
     script.write_text(f"import time\n{body}\n")
-    asking = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
-    pid = int(first_line(asking.stdout))
+    parent = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    pid = int(first_line(parent.stdout))
     time.sleep(0.5)
     assert is_alive(pid)
-    asking.kill()
-    asking.wait()
+    parent.kill()
+    parent.wait()
     assert gone(pid)
 
 
@@ -152,6 +152,6 @@ def test_killing_early_leaves_nothing_and_may_be_repeated(tmp_path):
 
 
 @pytest.mark.parametrize("command", ["", "no-such-planner-anywhere", "/", "'unbalanced"])
-def test_a_command_that_cannot_be_started_is_told(command):
+def test_a_command_that_cannot_be_started_is_reported(command):
     with pytest.raises(UsageError, match="cannot be started"):
         PlannerProcess(command, "", "", LIMIT_S)

@@ -1,4 +1,4 @@
-"""Against brute force on small random problems: plans are sound, and "unsolvable" is only said where nothing helps."""
+"""Comparison with brute force on small random problems: plans are sound, and unsolvable problems have no plan."""
 
 from itertools import product
 

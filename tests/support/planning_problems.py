@@ -1,4 +1,4 @@
-"""The project's own planning problems, the original's figures for them, and short ways to plan in tests."""
+"""The project's own planning problems, the counts of VHPOP for them, and shortcuts to plan in tests."""
 
 import csv
 from pathlib import Path
@@ -32,13 +32,13 @@ def solve(domain, problem, settings=MATCHING):
 
 
 def printed(name):
-    """What the original printed, without its line of time."""
+    """The output of VHPOP, without its line of time."""
     text = (DATA / "vhpop-output" / f"{name}.txt").read_text()
     return text[: text.rindex("Time:")]
 
 
 def reference(folder, config, status="solved"):
-    """The original's solved problems (status "": all that it tried): (domain, problem) -> row of the table.
+    """The problems that VHPOP solved (status "": all that it tried): (domain, problem) -> row of the table.
 
     Empty when the folder is absent.
     """

@@ -106,9 +106,9 @@ def run(console: Console, quick: bool) -> None:
     Raises:
       NoMeasurement: The problems are not installed: they are test data.
     """
-    table = Table(title="planning: CPU time with parsing and grounding; counts of VHPOP 2.2.1 for comparison", box=None)
+    table = Table(title="planning: CPU time with parsing and grounding; ref.: VHPOP 2.2.1", box=None)
     table.add_column("problem", no_wrap=True, min_width=19)
-    for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "VHPOP gen.", "VHPOP vis."):
+    for column in ("steps", "gen.", "vis.", "CPU ms", "plans/s", "ref. gen.", "ref. vis."):
         table.add_column(column, justify="right", no_wrap=True)
     measured = rows(quick)
     if not measured:

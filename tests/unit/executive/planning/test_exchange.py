@@ -1,4 +1,4 @@
-"""What goes to an external planner and what comes back: a problem as PDDL, and a plan whose links are completed."""
+"""Exchange with an external planner: problems written as PDDL, and plans whose links are completed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each feature of the language: a problem that needs it gets a sound plan, and what is outside is refused by name."""
+"""Each feature of the language: a problem with it gets a sound plan, and all other PDDL is rejected by name."""
 
 import pytest
 
@@ -260,7 +260,7 @@ def test_an_atom_of_a_predicate_called_at_is_no_timed_literal(planned):
     assert planned(domain, problem)[0] == ["go r a b"]
 
 
-# --- what is refused -----------------------------------------------------------------------------
+# --- rejected PDDL -------------------------------------------------------------------------------
 def domain_with(part):
     return f"(define (domain d)\n (:predicates (p) (q ?x))\n (:functions (f))\n {part})"
 

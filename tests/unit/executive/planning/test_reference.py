@@ -17,7 +17,7 @@ from tests.support.planning_problems import DATA, OWN, SHARED, load, own, printe
 
 # VHPOP 2.2.1 under `g-mwloc`
 FIGURES = {problem: row for (_, problem), row in reference(DATA, "22-g-mwloc").items()}
-# The four flaw orders that took turns in the competition of 2002; the first is MW-Loc.
+# The four flaw orders in round robin of the competition of 2002; the first is MW-Loc.
 IPC3 = Settings(
     DEFAULT_RANKINGS,
     (
@@ -100,10 +100,10 @@ def test_reads_what_the_original_prints(name, form):
 
 # --- IPC -----------------------------------------------------------------------------------------
 IPC = {key: row for key, row in reference(SHARED, "22-ipc3").items() if key[0].startswith("ipc/")}
-# within the first 1000 plans only the first flaw order has had its turn: these are its figures
-INITIAL_QUOTA = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
+# within the first 1000 plans only the first flaw order is used: these are its counts
+FIRST_ROUND = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
 # rovers' {u} criterion asks for steps that delete a condition; the original also takes those that restore it at once
-IN_TURNS = {key: row for key, row in IPC.items() if key not in INITIAL_QUOTA and key[0] != "ipc/rovers-strips"}
+LATER_ROUNDS = {key: row for key, row in IPC.items() if key not in FIRST_ROUND and key[0] != "ipc/rovers-strips"}
 given = pytest.mark.skipif(not IPC, reason="../shared/pddl is absent: no competition problems to compare with")
 
 
@@ -112,26 +112,26 @@ def ipc(folder, name):
 
 
 @given
-@pytest.mark.parametrize("key", sorted(INITIAL_QUOTA), ids="-".join)
+@pytest.mark.parametrize("key", sorted(FIRST_ROUND), ids="-".join)
 def test_ipc_counts_are_the_originals(key):
     domain, problem = ipc(*key)
     result = solve(domain, problem)
     assert validate(result.plan, domain, problem) == ""
-    assert len(result.plan.steps) <= int(INITIAL_QUOTA[key]["steps"])
-    assert_same_counts(result, INITIAL_QUOTA[key])
+    assert len(result.plan.steps) <= int(FIRST_ROUND[key]["steps"])
+    assert_same_counts(result, FIRST_ROUND[key])
 
 
 @given
 @pytest.mark.slow
-@pytest.mark.parametrize("key", sorted(IN_TURNS), ids="-".join)
+@pytest.mark.parametrize("key", sorted(LATER_ROUNDS), ids="-".join)
 def test_ipc_counts_in_turns_are_the_originals(key):
     domain, problem = ipc(*key)
     result = solve(domain, problem, IPC3)
     assert validate(result.plan, domain, problem) == ""
     if key in {("ipc/blocks", "p02"), ("ipc/blocks", "p05")}:  # (stack x x) restores what it deletes, see above
-        assert result.generated == pytest.approx(int(IN_TURNS[key]["plans_generated"]), rel=0.001)
+        assert result.generated == pytest.approx(int(LATER_ROUNDS[key]["plans_generated"]), rel=0.001)
     else:
-        assert_same_counts(result, IN_TURNS[key])
+        assert_same_counts(result, LATER_ROUNDS[key])
 
 
 TRIED = {key for key in reference(SHARED, "g-mwloc", "") if key[0].startswith("ipc/")}

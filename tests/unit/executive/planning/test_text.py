@@ -1,4 +1,4 @@
-"""Plans as text: VHPOP's forms written and read, and bad text refused with its line."""
+"""Plans as text: writing and reading VHPOP's forms; bad text is rejected with its line."""
 
 import pytest
 
