@@ -13,21 +13,21 @@ def errors(count: int, deviation: float, seed: int) -> np.ndarray:
 
 def test_random_episodes_alone_hold_nine_in_ten_of_their_errors() -> None:
     off = errors(2000, 0.5, 1)
-    said = calibrated(off, np.full(2000, 0.5), np.zeros(2000, bool))
-    assert said["interval90_on"] == "random"
-    assert said["interval90_factor"] == pytest.approx(1.645, abs=0.1)
-    assert "interval90_random_factor" not in said
+    entries = calibrated(off, np.full(2000, 0.5), np.zeros(2000, bool))
+    assert entries["interval90_on"] == "random"
+    assert entries["interval90_factor"] == pytest.approx(1.645, abs=0.1)
+    assert "interval90_random_factor" not in entries
 
 
 def test_on_policy_errors_that_are_larger_widen_the_interval_and_the_card_says_by_how_much() -> None:
     off = np.concatenate([errors(2000, 0.5, 1), errors(400, 1.0, 2)])
     on_policy = np.arange(2400) >= 2000
-    spread = np.full(2400, 0.5)
-    said = calibrated(off, spread, on_policy)
-    assert (said["interval90_on"], said["interval90_n"]) == ("on-policy", 400)
-    assert said["interval90_factor"] > 1.8 * said["interval90_random_factor"]
-    assert said["interval90_random_covers_pct"] < 70
-    assert scores.coverage(off[on_policy], spread[on_policy], said["interval90_factor"]) == pytest.approx(90, abs=1)
+    std = np.full(2400, 0.5)
+    entries = calibrated(off, std, on_policy)
+    assert (entries["interval90_on"], entries["interval90_n"]) == ("on-policy", 400)
+    assert entries["interval90_factor"] > 1.8 * entries["interval90_random_factor"]
+    assert entries["interval90_random_covers_pct"] < 70
+    assert scores.coverage(off[on_policy], std[on_policy], entries["interval90_factor"]) == pytest.approx(90, abs=1)
 
 
 def test_a_few_on_policy_episodes_decide_nothing() -> None:

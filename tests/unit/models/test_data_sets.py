@@ -64,7 +64,7 @@ def change(column: str, value: object) -> Callable[[Path], None]:
 
 
 @pytest.mark.parametrize(
-    ("damage", "said"),
+    ("damage", "message"),
     [
         (flip, "cannot be read"),
         (truncate, "cannot be read"),
@@ -75,16 +75,16 @@ def change(column: str, value: object) -> Callable[[Path], None]:
         (change("xg", float("nan")), "column xg holds values that are not finite numbers"),
     ],
 )
-def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], said: str) -> None:
+def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], message: str) -> None:
     damage(folder / PART)
-    with pytest.raises(UsageError, match=said) as told:
+    with pytest.raises(UsageError, match=message) as caught:
         read_data_set(folder)
-    assert str(folder / PART) in str(told.value)
-    assert "\n" not in str(told.value)
+    assert str(folder / PART) in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "said"),
+    ("key", "value", "message"),
     [
         ("robot", 1, "robot is 1, expected a name"),
         ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
@@ -94,12 +94,12 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),
     ],
 )
-def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, said: str) -> None:
+def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, message: str) -> None:
     path = folder / "manifest.json"
     path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
-    with pytest.raises(UsageError, match="not a manifest") as told:
+    with pytest.raises(UsageError, match="not a manifest") as caught:
         read_data_set(folder)
-    assert said in str(told.value)
+    assert message in str(caught.value)
 
 
 def test_an_episode_that_is_there_twice_would_be_in_training_and_test(folder: Path) -> None:

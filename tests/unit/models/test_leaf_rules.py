@@ -22,7 +22,7 @@ def boxes() -> TreeBoxes:
 
 
 @pytest.mark.parametrize(
-    ("dist", "said"),
+    ("dist", "rule"),
     [
         (1.0, "if dist <= 2.00 m then time = 3 s   [0.0 .. 20.0 s] (tree 3 of 3"),
         (2.0, "if dist <= 2.00 m then"),  # on the threshold
@@ -30,8 +30,8 @@ def boxes() -> TreeBoxes:
         (8.5, "if in all cases then time = 9 s"),  # this tree's 10.5 s are farther from the mean of 6.8 s
     ],
 )
-def test_the_rule_is_of_the_tree_that_says_nearest_to_the_mean(dist: float, said: str) -> None:
-    assert applied_rule(boxes(), np.array([dist, 0.1], np.float32), QUANTITIES, "s").startswith(said)
+def test_the_rule_is_of_the_tree_that_says_nearest_to_the_mean(dist: float, rule: str) -> None:
+    assert applied_rule(boxes(), np.array([dist, 0.1], np.float32), QUANTITIES, "s").startswith(rule)
 
 
 def test_what_is_not_a_number_meets_no_rule() -> None:

@@ -132,7 +132,7 @@ NUMBERS = [0.5] * 32
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "said"),
+    ("key", "value", "message"),
     [
         ("arguments", "x", "arguments is 'x', expected a list"),
         ("arguments", [{"name": "x", "unit": "m", "lower": "a", "upper": 1}], "expected name, unit, and numbers"),
@@ -151,11 +151,11 @@ NUMBERS = [0.5] * 32
         ("feature_units", None, "feature_units is None, expected an object"),
     ],
 )
-def test_a_card_whose_parts_are_of_another_shape_is_refused(zoo: Path, key: str, value: object, said: str) -> None:
+def test_a_card_whose_parts_are_of_another_shape_is_refused(zoo: Path, key: str, value: object, message: str) -> None:
     changed_card(duration(zoo), **{key: value})
-    with pytest.raises(UsageError, match="card's") as told:
+    with pytest.raises(UsageError, match="card's") as caught:
         runtime.load_model(duration(zoo))
-    assert said in str(told.value)
+    assert message in str(caught.value)
 
 
 def test_a_success_model_without_its_threshold_is_refused(zoo: Path) -> None:

@@ -81,14 +81,14 @@ def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
 
 def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
     ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
-    told = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
-    trained = train_regression(ENERGY, told, features.projective, "linear", seed=3)
+    recorded = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
+    trained = train_regression(ENERGY, recorded, features.projective, "linear", seed=3)
     about = Publication("energy", "linear", features.projective, 3, "tailor train toy")
-    publish(tmp_path, replace(data, episodes=told), trained, about)
+    publish(tmp_path, replace(data, episodes=recorded), trained, about)
     model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
     assert model.card["outputs"] == ["mean_j", "std_j"]
     assert model.card["test"]["mae_j"] < 0.3 * model.card["test"]["mean_energy_j"]
-    arguments = np.stack([e.ticks[0] for e in told[:50]])
+    arguments = np.stack([e.ticks[0] for e in recorded[:50]])
     assert np.abs(model.predict(arguments)[0] - trained.learner.predict(features.projective(arguments))).max() <= 1e-4
     with pytest.raises(UsageError, match="0 finished episodes, expected at least 40"):
         train_regression(ENERGY, data.episodes, features.projective, "linear", seed=3)

@@ -108,7 +108,7 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         (["r2d2"], "no robot 'r2d2'"),
         (["agilo", "fly"], "no action 'fly'"),
@@ -120,9 +120,9 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
     ],
 )
-def test_bad_input_is_told_before_anything_starts(wrong: list[str], said: str, tmp_path: Path, capsys) -> None:
+def test_bad_input_is_told_before_anything_starts(wrong: list[str], message: str, tmp_path: Path, capsys) -> None:
     assert main(["gather", *wrong, "--out", str(tmp_path / "x")]) == 2
-    assert said in capsys.readouterr().err.splitlines()[-1]
+    assert message in capsys.readouterr().err.splitlines()[-1]
     assert not (tmp_path / "x").exists()
 
 

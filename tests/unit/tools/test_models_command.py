@@ -36,9 +36,9 @@ def test_rules_read_like_the_paper_s_with_units_and_degrees() -> None:
 
 def test_every_model_that_ships_is_sound(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["models", "check", "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert "agilo/goToPose/duration" in said["checked"]
-    assert said["failed"] == {}
+    message = json.loads(capsys.readouterr().out)
+    assert "agilo/goToPose/duration" in message["checked"]
+    assert message["failed"] == {}
 
 
 def test_a_model_that_is_not_sound_is_told_and_fails_the_check(tmp_path: Path, capsys) -> None:
@@ -59,9 +59,9 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
 
 def test_a_robot_s_name_stands_for_all_its_models(capsys) -> None:
     assert main(["models", "list", "powercube", "--json"]) == 0
-    said = [row["model"] for row in json.loads(capsys.readouterr().out)]
-    assert "powercube/reach/duration" in said
-    assert all(name.startswith("powercube/") for name in said)
+    message = [row["model"] for row in json.loads(capsys.readouterr().out)]
+    assert "powercube/reach/duration" in message
+    assert all(name.startswith("powercube/") for name in message)
     assert main(["models", "list", "r2d2"]) == 2
     assert "'r2d2' has no models" in capsys.readouterr().err
 
@@ -101,7 +101,7 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["models", "show", "agilo/fly"], "no such file"),
         (["models", "list", "--zoo", "nowhere"], "no action models"),
@@ -130,11 +130,11 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         (["gather", "agilo", "--on-policy", "chess"], "no scenario 'chess'"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(words: list[str], said: str, capsys, tmp_path, monkeypatch) -> None:
+def test_bad_input_is_one_line_and_exit_code_2(words: list[str], message: str, capsys, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(words) == 2
     error = capsys.readouterr().err
-    assert said in error
+    assert message in error
     assert error.count("\n") == 1
 
 
