@@ -1,4 +1,4 @@
-"""What a user gets wrong: one clear line, exit code 2, and nothing started."""
+"""Errors of users: one clear line, exit code 2, and no process started."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def refused(*arguments):
         (("compare", "a.mcap", "b.mcap", "--plot", "c.xyz"), "--plot c.xyz: expected a name that ends in .png"),
     ],
 )
-def test_mistake_on_the_command_line_is_told_in_one_line(arguments, expected):
+def test_an_error_on_the_command_line_is_reported_in_one_line(arguments, expected):
     if arguments[0] in ("goal",):
         arguments = (*arguments, "--connect", free_endpoint())
     assert expected in refused(*arguments)
@@ -122,7 +122,7 @@ def test_altered_model_file(zoo):
 GOLDEN = ROOT / "tests" / "data" / "golden" / "soccer-approach.mcap"
 
 
-def test_output_that_cannot_be_written_is_told_in_one_line():
+def test_an_output_that_cannot_be_written_is_reported_in_one_line():
     with open("/dev/full", "w") as full:
         done = subprocess.run(
             tailor("info", str(GOLDEN)),
@@ -134,7 +134,7 @@ def test_output_that_cannot_be_written_is_told_in_one_line():
     assert (done.returncode, done.stderr) == (1, "tailor info: No space left on device\n")
 
 
-def test_a_reader_that_leaves_early_is_no_error_to_tell_of():
+def test_a_closed_pipe_is_not_reported_as_an_error():
     told = subprocess.Popen(
         tailor("info", "--json", str(GOLDEN)),
         stdout=subprocess.PIPE,

@@ -1,4 +1,4 @@
-"""Sessions on a real router: errors in one line, questions, foreign publications, coming back, arrival times."""
+"""Sessions on a real router: errors in one line, services, foreign publications, reconnection, arrival times."""
 
 import threading
 import time
@@ -26,24 +26,24 @@ def pair():
         yield a, b
 
 
-def test_a_port_in_use_is_told_in_one_line():
+def test_a_port_in_use_is_reported_in_one_line():
     endpoint = free_endpoint()
     with open_router(endpoint), pytest.raises(UsageError, match="the port is in use"), open_router(endpoint):
         pass
 
 
-def test_no_router_is_told_in_one_line():
+def test_a_missing_router_is_reported_in_one_line():
     with pytest.raises(UsageError, match="no router responds"), open_client(free_endpoint(), timeout_s=0.3):
         pass
 
 
 @pytest.mark.parametrize("endpoint", ["", "7447", "tcp/localhost", "tcp/1.2.3.4:99999", "ftp/x:1", "tcp/a b:1"])
-def test_a_misspelt_endpoint_is_told_before_anything_is_opened(endpoint):
+def test_a_misspelt_endpoint_is_reported_before_anything_is_opened(endpoint):
     with pytest.raises(UsageError, match="expected PROTOCOL/HOST:PORT"), open_client(endpoint):
         pass
 
 
-def test_the_newest_state_arrives_and_is_stamped_when_it_came_not_when_it_was_looked_at(pair):
+def test_the_newest_state_is_stamped_with_its_arrival_not_with_the_drain(pair):
     a, b = pair
     publisher, inbox = a.publisher("odom", "agilo"), b.inbox(["odom"], "agilo")
     wait_until(publisher.matched)
@@ -59,7 +59,7 @@ def test_the_newest_state_arrives_and_is_stamped_when_it_came_not_when_it_was_lo
     assert min(errors) < 20e6, "100 ms would be the time of the look"
 
 
-def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair):
+def test_every_command_between_two_drains_is_received_but_only_the_newest_state(pair):
     a, b = pair
     commands, states = a.publisher("cmd_vel", "agilo"), a.publisher("odom", "agilo")
     inbox, witness = (b.inbox(["cmd_vel", "odom"], "agilo") for _ in range(2))
@@ -74,7 +74,7 @@ def test_every_command_between_two_looks_is_seen_but_only_the_newest_state(pair)
     assert sorted(sequences) == [*(("agilo/cmd_vel", k) for k in range(1, 6)), ("agilo/odom", 5)]
 
 
-def test_who_tells_senders_apart_hears_each_of_them(pair):
+def test_an_inbox_can_keep_the_states_of_several_senders(pair):
     a, b = pair
     ours, theirs = a.publisher("status", "agilo"), b.publisher("status", "agilo")
     inbox = b.inbox(["status"], "agilo", newest_only=False)
@@ -85,7 +85,7 @@ def test_who_tells_senders_apart_hears_each_of_them(pair):
     assert [s.sender for s in inbox.drain()] == [a.sender, b.sender, b.sender]
 
 
-def test_a_put_on_a_wildcard_does_not_pass_for_a_command(pair):
+def test_a_put_on_a_wildcard_is_not_accepted_as_a_command(pair):
     a, b = pair
     inbox = b.inbox(["cmd_vel"], "agilo")
     wait_until(a.publisher("cmd_vel", "agilo").matched)
@@ -94,7 +94,7 @@ def test_a_put_on_a_wildcard_does_not_pass_for_a_command(pair):
     assert inbox.rejected == {("agilo/cmd_vel", "other key"): 1}
 
 
-def test_a_plain_put_of_a_ros_bridge_is_heard(pair):
+def test_a_plain_put_of_a_ros_bridge_is_accepted(pair):
     a, b = pair
     inbox = b.inbox(["odom"], "agilo")
     wait_until(a.publisher("odom", "agilo").matched)
@@ -103,7 +103,7 @@ def test_a_plain_put_of_a_ros_bridge_is_heard(pair):
     assert (sample.sequence, sample.sender) == (0, "")
 
 
-def test_questions_are_answered_from_a_loop(pair):
+def test_requests_are_served_from_a_loop(pair):
     a, b = pair
     questions, over = b.service_server("exec/goal"), threading.Event()
 
@@ -125,7 +125,7 @@ def test_questions_are_answered_from_a_loop(pair):
     assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no response within 0.2 s")
 
 
-def test_clients_are_back_within_a_second_of_their_router():
+def test_clients_reconnect_within_a_second_of_their_router():
     def back():
         endpoint = free_endpoint()
         with ExitStack() as router:

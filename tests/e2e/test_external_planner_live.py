@@ -123,7 +123,7 @@ def test_a_planner_that_fails_is_replaced_by_our_own_and_the_recording_verifies(
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("live")
-def test_people_who_start_a_system_see_that_their_planner_failed(tmp_path):
+def test_the_failure_of_a_planner_is_shown_to_the_user(tmp_path):
     planner = program(tmp_path, "os.abort()")
     flags = ("--scenario", "waypoints", "--once", "--seed", "1", "--planner", planner, "--connect", free_endpoint())
     up = command("up", "soccer", *flags)

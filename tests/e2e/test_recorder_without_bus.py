@@ -1,4 +1,4 @@
-"""A recorder whose bus goes away says so, and goes on when it is back."""
+"""A recorder reports that its bus disconnected, and continues when it reconnects."""
 
 import signal
 import subprocess
@@ -10,7 +10,7 @@ from tests.support.bus_system import ROOT, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 
 
-def test_a_recorder_tells_that_its_bus_is_gone_and_that_it_is_back(tmp_path):
+def test_a_recorder_reports_that_the_bus_disconnected_and_reconnected(tmp_path):
     endpoint, path, told = free_endpoint(), tmp_path / "a.mcap", tmp_path / "told"
     command = tailor("record", "-o", str(path), "--quiet", "--connect", endpoint)
 

@@ -1,4 +1,4 @@
-"""The recorder as a process of its own: what it keeps, and what is left after the worst."""
+"""The recorder as a process of its own: its files, also after kill -9."""
 
 import os
 import signal
@@ -82,7 +82,7 @@ def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
         repeat_on_stall(3, killed)
 
 
-def test_a_selection_keeps_only_what_it_names(robot, tmp_path):
+def test_only_selected_messages_are_recorded(robot, tmp_path):
     _, record = robot
     path = tmp_path / "some.mcap"
     recorder = record(path, "--topics", "agilo/*", "--exclude", "odom,geometry_msgs/msg/PoseWithCovarianceStamped")
@@ -93,7 +93,7 @@ def test_a_selection_keeps_only_what_it_names(robot, tmp_path):
     assert not keys & {"agilo/odom", "agilo/pose"}
 
 
-def test_a_long_recording_goes_on_in_new_files_without_a_gap(robot, tmp_path):
+def test_a_long_recording_continues_in_new_files_without_a_gap(robot, tmp_path):
     _, record = robot
     recorder = record(tmp_path / "part.mcap", "--max-duration", 0.8)
     wait_until((tmp_path / "part_002.mcap").exists, "third file")

@@ -1,4 +1,4 @@
-"""Replay as people use it: keys in a terminal, a live driver on the bus, another executive in the old one's place."""
+"""Replay: keys in a terminal, a live driver on the bus, a substitute for the recorded executive."""
 
 import os
 import pty
@@ -120,7 +120,7 @@ def test_keys_step_pause_and_end_a_replay(tmp_path):
             assert "footer" not in player.stderr.read(), "what was not played is not damaged"
 
 
-def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
+def test_recorded_commands_are_not_published_to_a_live_driver(recording, tmp_path):
     with bus_system() as (session, endpoint, start):
         start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace")
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
@@ -137,7 +137,7 @@ def test_a_live_driver_is_not_sent_recorded_commands(recording, tmp_path):
         wait_until(commands, "commands of --drive")
 
 
-def test_a_substitute_executive_hears_the_sensors_and_a_driver_that_obeys_it(recording):
+def test_a_substitute_executive_receives_the_sensors_and_a_driver_that_obeys_it(recording):
     with bus_system() as (session, endpoint, _), open_client(endpoint) as live:
         over = threading.Event()
 
@@ -160,7 +160,7 @@ def test_a_substitute_executive_hears_the_sensors_and_a_driver_that_obeys_it(rec
         assert commands() == []
 
 
-def test_the_clock_of_a_replay_tells_recorded_time(recording):
+def test_the_clock_of_a_replay_publishes_recorded_time(recording):
     with bus_system() as (session, endpoint, _):
         queue, tapped = session.subscribe_all("clock")  # all of them: an inbox keeps the newest alone
         run(recording, endpoint, "--clock", "50", "--rate", "0.5", "--start", "1.0")
@@ -173,7 +173,7 @@ def test_the_clock_of_a_replay_tells_recorded_time(recording):
         assert 15 < len(times) < 150, "fifty in each of two seconds, but for what a busy machine skips"
 
 
-def test_a_replay_ends_when_the_bus_goes_away(recording):
+def test_a_replay_ends_when_the_bus_disconnects(recording):
     endpoint = free_endpoint()
     with open_router(endpoint) as session:
         odometry = heard(session, ["odom"])

@@ -1,4 +1,4 @@
-"""What people may ask of a running simulator, over the bus."""
+"""Services of a running simulator, over the bus."""
 
 import json
 import time
@@ -64,7 +64,7 @@ def test_in_a_pause_nothing_moves_and_steps_are_exact(system):
     wait_until(lambda: sequence() > before + 26, "a running world")
 
 
-def test_a_pause_of_the_world_is_no_silence_of_the_executive(system):
+def test_a_pause_of_the_world_does_not_count_as_silence_of_the_executive(system):
     session, endpoint, start, trace = system
     truth = session.inbox(["truth"], "agilo")
 

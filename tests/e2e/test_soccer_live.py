@@ -1,4 +1,4 @@
-"""The whole soccer system as people start it: real processes, real bus, real physics, real models."""
+"""The whole soccer system as a user starts it: real processes, bus, physics and models."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a recorder does when the machine lets it down: the file stays readable, the bus goes on."""
+"""Faults of the machine under a recorder: the file stays readable, the bus continues."""
 
 import json
 import subprocess
@@ -28,7 +28,7 @@ def noise(number):
     return Odometry(number, number * 0.7310585786, -number / 7, number % 3.1, number / 11, number / 13)
 
 
-def test_a_full_disk_ends_the_file_not_the_recorder_and_is_told(tmp_path):
+def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     path = tmp_path / "full.mcap"
     with bus_system() as (session, endpoint, _), (tmp_path / "said").open("w") as said:
         options = ["record", "-o", str(path), "--connect", endpoint]

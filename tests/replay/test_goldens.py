@@ -1,4 +1,4 @@
-"""Golden recordings: today's core says what it said then, and where it does not, that is told."""
+"""Golden recordings: today's core publishes the recorded outputs; differences are reported."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def nudged(by, change=lambda made_of: None):
 
 
 @pytest.mark.parametrize("name", GOLDENS)
-def test_core_says_what_it_said_when_the_golden_was_recorded(name):
+def test_core_publishes_what_it_published_when_the_golden_was_recorded(name):
     try:
         verdict = verdict_of(GOLDENS[name])
     except UsageError as error:
@@ -118,7 +118,7 @@ def test_a_last_bit_is_a_difference_on_the_same_kind_of_machine(tmp_path):
     assert float(difference.recorded) == math.nextafter(float(difference.today), 9.0)
 
 
-def test_a_last_bit_is_forgiven_and_told_on_another_kind_of_machine(tmp_path, capsys):
+def test_a_last_bit_is_tolerated_and_reported_on_another_kind_of_machine(tmp_path, capsys):
     path = rewritten(SOME, tmp_path / "bit.mcap", nudged(lambda v: math.nextafter(v, 9.0), other_machine))
     assert main(["verify", str(path)]) == 0
     said = capsys.readouterr().out
@@ -131,7 +131,7 @@ def test_more_than_rounding_is_a_difference_on_any_machine(tmp_path):
     assert verdict_of(path).difference is not None
 
 
-def test_without_proofs_all_else_is_compared(tmp_path, capsys):
+def test_without_proofs_everything_else_is_compared(tmp_path, capsys):
     def other_gap(message):
         return replace(message, gap_pct=message.gap_pct + 1) if isinstance(message, RefinementReport) else None
 
@@ -155,7 +155,7 @@ def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_goldens_are_renewed_only_after_telling_what_has_changed(tmp_path, capsys, monkeypatch):
+def test_goldens_are_renewed_only_after_printing_the_changes(tmp_path, capsys, monkeypatch):
     kept = tmp_path / SOME.name
     rewritten(SOME, kept, nudged(lambda v: v + 0.5, other_horizon))
     before = kept.read_bytes()

@@ -1,4 +1,4 @@
-"""Whatever stands in a recording, commands that read it end in an answer or in one clear line, soon."""
+"""Hostile recordings: every command that reads one ends soon, with a result or one clear line."""
 
 import json
 import struct
@@ -49,14 +49,14 @@ def foreign(path, rows=((10, "x"),), metadata=()):
     "metadata",
     [("drops", {"odom": "many"}), ("provenance", {"json": "[" * 100_000}), ("provenance", {"json": "[1, 2]"})],
 )
-def test_info_takes_whatever_the_metadata_says(tmp_path, capsys, metadata):
+def test_info_accepts_any_metadata(tmp_path, capsys, metadata):
     path = foreign(tmp_path / "a.mcap", metadata=[metadata])
     assert main(["info", str(path)]) == int(metadata[0] == "drops")
     assert main(["info", "--json", str(path)]) == int(metadata[0] == "drops")
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["messages"] == 1
 
 
-def test_info_prints_topics_as_they_are_and_obeys_none(tmp_path, capsys):
+def test_info_escapes_control_characters_and_markup_of_topics(tmp_path, capsys):
     assert main(["info", str(foreign(tmp_path / "a.mcap", [(1, "[/bold]"), (2, "[red]\x1b[31m")]))]) == 0
     said = capsys.readouterr().out
     assert "[/bold]" in said
@@ -80,7 +80,7 @@ def test_a_recording_without_order_lasts_from_its_earliest_message_and_is_cut_an
 
 
 @pytest.mark.parametrize("damage", ["length", "opcode", "hole"])
-def test_what_stands_behind_a_damaged_record_is_found_again(tmp_path, damage):
+def test_messages_after_a_damaged_record_are_recovered(tmp_path, damage):
     data = bytearray(write_tape(tmp_path / "a.mcap").read_bytes())
     start, end = list(chunk_bounds(data))[1]
     if damage == "length":
@@ -105,7 +105,7 @@ def test_a_file_with_a_hole_of_200_mb_is_read_at_once(tmp_path, opcode):
     assert min_cpu_s(lambda: list(open_recording(path).messages())) < 2.0
 
 
-def test_recover_says_by_its_exit_code_that_nothing_was_left(tmp_path, capsys):
+def test_recover_returns_1_if_nothing_could_be_recovered(tmp_path, capsys):
     path = tmp_path / "torn.mcap"
     path.write_bytes(write_tape(tmp_path / "a.mcap").read_bytes()[:200])
     assert main(["recover", str(path)]) == 1
@@ -126,7 +126,7 @@ def with_provenance(monkeypatch, text):
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", "[" * 100_000, "{}", '{"config": 5}', None])
-def test_a_run_that_does_not_say_what_it_was_made_of_is_refused_in_one_line(monkeypatch, text):
+def test_a_run_without_valid_provenance_is_refused_in_one_line(monkeypatch, text):
     with_provenance(monkeypatch, text)
     with pytest.raises(UsageError, match="provenance"):
         rebuild_context(RecordedRuns(GOLDEN).runs[0].provenance)
@@ -142,7 +142,7 @@ def test_every_part_of_a_provenance_is_checked(name, value):
         rebuild_context({**said, name: value})
 
 
-def test_a_file_without_a_run_says_so_with_its_damage(tmp_path, capsys):
+def test_the_error_for_a_file_without_a_run_includes_its_damage(tmp_path, capsys):
     path = tmp_path / "torn.mcap"
     path.write_bytes(GOLDEN.read_bytes()[:10_000])
     assert main(["verify", str(path)]) == 2
@@ -157,7 +157,7 @@ def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch
 
 
 # --- replay --------------------------------------------------------------------------------------
-def test_what_a_sender_cannot_be_counts_as_unsigned(tmp_path):
+def test_a_malformed_sender_counts_as_unsigned(tmp_path):
     path = tmp_path / "a.mcap"
     with path.open("wb") as file:
         writer = Writer(file)
@@ -189,6 +189,6 @@ def test_excluded_keys_are_excluded_after_remapping_as_well(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["", "/", "a/", "**", "agilo/*", "a#b", "x" * 70_000])
-def test_a_key_that_is_none_or_a_pattern_is_not_played(key):
+def test_an_invalid_key_or_pattern_is_not_played(key):
     with bus_system() as (session, _, _), pytest.raises(UsageError, match="expected one that the bus can carry"):
         session.player(key, "std_msgs/msg/Bool")

@@ -45,7 +45,7 @@ def inbox(*raws, topic="odom", key="agilo/odom", wall=0):
 ODOMETRY = Odometry(5, 1.0, 2.0, 0.0, 0.5, 0.25)
 
 
-def test_a_sample_comes_out_with_its_origin():
+def test_a_sample_has_the_origin_of_its_attachment():
     assert inbox(raw(ODOMETRY)).drain(9) == (Sample("agilo/odom", ODOMETRY, 9, 7, SENDER),)
 
 
@@ -65,13 +65,13 @@ def test_an_empty_inbox_gives_nothing():
         ({"payload": bytes(5000)}, "too long"),
     ],
 )
-def test_what_cannot_be_used_is_counted_by_reason(changes, reason):
+def test_rejected_samples_are_counted_by_reason(changes, reason):
     box = inbox(raw(ODOMETRY, **changes), raw(ODOMETRY))
     assert len(box.drain(9)) == 1
     assert box.rejected == {("agilo/odom", reason): 1}
 
 
-def test_an_unsigned_publication_of_another_ros_node_is_taken():
+def test_an_unsigned_publication_of_another_ros_node_is_accepted():
     samples = inbox(raw(ODOMETRY, attachment=None, encoding="zenoh/bytes")).drain(9)
     assert [(s.sequence, s.sender) for s in samples] == [(0, "")]
 
@@ -85,14 +85,14 @@ def test_a_flood_is_drained_in_bounded_portions():
     assert len(inbox(*flood, topic="cmd_vel", key="agilo/cmd_vel").drain(1)) == EVENT_DEPTH
 
 
-def test_a_frozen_sensor_is_not_heard_again_but_one_that_starts_anew_or_is_replayed_is():
+def test_repeated_messages_of_a_frozen_sensor_are_rejected_but_not_those_of_a_restart_or_replay():
     line = Line(*(numbered(ODOMETRY, number) for number in (7, 7, 7, 8, 8, 3)), numbered(ODOMETRY, 3, sender="ff" * 16))
     box = Inbox([(TOPICS["odom"], "agilo/odom", line)], encoding_of, now=lambda: 0, wall=lambda: 0)
     assert [sample.sequence for sample in box.drain(9)] == [7, 8, 3, 3]
     assert box.rejected == {("agilo/odom", "repeated"): 3}
 
 
-def test_a_frozen_sensor_without_numbers_is_heard():  # a ROS 2 bridge sends none
+def test_a_frozen_sensor_without_numbers_is_accepted():  # a ROS 2 bridge sends none
     assert len(inbox(*[raw(ODOMETRY, attachment=None)] * 3).drain(9)) == 3
 
 

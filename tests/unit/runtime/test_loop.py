@@ -1,4 +1,4 @@
-"""The loop's arithmetic, with a clock that stands still unless told otherwise."""
+"""Arithmetic of the loop, with a simulated clock."""
 
 import pytest
 
@@ -19,7 +19,7 @@ class SteppedClock:
         self.now = max(self.now, deadline_ns + self.oversleep)
 
 
-def test_turns_come_at_absolute_deadlines_whatever_the_work_takes():
+def test_periods_start_at_absolute_deadlines_however_long_the_work_takes():
     clock = SteppedClock(7 * MS)
     loop = Loop(100 * MS, clock)
     assert loop.wait_for_next_period() == Period(7 * MS, 7 * MS, 0)
@@ -28,7 +28,7 @@ def test_turns_come_at_absolute_deadlines_whatever_the_work_takes():
         assert loop.wait_for_next_period() == Period((7 + 100 * k) * MS, (7 + 100 * k) * MS, 0)
 
 
-def test_oversleeping_is_lateness_and_does_not_add_up():
+def test_oversleeping_is_lateness_and_does_not_accumulate():
     clock = SteppedClock(0, oversleep_ns=3 * MS)
     loop = Loop(100 * MS, clock)
     loop.wait_for_next_period()

@@ -1,4 +1,4 @@
-"""Chunks of recordings: what mcap's own reader finds in them, and a clear no for what was not written so."""
+"""Chunks of recordings: equal to mcap's own reader; damaged content is refused."""
 
 import struct
 import zlib
@@ -22,7 +22,7 @@ def record(opcode, body):
 MESSAGE = record(5, struct.pack("<HIQQ", 3, 7, 10, 9) + b"data")
 
 
-def test_every_message_is_the_one_that_mcaps_own_reader_finds():
+def test_messages_equal_those_of_mcaps_own_reader():
     with GOLDEN.open("rb") as file:
         theirs = [(m.sequence, m.log_time, m.publish_time, m.data) for _, _, m in make_reader(file).iter_messages()]
     ours = [(m.sequence, m.log_ns, m.publish_ns, m.data) for m in open_recording(GOLDEN).messages()]

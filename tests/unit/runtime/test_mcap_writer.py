@@ -1,4 +1,4 @@
-"""Files of recordings: sinks, tapes, rings, selections, reading back what is whole."""
+"""Files of recordings: sinks, writers, snapshot buffers, selections, reading of damaged files."""
 
 import errno
 import os
@@ -57,7 +57,7 @@ def write_tape(path, count=50, chunks=5):
     return path
 
 
-def test_a_tape_reads_back_exactly_what_went_in(tmp_path):
+def test_a_recording_reads_back_exactly_what_was_written(tmp_path):
     recording = open_recording(write_tape(tmp_path / "a.mcap"))
     found = list(recording.messages())
     assert [(m.key, m.ros_type, m.sender, m.sequence, m.log_ns, m.publish_ns) for m in found] == [
@@ -156,7 +156,7 @@ def test_a_compression_bomb_is_not_unpacked(tmp_path):
         assert damage.damaged_chunks == 1
 
 
-def test_what_is_no_recording_is_told_in_one_line(tmp_path):
+def test_a_file_that_is_no_recording_is_reported_in_one_line(tmp_path):
     (tmp_path / "text").write_text("hello, I am no recording")
     with pytest.raises(UsageError, match="not an MCAP file"):
         open_recording(tmp_path / "text")
@@ -281,7 +281,7 @@ def test_topics_are_selected_by_name_pattern_or_type(include, exclude, key, want
     assert selection(include, exclude).wants(key, "nav_msgs/msg/Odometry") is wanted
 
 
-def test_a_misspelt_topic_is_told():
+def test_a_misspelt_topic_is_an_error():
     with pytest.raises(UsageError, match="topic 'odmo'"):
         selection(["odmo"], [])
 
@@ -296,7 +296,7 @@ def driver(mode):
     return raw(replace(example(DriverState), mode=mode, reason="why"), 1, "agilo/driver")
 
 
-def test_an_alarm_goes_off_once_when_something_goes_wrong():
+def test_a_failure_is_detected_once():
     failure = FailureDetector()
     said = [
         failure.detect(r) for r in (status("READY"), status("FAULT"), status("FAULT"), status("READY"), odometry(1))
@@ -309,11 +309,11 @@ def test_an_alarm_goes_off_once_when_something_goes_wrong():
     ]
 
 
-def test_a_driver_that_was_stopped_before_is_no_alarm():
+def test_a_driver_that_was_stopped_before_is_no_failure():
     assert FailureDetector().detect(driver("stopped")) == ""
 
 
-def test_a_ring_keeps_the_last_seconds_only(tmp_path):
+def test_a_snapshot_buffer_keeps_only_the_last_seconds(tmp_path):
     buffer = SnapshotBuffer(5 * S)
     for k in range(1, 21):
         buffer.add(odometry(k), k * S)
@@ -321,7 +321,7 @@ def test_a_ring_keeps_the_last_seconds_only(tmp_path):
     assert [m.sequence for m in open_recording(tmp_path / "ring.mcap").messages()] == list(range(15, 21))
 
 
-def test_a_ring_is_bounded_in_bytes_too(tmp_path):
+def test_a_snapshot_buffer_is_bounded_in_bytes_too(tmp_path):
     buffer = SnapshotBuffer(1000 * S, max_bytes=10 * len(odometry(1).payload))
     for k in range(1, 21):
         buffer.add(odometry(k), k * S)
@@ -355,7 +355,7 @@ def full_disk(monkeypatch):
     return lambda full: monkeypatch.setattr(sink.os, "write", refuse if full else really)
 
 
-def test_a_snapshot_that_the_disk_does_not_take_is_told_and_the_next_one_is_written(tmp_path, full_disk):
+def test_a_snapshot_that_fails_on_a_full_disk_is_reported_and_the_next_one_is_written(tmp_path, full_disk):
     queue = IngestQueue()
     recorder = SnapshotRecorder(
         tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
@@ -388,7 +388,7 @@ def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones
     assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
 
 
-def test_a_run_that_does_not_fit_on_the_disk_is_not_passed_over_in_silence(tmp_path, full_disk):
+def test_a_run_that_does_not_fit_on_the_disk_raises(tmp_path, full_disk):
     from tailor.tools.lockstep.run_writer import RunWriter
     from tests.support.toy_domain import line_context
 

@@ -1,4 +1,4 @@
-"""What decides whether two machines compute alike: a fingerprint of the functions that the core calls."""
+"""Fingerprint of the functions that the core calls: whether two machines compute alike."""
 
 import ast
 from pathlib import Path
@@ -51,12 +51,12 @@ def test_another_arithmetic_or_version_is_another_kind(name):
     assert contrast(there, here) == f"{name} another against {name} {here[name]}"
 
 
-def test_another_cpu_that_computes_alike_is_the_same_kind_but_is_told():
+def test_another_cpu_that_computes_alike_is_the_same_kind_but_is_reported():
     here, there = platform_fingerprint(), {**platform_fingerprint(), "cpu": "x86_64 fma"}
     assert same_kind(there, here)
     assert contrast(there, here) == f"cpu x86_64 fma against cpu {here['cpu']}"
 
 
-def test_a_recording_that_does_not_know_its_machine_is_compared_exactly():
+def test_a_recording_without_a_platform_is_compared_exactly():
     assert same_kind({}, platform_fingerprint())
     assert contrast({}, platform_fingerprint()) == ""

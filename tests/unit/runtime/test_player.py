@@ -1,4 +1,4 @@
-"""Pacing, playing, cutting and recovering without a bus."""
+"""Playback clock, playback, cutting and recovery without a bus."""
 
 import pytest
 
@@ -24,7 +24,7 @@ def test_messages_are_due_at_absolute_times_at_any_rate():
     assert [PlaybackClock(1000, 50, rate=4.0).due_ns(1000 + k * 100) for k in range(3)] == [50, 75, 100]
 
 
-def test_a_pause_stops_recorded_time_and_goes_on_from_there():
+def test_a_pause_stops_recorded_time_and_continues_from_there():
     playback = PlaybackClock(0, 0)
     playback.toggle(300)
     assert (playback.due_ns(500), playback.recorded_ns(900)) == (None, 300)
@@ -32,7 +32,7 @@ def test_a_pause_stops_recorded_time_and_goes_on_from_there():
     assert (playback.recorded_ns(1000), playback.due_ns(500)) == (300, 1200)
 
 
-def test_a_step_lets_one_message_pass_a_pause():
+def test_a_step_permits_one_message_during_a_pause():
     playback = PlaybackClock(0, 0, paused=True)
     assert not playback.take_step(10)
     playback.step()
@@ -131,7 +131,7 @@ def test_a_cut_keeps_bytes_times_and_metadata(tmp_path):
     assert metadata["copy"] == {"of": "a.mcap", "damage": "", "from_s": "9"}
 
 
-def test_recovering_a_torn_file_gives_a_whole_one_and_says_what_is_lost(tmp_path):
+def test_recovering_a_truncated_file_gives_a_complete_one_and_reports_the_loss(tmp_path):
     torn = tmp_path / "torn.mcap"
     torn.write_bytes(write_tape(tmp_path / "a.mcap").read_bytes()[:-2000])
     copied = copy(torn, tmp_path / "whole.mcap", lambda *_: True, {})

@@ -1,4 +1,4 @@
-"""What a real-time process asks for, in a process of its own."""
+"""Privileges of a real-time process, in a process of its own."""
 
 import json
 import os
@@ -20,7 +20,7 @@ print(json.dumps({"told": told, "after": after, "locked_kb": int(locked), "fifo"
 """
 
 
-def test_the_report_says_what_was_obtained_and_nothing_is_raised():
+def test_granted_privileges_are_reported_and_nothing_is_raised():
     out = subprocess.run([sys.executable, "-c", REPORT], capture_output=True, text=True, check=True).stdout
     found = json.loads(out)
     told, after = found["told"], found["after"]

@@ -86,7 +86,7 @@ def test_a_crash_loop_is_given_up(supervisor):
 
 
 @pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
-def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, code):
+def test_a_process_that_ended_well_or_must_not_restart_stays_ended(supervisor, restarts, code):
     supervisor.start(ProcessSpec("sim", ["x"], restarts=restarts), 0)
     FakeChild.made[0].code = code
     supervisor.poll(1)
@@ -94,7 +94,7 @@ def test_what_ends_well_or_must_not_return_stays_ended(supervisor, restarts, cod
     assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
 
 
-def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(supervisor):
+def test_a_silent_child_is_killed_after_a_second_and_a_live_one_is_not(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     for now_ns in range(0, 30 * S, 50 * MS):
         if now_ns % S == 0:
@@ -107,7 +107,7 @@ def test_a_silent_child_is_killed_after_a_second_and_a_talking_one_is_not(superv
 
 
 @pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
-def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervisor, paused_s):
+def test_a_paused_supervisor_does_not_time_out_its_children(supervisor, paused_s):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     supervisor.report_alive("executive", S)
     supervisor.poll(S + 100 * MS)
@@ -119,7 +119,7 @@ def test_a_launcher_that_stood_still_itself_does_not_blame_its_children(supervis
     assert FakeChild.made[0].killed
 
 
-def test_a_child_that_is_gone_for_good_is_told(supervisor):
+def test_a_child_that_ended_for_good_is_reported(supervisor):
     supervisor.start(ProcessSpec("record", ["x"], restarts=False), 0)
     FakeChild.made[0].code = -9
     supervisor.poll(S)
@@ -127,7 +127,7 @@ def test_a_child_that_is_gone_for_good_is_told(supervisor):
     assert supervisor.said == ["record ended with -9; not started again"]
 
 
-def test_a_child_that_never_speaks_is_killed_at_the_start_up_deadline(supervisor):
+def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     supervisor.poll(STARTUP_NS)
     assert not FakeChild.made[0].killed
@@ -148,7 +148,7 @@ def test_a_child_ends_when_its_parent_is_killed():
     assert gone(child)
 
 
-def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path):
+def test_children_are_stopped_in_reverse_order_and_one_that_ignores_it_is_killed(tmp_path):
     order = []
 
     class Noted(Child):
@@ -168,7 +168,7 @@ def test_children_are_stopped_last_first_and_the_stubborn_one_is_killed(tmp_path
     assert [child.exit_code() for child in children] == [-signal.SIGTERM, -signal.SIGKILL]
 
 
-def test_a_signal_is_a_question_first():
+def test_the_first_signal_only_requests_a_stop():
     for number in SIGNALS:
         with handlers_kept():
             stop = stop_on_signals()
@@ -178,7 +178,7 @@ def test_a_signal_is_a_question_first():
             assert signal.getsignal(number) == signal.SIG_DFL
 
 
-def test_a_closing_terminal_asks_to_end_but_not_below_nohup():
+def test_a_closing_terminal_requests_a_stop_but_not_under_nohup():
     with handlers_kept():
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         stop = stop_on_signals()

@@ -1,4 +1,4 @@
-"""Surveys and comparisons of recordings that are made up here."""
+"""Statistics and comparisons of synthetic recordings."""
 
 import json
 from dataclasses import replace
@@ -61,7 +61,7 @@ def told(capsys, *arguments):
     return code, json.loads(capsys.readouterr().out)
 
 
-def test_info_tells_what_a_recording_holds(tmp_path, capsys):
+def test_info_summarises_a_recording(tmp_path, capsys):
     code, info = told(capsys, "info", a_run(tmp_path / "a.mcap"))
     assert code == 0
     assert (info["messages"], info["duration_s"], info["damage"], info["drops"]) == (101, 2.0, "", {})
@@ -91,7 +91,7 @@ def test_info_in_words_names_the_actions(tmp_path, capsys):
     assert "driver stopped: agilo: r" in said
 
 
-def test_info_of_a_damaged_file_says_so_and_ends_with_1(tmp_path, capsys):
+def test_info_of_a_damaged_file_reports_it_and_returns_1(tmp_path, capsys):
     path = a_run(tmp_path / "a.mcap")
     (tmp_path / "cut.mcap").write_bytes(Path(path).read_bytes()[:-100])
     code, info = told(capsys, "info", str(tmp_path / "cut.mcap"))
@@ -106,7 +106,7 @@ def test_a_run_compares_equal_to_itself(tmp_path, capsys):
     assert comparison["commands"] == {"seconds": 1.7, "first_s": None, "rms": 0.0, "max": 0.0}
 
 
-def test_runs_that_differ_are_told_apart(tmp_path, capsys):
+def test_different_runs_are_distinguished(tmp_path, capsys):
     first, second = a_run(tmp_path / "a.mcap"), a_run(tmp_path / "b.mcap", speed=0.25, slower_ms=500)
     code, comparison = told(capsys, "compare", first, second)
     assert (code, comparison["equal"]) == (1, False)
@@ -119,7 +119,7 @@ def test_runs_that_differ_are_told_apart(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("command", ["info", "compare", "cut", "recover", "replay"])
-def test_a_file_that_is_no_recording_ends_with_2_and_one_line(command, tmp_path, capsys):
+def test_a_file_that_is_no_recording_is_reported_in_one_line_with_exit_code_2(command, tmp_path, capsys):
     path = tmp_path / "no.mcap"
     path.write_text("not at all")
     assert main([command, *[str(path)] * (2 if command == "compare" else 1)]) == 2

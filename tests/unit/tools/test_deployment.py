@@ -31,16 +31,16 @@ def test_a_flag_wins_over_the_file_and_leaves_the_rest(tmp_path):
     assert config(tmp_path, text, "--planner", "").settings.external.command == "", "an empty one switches it off"
 
 
-def test_without_one_there_is_none(tmp_path):
+def test_the_default_is_no_external_planner(tmp_path):
     assert config(tmp_path, "").settings.external == PlannerCommand()
 
 
-def test_a_planner_that_is_not_there_is_a_mistake(tmp_path):
+def test_a_missing_planner_is_an_error(tmp_path):
     with pytest.raises(UsageError, match="there is no program 'no-such-vhpop'"):
         config(tmp_path, "", "--planner", "no-such-vhpop -g")
 
 
 @pytest.mark.parametrize("limit", ["0", "-1", "inf", "nan"])
-def test_a_limit_is_a_time(tmp_path, limit):
+def test_a_time_limit_must_be_positive_and_finite(tmp_path, limit):
     with pytest.raises(UsageError, match="expected seconds above 0"):
         config(tmp_path, f"[planner]\nlimit_s = {limit}\n")

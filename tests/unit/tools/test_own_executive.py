@@ -1,4 +1,4 @@
-"""What a second executive on the bus says, or a replayed one, is not taken for the words of the one started here."""
+"""Messages of a second or replayed executive on the bus are distinguished from those of the own one."""
 
 from tailor.schemas.messages import ExecStatus, Sample
 from tailor.schemas.own import example
@@ -15,7 +15,7 @@ def finished(sender):
     return Sample("exec/finished", object(), 0, 1, sender)
 
 
-def test_the_first_that_speaks_is_ours_and_nobody_else():
+def test_the_first_new_sender_is_the_own_executive():
     own = OwnExecutive()
     assert not own.sent(finished(OTHER), pid=7)
     assert own.sent(status(OURS), pid=7)
@@ -24,7 +24,7 @@ def test_the_first_that_speaks_is_ours_and_nobody_else():
     assert not own.sent(finished(OTHER), pid=7)
 
 
-def test_one_that_was_started_again_has_another_name_and_the_others_known_so_far_are_not_it():
+def test_a_restarted_executive_has_a_new_sender_and_is_none_of_the_earlier_ones():
     own = OwnExecutive()
     assert own.sent(status(OURS), pid=7)
     assert not own.sent(status(OTHER), pid=7)

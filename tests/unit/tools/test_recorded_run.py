@@ -1,4 +1,4 @@
-"""Anyone may write on exec/tick: what is no tick of an executive is counted and told, and costs nobody the rest."""
+"""Anyone may publish on exec/tick: messages that are no ticks of an executive are counted and reported."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def written(path, messages, said=()):
 
 
 @pytest.mark.parametrize("sender", ["", STRANGER], ids=["unsigned", "a stranger"])
-def test_a_strangers_garbage_on_the_tick_topic_costs_nothing(tmp_path, capsys, whole, sender):
+def test_foreign_garbage_on_the_tick_topic_is_ignored(tmp_path, capsys, whole, sender):
     path = written(tmp_path / "a.mcap", whole, [(sender, GARBAGE, TICK)] * 3)
     assert main(["verify", str(path)]) == 0
     said = capsys.readouterr().out.splitlines()
@@ -52,42 +52,44 @@ def test_a_strangers_garbage_on_the_tick_topic_costs_nothing(tmp_path, capsys, w
     assert said[1] == f"  ignored on exec/tick: 3 from {sender[:8] or 'an unknown sender'}, not an executive"
 
 
-def test_a_strangers_well_formed_ticks_are_no_run(tmp_path, whole, executive):
+def test_foreign_well_formed_ticks_are_not_a_run(tmp_path, whole, executive):
     tick = next(m.data for m in whole if m.key == TICK_KEY)
     runs = RecordedRuns(written(tmp_path / "a.mcap", whole, [(STRANGER, tick, TICK)]))
     assert [run.sender for run in runs.runs] == [executive]
     assert runs.left_out.total() == 1
 
 
-def test_garbage_under_the_executives_own_name_is_told_and_the_run_is_verified(tmp_path, capsys, whole, executive):
+def test_garbage_under_the_executives_sender_is_reported_and_the_run_is_verified(
+    tmp_path, capsys, whole, executive
+):
     stop = encode(EStop(True))
     said = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
     assert main(["verify", str(written(tmp_path / "a.mcap", whole, said))]) == 0
     assert "ignored on exec/tick: 2 malformed, 1 std_msgs/msg/Bool" in capsys.readouterr().out
 
 
-def test_a_tick_that_is_damaged_itself_is_missed_by_its_number_and_the_damage_told(tmp_path, capsys, whole, executive):
+def test_a_damaged_tick_is_detected_by_its_number_and_reported(tmp_path, capsys, whole, executive):
     kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
     path = written(tmp_path / "a.mcap", kept, [(executive, GARBAGE, TICK)])
     assert main(["verify", str(path)]) == 2
     assert "tick 7 is missing (ignored on exec/tick: 1 malformed)" in capsys.readouterr().err
 
 
-def test_a_file_with_nothing_but_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):
+def test_a_file_with_only_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):
     others = [m for m in whole if m.key not in (TICK_KEY, PROVENANCE_KEY)]
     path = written(tmp_path / "a.mcap", others, [(STRANGER, GARBAGE, TICK)])
     with pytest.raises(UsageError, match=r"no usable message of exec/tick \(ignored on exec/tick: 1 malformed\)"):
         RecordedRuns(path)
 
 
-def test_where_no_sender_says_what_it_is_made_of_every_sender_of_ticks_has_a_run(tmp_path, whole, executive):
+def test_without_any_provenance_every_sender_of_ticks_has_a_run(tmp_path, whole, executive):
     others = [m for m in whole if m.key != PROVENANCE_KEY]
     tick = next(m.data for m in whole if m.key == TICK_KEY)
     runs = RecordedRuns(written(tmp_path / "a.mcap", others, [(STRANGER, tick, TICK)]))
     assert {run.sender for run in runs.runs} == {executive, STRANGER}
 
 
-def test_any_number_of_strangers_is_told_in_one_short_line(tmp_path, whole):
+def test_any_number_of_foreign_senders_is_reported_in_one_short_line(tmp_path, whole):
     said = [(f"{n:08x}" * 4, GARBAGE, TICK) for n in range(40)]
     runs = RecordedRuns(written(tmp_path / "a.mcap", whole, said))
     assert runs.left_out_text().endswith(", 37 others")
