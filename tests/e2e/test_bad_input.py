@@ -46,7 +46,10 @@ def refused(*arguments):
         (("frobnicate",), "unknown command 'frobnicate'"),
         (("verify", "nowhere.mcap"), "nowhere.mcap"),
         (("plan", "domain.pddl"), "required: PROBLEM (see tailor plan --help)"),
-        (("plan", "domain.pddl", "problem.pddl", "-T", "nan"), "--time-limit: expected minutes from 0 on, found 'nan'"),
+        (
+            ("plan", "domain.pddl", "problem.pddl", "-T", "nan"),
+            "--time-limit: expected a number of minutes of at least 0, found 'nan'",
+        ),
         (("plan", "domain\x1b[31m\n.pddl", "problem.pddl"), "domain\\x1b[31m\\n.pddl: cannot be read"),
         (("replay", "run.mcap", "--start", "nan"), "--start is nan, expected 0 to 1e+09"),
         (("replay", "run.mcap", "--clock", "-1"), "--clock is -1, expected 0 to 10000"),
@@ -135,13 +138,13 @@ def test_an_output_that_cannot_be_written_is_reported_in_one_line():
 
 
 def test_a_closed_pipe_is_not_reported_as_an_error():
-    told = subprocess.Popen(
+    process = subprocess.Popen(
         tailor("info", "--json", str(GOLDEN)),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         cwd=ROOT,
     )
-    told.stdout.close()
-    assert told.stderr.read() == ""
-    assert told.wait(timeout=PATIENCE_S) == 1
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    assert process.wait(timeout=PATIENCE_S) == 1

@@ -56,7 +56,7 @@ def test_the_newest_state_is_stamped_with_its_arrival_not_with_the_drain(pair):
         (sample,) = wait_until(inbox.drain)
         errors.append(sample.arrival_ns - sent_ns)
     assert (sample.sequence, sample.sender, sample.message.x) == (10, a.sender, 1.0)
-    assert min(errors) < 20e6, "100 ms would be the time of the look"
+    assert min(errors) < 20e6, "100 ms would be the time of the drain"
 
 
 def test_every_command_between_two_drains_is_received_but_only_the_newest_state(pair):
@@ -140,11 +140,11 @@ def test_clients_reconnect_within_a_second_of_their_router():
                 with open_router(endpoint):
                     began = time.monotonic()
 
-                    def heard():
+                    def received():
                         publisher.publish(EStop(True))
                         return inbox.drain()
 
-                    wait_until(heard, "traffic")
+                    wait_until(received, "traffic")
                     assert time.monotonic() - began < 1.0
 
     repeat_on_stall(3, back)

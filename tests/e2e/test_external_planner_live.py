@@ -127,6 +127,6 @@ def test_the_failure_of_a_planner_is_shown_to_the_user(tmp_path):
     planner = program(tmp_path, "os.abort()")
     flags = ("--scenario", "waypoints", "--once", "--seed", "1", "--planner", planner, "--connect", free_endpoint())
     up = command("up", "soccer", *flags)
-    told = " ".join(up.stdout.split())
-    assert "planner failed: crashed: the planner ended with code -6" in told
-    assert told.endswith("achieved")
+    output = " ".join(up.stdout.split())
+    assert "planner failed: crashed: the planner ended with code -6" in output
+    assert output.endswith("achieved")

@@ -103,11 +103,11 @@ def test_a_second_executive_cannot_move_the_robot(system):
         states = session.inbox(["driver"], "agilo")
         second = start("tests.support.stand_ins.executive", endpoint, 0.9)
 
-        def told():
+        def refused_by_sender():
             found = [s.message for s in states.drain() if isinstance(s.message, DriverState)]
             return any("other sender" in m.refused_reasons for m in found)
 
-        wait_until(told, "refusal of the second executive")
+        wait_until(refused_by_sender, "refusal of the second executive")
         time.sleep(0.5)
         speed = outputs(trace)[-1][1]
         second.kill()

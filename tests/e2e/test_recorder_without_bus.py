@@ -11,13 +11,13 @@ from tests.support.patience import PATIENCE_S, wait_until
 
 
 def test_a_recorder_reports_that_the_bus_disconnected_and_reconnected(tmp_path):
-    endpoint, path, told = free_endpoint(), tmp_path / "a.mcap", tmp_path / "told"
+    endpoint, path, log = free_endpoint(), tmp_path / "a.mcap", tmp_path / "log"
     command = tailor("record", "-o", str(path), "--quiet", "--connect", endpoint)
 
     def lines():
-        return told.read_text().splitlines()
+        return log.read_text().splitlines()
 
-    with open_router(endpoint), told.open("w") as stderr:
+    with open_router(endpoint), log.open("w") as stderr:
         recorder = subprocess.Popen(command, stderr=stderr, cwd=ROOT)
         wait_until(lambda: path.exists() or recorder.poll() is not None, "recording")
     try:

@@ -109,9 +109,9 @@ def test_a_file_that_exists_is_not_overwritten(tmp_path):
     path.write_bytes(b"precious")
     with bus_system() as (_, endpoint, _start):
         command = [sys.executable, "-P", "-m", "tailor.tools.main", "record", "-o", str(path), "--connect", endpoint]
-        with (tmp_path / "said").open("w") as said:
-            assert Child("recorder", command, said).wait(PATIENCE_S) == 2
-    assert "exists already" in (tmp_path / "said").read_text()
+        with (tmp_path / "log").open("w") as log:
+            assert Child("recorder", command, log).wait(PATIENCE_S) == 2
+    assert "exists already" in (tmp_path / "log").read_text()
     assert path.read_bytes() == b"precious"
 
 

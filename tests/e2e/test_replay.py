@@ -59,11 +59,11 @@ def command(path, endpoint, *options):
 
 
 def run(*words):
-    """The end of a replay, with what it said on stderr."""
+    """Run a replay to its end; the result holds stderr."""
     return subprocess.run(command(*words), capture_output=True, text=True, timeout=PATIENCE_S, cwd=ROOT, check=True)
 
 
-def heard(session, names):
+def collect(session, names):
     """Starts to listen; returns a function that gives all samples so far."""
     inbox, samples = session.inbox(names, "agilo"), []
 
@@ -94,7 +94,7 @@ def player_with_keys(*words):
 def test_keys_step_pause_and_end_a_replay(tmp_path):
     ticks = 600  # a minute: it must not be over before it is paused
     with bus_system() as (session, endpoint, _):
-        odometry = heard(session, ["odom"])
+        odometry = collect(session, ["odom"])
         recording = recorded(tmp_path / "long.mcap", ticks)
         with player_with_keys(recording, endpoint, "--paused", "--topics", "odom") as (player, keys):
             time.sleep(0.3)
@@ -126,13 +126,13 @@ def test_recorded_commands_are_not_published_to_a_live_driver(recording, tmp_pat
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
 
         def spared():
-            commands = heard(session, ["cmd_vel", "arm_request"])
-            said = run(recording, endpoint, "--rate", "8").stderr
-            assert "a driver is live" in said  # a simulator that was held up for half a second was not heard
+            commands = collect(session, ["cmd_vel", "arm_request"])
+            errors = run(recording, endpoint, "--rate", "8").stderr
+            assert "a driver is live" in errors  # the driver is live unless its simulator stalls for half a second
             assert commands() == []
 
         repeat_on_stall(3, spared)
-        commands = heard(session, ["cmd_vel", "arm_request"])
+        commands = collect(session, ["cmd_vel", "arm_request"])
         run(recording, endpoint, "--drive", "--rate", "8")
         wait_until(commands, "commands of --drive")
 
@@ -148,7 +148,7 @@ def test_a_substitute_executive_receives_the_sensors_and_a_driver_that_obeys_it(
 
         thread = threading.Thread(target=executive)
         thread.start()
-        driver, commands = heard(session, ["driver", "odom"]), heard(session, ["cmd_vel", "arm_request"])
+        driver, commands = collect(session, ["driver", "odom"]), collect(session, ["cmd_vel", "arm_request"])
         try:
             run(recording, endpoint, "--substitute", "executive", "--rate", "4")
         finally:
@@ -176,7 +176,7 @@ def test_the_clock_of_a_replay_publishes_recorded_time(recording):
 def test_a_replay_ends_when_the_bus_disconnects(recording):
     endpoint = free_endpoint()
     with open_router(endpoint) as session:
-        odometry = heard(session, ["odom"])
+        odometry = collect(session, ["odom"])
         player = subprocess.Popen(
             command(recording, endpoint, "--loop"),
             stdin=subprocess.DEVNULL,
@@ -185,5 +185,5 @@ def test_a_replay_ends_when_the_bus_disconnects(recording):
             cwd=ROOT,
         )
         wait_until(odometry, "the first message")
-    said = player.communicate(timeout=PATIENCE_S)[1]
-    assert (player.returncode, said.splitlines()[-1]) == (1, "bus disconnected: the replay ended early")
+    errors = player.communicate(timeout=PATIENCE_S)[1]
+    assert (player.returncode, errors.splitlines()[-1]) == (1, "bus disconnected: the replay ended early")

@@ -160,7 +160,7 @@ class Live:
         self.latest = {}
         self.stopped_s = None
 
-    def look(self):
+    def update(self):
         for sample in self.inbox.drain():
             message = sample.message
             self.latest[type(message)] = message
@@ -169,10 +169,10 @@ class Live:
         return self.latest
 
     def driver(self, mode):
-        return lambda: getattr(self.look().get(DriverState), "mode", "") == mode
+        return lambda: getattr(self.update().get(DriverState), "mode", "") == mode
 
     def moves(self):
-        status, truth = self.look().get(ExecStatus), self.latest.get(SoccerGroundTruth)
+        status, truth = self.update().get(ExecStatus), self.latest.get(SoccerGroundTruth)
         return status is not None and status.mode == "EXECUTING" and truth is not None and truth.v > 0.2
 
     def put_back(self):
@@ -201,18 +201,18 @@ def killed_in_motion(live, after_s):
     executive = live.executive()
     try:
         if stopped_before:  # somebody has to arm it again
-            status = wait_until(lambda: live.look().get(ExecStatus), "status")
+            status = wait_until(lambda: live.update().get(ExecStatus), "status")
             time.sleep(0.3)
             assert live.driver("stopped")(), "a new executive does not arm a stopped robot"
             live.arming.publish(ArmRequest(arm=True, reset=False, sender=status.sender, epoch=0))
         wait_until(live.moves, "robot moves")
         time.sleep(after_s)
-        live.look()
+        live.update()
         live.stopped_s, before_s = None, time.monotonic()
     finally:
         executive.kill()
     killed_s = time.monotonic()
-    wait_until(lambda: live.look() and live.stopped_s, "guard stops")
+    wait_until(lambda: live.update() and live.stopped_s, "guard stops")
     assert live.stopped_s - killed_s <= LIMIT_S
     assert live.stopped_s - before_s > 0.15, "a lost command must not stop the robot"
     return live.stopped_s - killed_s
@@ -233,21 +233,21 @@ def test_a_second_executive_on_the_same_bus_does_not_move_the_robot(live):
     wait_until(live.moves, "robot moves")
     armed = live.latest[DriverState].armed_sender
     second = Child("second", tailor("executive", "soccer", "--seed", "9", "--connect", live.endpoint))
-    heard = set()
+    senders = set()
 
     def both():
-        live.look()
-        heard.add(live.latest[ExecStatus].sender)
-        return len(heard) == 2
+        live.update()
+        senders.add(live.latest[ExecStatus].sender)
+        return len(senders) == 2
 
     wait_until(both, "second executive")
     time.sleep(1.0)
-    live.look()
+    live.update()
     assert live.latest[DriverState].armed_sender == armed
     first.kill()
     wait_until(live.driver("stopped"), "guard stops")
-    wait_until(lambda: abs(live.look()[SoccerGroundTruth].v) < 0.02, "robot at rest")
+    wait_until(lambda: abs(live.update()[SoccerGroundTruth].v) < 0.02, "robot at rest")
     time.sleep(0.5)
-    assert live.look()[DriverState].mode == "stopped", "the second one must not take over by itself"
+    assert live.update()[DriverState].mode == "stopped", "the second one must not take over by itself"
     assert abs(live.latest[SoccerGroundTruth].v) < 0.02
     second.kill()

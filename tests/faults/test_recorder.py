@@ -30,9 +30,9 @@ def noise(number):
 
 def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     path = tmp_path / "full.mcap"
-    with bus_system() as (session, endpoint, _), (tmp_path / "said").open("w") as said:
+    with bus_system() as (session, endpoint, _), (tmp_path / "log").open("w") as log:
         options = ["record", "-o", str(path), "--connect", endpoint]
-        recorder = Child("recorder", [sys.executable, "-c", LIMITED, *options], said)
+        recorder = Child("recorder", [sys.executable, "-c", LIMITED, *options], log)
         try:
             codec.prime()
             publisher = session.publisher("odom", "agilo")
@@ -48,7 +48,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
         finally:
             code = recorder.stop(PATIENCE_S)
     assert code == 1
-    assert "disk: File too large" in (tmp_path / "said").read_text()
+    assert "disk: File too large" in (tmp_path / "log").read_text()
     assert path.stat().st_size <= MAX_BYTES
     recording = open_recording(path)
     sequences = [message.sequence for message in recording.messages()]
@@ -75,10 +75,10 @@ def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     assert sequences == sorted(set(sequences))
     assert len(sequences) > 2000
     command = [sys.executable, "-P", "-m", "tailor.tools.main", "info", str(path), "--json"]
-    said = json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
+    info = json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
     lost = publisher.sequence - len(sequences)
     print(f"\nflood: {publisher.sequence} sent, {lost} lost, memory +{after_mb - before_mb:.0f} MB")
-    assert said["topics"][0]["lost"] <= lost, "info tells what is missing"
+    assert info["topics"][0]["lost"] <= lost, "info reports the loss"
 
 
 def memory_mb(pid):

@@ -30,7 +30,7 @@ from tests.support.bus_system import ROOT
 
 GOLDENS = {golden.name: renew.FOLDER / f"{golden.name}.mcap" for golden in renew.goldens()}
 SOME = GOLDENS["soccer-waypoints"]
-RENEW = "`make goldens` tells what has changed and renews them"
+RENEW = "`make goldens` prints the changes and renews the recordings"
 
 
 def verdict_of(path):
@@ -107,8 +107,8 @@ def test_a_golden_opens_in_another_reader_and_lacks_no_number():
 def test_a_changed_setting_fails_with_tick_field_and_both_values(tmp_path, capsys):
     path = rewritten(SOME, tmp_path / "changed.mcap", with_provenance(other_horizon))
     assert main(["verify", str(path)]) == 1
-    said = capsys.readouterr().out
-    assert re.match(r"different: tick \d+, exec/refinement, horizon: recorded 2, today 1\n", said), said
+    output = capsys.readouterr().out
+    assert re.match(r"different: tick \d+, exec/refinement, horizon: recorded 2, today 1\n", output), output
 
 
 def test_a_last_bit_is_a_difference_on_the_same_kind_of_machine(tmp_path):
@@ -121,9 +121,9 @@ def test_a_last_bit_is_a_difference_on_the_same_kind_of_machine(tmp_path):
 def test_a_last_bit_is_tolerated_and_reported_on_another_kind_of_machine(tmp_path, capsys):
     path = rewritten(SOME, tmp_path / "bit.mcap", nudged(lambda v: math.nextafter(v, 9.0), other_machine))
     assert main(["verify", str(path)]) == 0
-    said = capsys.readouterr().out
-    assert said.startswith("equal within 1e-09: ")
-    assert "; 1 of them not to the last bit\n  recorded on arithmetic another against arithmetic" in said
+    output = capsys.readouterr().out
+    assert output.startswith("equal within 1e-09: ")
+    assert "; 1 of them not to the last bit\n  recorded on arithmetic another against arithmetic" in output
 
 
 def test_more_than_rounding_is_a_difference_on_any_machine(tmp_path):
@@ -146,8 +146,8 @@ def test_without_proofs_everything_else_is_compared(tmp_path, capsys):
 @pytest.mark.skipif(sys.platform != "linux", reason="needs glibc's switch for CPU features")
 def test_a_machine_without_fused_multiply_add_counts_as_another_kind():
     switched = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-    asked = [sys.executable, "-c", "from tailor.runtime.platform_fingerprint import arithmetic; print(arithmetic())"]
-    there = subprocess.run(asked, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
+    command = [sys.executable, "-c", "from tailor.runtime.platform_fingerprint import arithmetic; print(arithmetic())"]
+    there = subprocess.run(command, env=switched, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
     if there == platform_fingerprint()["arithmetic"]:
         pytest.skip("this libm computes alike with and without")
     command = [sys.executable, "-P", "-m", "tailor.tools.main", "verify", str(SOME)]
@@ -161,10 +161,10 @@ def test_goldens_are_renewed_only_after_printing_the_changes(tmp_path, capsys, m
     before = kept.read_bytes()
     monkeypatch.setattr(renew, "FOLDER", tmp_path)
     assert renew.main([SOME.stem, "--check"]) == 1
-    said = capsys.readouterr().out
-    assert f"{SOME.stem}: changed\n" in said
-    assert "settings.refinement.horizon was 1, now 2" in said
-    assert re.search(r"first at  tick 102, agilo/cmd_vel, v: was [\d.]+, now [\d.]+", said)
+    output = capsys.readouterr().out
+    assert f"{SOME.stem}: changed\n" in output
+    assert "settings.refinement.horizon was 1, now 2" in output
+    assert re.search(r"first at  tick 102, agilo/cmd_vel, v: was [\d.]+, now [\d.]+", output)
     assert kept.read_bytes() == before
     assert renew.main([SOME.stem]) == 0
     assert verdict_of(kept).difference is None

@@ -111,7 +111,7 @@ def _ended(supervisor: Supervisor) -> str:
 
 
 def _stopped(driver: DriverState) -> str:
-    """Failure if the driver has stopped until somebody arms it again, or ""."""
+    """Failure if the driver has stopped until it is armed again, or ""."""
     if driver.mode not in ("stopped", "estopped"):
         return ""
     return f"failed: the driver is {driver.mode}: {reason_text(driver.reason, driver.detail)}"

@@ -15,14 +15,14 @@ def main(endpoint, speed):
     codec.prime()
     with open_client(endpoint) as session:
         commands, arming = session.publisher("cmd_vel", "agilo"), session.publisher("arm_request", "agilo")
-        inbox, asked = session.inbox(["driver"], "agilo"), False
+        inbox, armed = session.inbox(["driver"], "agilo"), False
         loop = Loop(100_000_000, MonotonicClock())
         while not stop.requested:
-            turn = loop.wait_for_next_period()
-            if inbox.drain(turn.now_ns) and not asked:
+            period = loop.wait_for_next_period()
+            if inbox.drain(period.now_ns) and not armed:
                 arming.publish(ArmRequest(True, False, "", 0))
-                asked = True
-            commands.publish(VelocityCommand(turn.now_ns, float(speed), 0.0))
+                armed = True
+            commands.publish(VelocityCommand(period.now_ns, float(speed), 0.0))
 
 
 if __name__ == "__main__":

@@ -58,10 +58,10 @@ def test_info_accepts_any_metadata(tmp_path, capsys, metadata):
 
 def test_info_escapes_control_characters_and_markup_of_topics(tmp_path, capsys):
     assert main(["info", str(foreign(tmp_path / "a.mcap", [(1, "[/bold]"), (2, "[red]\x1b[31m")]))]) == 0
-    said = capsys.readouterr().out
-    assert "[/bold]" in said
-    assert "[red]\\x1b[31m" in said
-    assert "\x1b" not in said
+    output = capsys.readouterr().out
+    assert "[/bold]" in output
+    assert "[red]\\x1b[31m" in output
+    assert "\x1b" not in output
 
 
 def test_info_of_thousands_of_topics_ends_soon(tmp_path, capsys):
@@ -114,13 +114,13 @@ def test_recover_returns_1_if_nothing_could_be_recovered(tmp_path, capsys):
 
 # --- provenance ----------------------------------------------------------------------------------
 def with_provenance(monkeypatch, text):
-    """Recordings in which the golden run says this of itself; None: nothing."""
+    """The golden run with this text as its provenance; None: without provenance."""
     whole = open_recording(GOLDEN)
     messages = [m for m in whole.messages() if text is not None or m.key != TOPICS["provenance"].key]
     for n, message in enumerate(messages):
         if message.key == TOPICS["provenance"].key:
-            said = decode(Provenance, message.data)
-            messages[n] = replace(message, data=encode(replace(said, json=text)))
+            provenance = decode(Provenance, message.data)
+            messages[n] = replace(message, data=encode(replace(provenance, json=text)))
     monkeypatch.setattr(whole, "messages", lambda: iter(messages), raising=False)
     monkeypatch.setattr(recorded_run, "open_recording", lambda path: whole)
 
@@ -135,11 +135,11 @@ def test_a_run_without_valid_provenance_is_refused_in_one_line(monkeypatch, text
 @pytest.mark.parametrize("name", ["config", "sender", "stamp_offset_ns", "models", "machine"])
 @pytest.mark.parametrize("value", [None, "x", 1.5, []])
 def test_every_part_of_a_provenance_is_checked(name, value):
-    said = RecordedRuns(GOLDEN).runs[0].provenance
+    provenance = RecordedRuns(GOLDEN).runs[0].provenance
     if name == "sender" and value == "x":
         return
     with pytest.raises(UsageError, match=name):
-        rebuild_context({**said, name: value})
+        rebuild_context({**provenance, name: value})
 
 
 def test_the_error_for_a_file_without_a_run_includes_its_damage(tmp_path, capsys):

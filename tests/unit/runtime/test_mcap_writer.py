@@ -298,10 +298,10 @@ def driver(mode):
 
 def test_a_failure_is_detected_once():
     failure = FailureDetector()
-    said = [
+    failures = [
         failure.detect(r) for r in (status("READY"), status("FAULT"), status("FAULT"), status("READY"), odometry(1))
     ]
-    assert said == ["", "exec/status: FAULT: why", "", "", ""]
+    assert failures == ["", "exec/status: FAULT: why", "", "", ""]
     assert [failure.detect(r) for r in (driver("armed"), driver("stopped"), driver("armed"))] == [
         "",
         "agilo/driver: stopped: why",

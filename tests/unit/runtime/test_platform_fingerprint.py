@@ -9,7 +9,7 @@ from tailor.runtime.platform_fingerprint import KIND, contrast, platform_fingerp
 
 ROOT = Path(__file__).resolve().parents[3]
 CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "features" / "intervals.py"]
-# numpy rounds these otherwise where the CPU has AVX-512, and the fingerprint does not look at them
+# numpy rounds these differently if the CPU has AVX-512, and the fingerprint excludes them
 VARYING = {"arctan2", "arctan", "arcsin", "arccos", "tan", "exp", "expm1", "log", "log1p", "tanh", "power", "cbrt"}
 KNOWN = {
     "executive/actions/cubic.py",  # powers of Python's floats: libm's, which do not vary

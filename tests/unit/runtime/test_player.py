@@ -114,8 +114,8 @@ def test_a_recorded_driver_appears_to_obey_the_live_executive(tmp_path):
 
     state = replace(example(DriverState), mode="armed", armed_sender="a" * 32)
     recorded = Recorded("agilo/driver", "tailor_msgs/msg/DriverState", "", 1, 0, 0, encode(state))
-    told = decode(DriverState, armed_for("b" * 32, recorded).data)
-    assert told == replace(state, armed_sender="b" * 32)
+    rewritten = decode(DriverState, armed_for("b" * 32, recorded).data)
+    assert rewritten == replace(state, armed_sender="b" * 32)
     idle = replace(recorded, data=encode(replace(state, armed_sender="")))
     assert armed_for("b" * 32, idle) == idle
 

@@ -13,23 +13,23 @@ REPORT = """
 import gc, json, os
 from tailor.runtime.realtime import prepare
 before = {"policy": os.sched_getscheduler(0)}
-told = prepare()
+granted = prepare()
 after = {"policy": os.sched_getscheduler(0), "gc": gc.isenabled(), "frozen": gc.get_freeze_count()}
 locked = next(line for line in open("/proc/self/status") if line.startswith("VmLck")).split()[1]
-print(json.dumps({"told": told, "after": after, "locked_kb": int(locked), "fifo": os.SCHED_FIFO}))
+print(json.dumps({"granted": granted, "after": after, "locked_kb": int(locked), "fifo": os.SCHED_FIFO}))
 """
 
 
 def test_granted_privileges_are_reported_and_nothing_is_raised():
     out = subprocess.run([sys.executable, "-c", REPORT], capture_output=True, text=True, check=True).stdout
     found = json.loads(out)
-    told, after = found["told"], found["after"]
-    assert told["gc"] == "frozen"
+    granted, after = found["granted"], found["after"]
+    assert granted["gc"] == "frozen"
     assert not after["gc"]
     assert after["frozen"] > 1000
-    assert (told["memory"] == "locked") == (found["locked_kb"] > 0)
+    assert (granted["memory"] == "locked") == (found["locked_kb"] > 0)
     got_fifo = after["policy"] & 0xFF == found["fifo"]
-    assert told["scheduler"] == "fifo 50" if got_fifo else told["scheduler"].startswith("default: ")
+    assert granted["scheduler"] == "fifo 50" if got_fifo else granted["scheduler"].startswith("default: ")
 
 
 def test_without_privileges_the_refusals_are_reported():
@@ -43,9 +43,9 @@ def test_without_privileges_the_refusals_are_reported():
     if out.returncode:  # nobody may not be allowed to read the interpreter's files
         assert "Permission denied" in out.stderr or "ModuleNotFoundError" in out.stderr, out.stderr
         return
-    told = json.loads(out.stdout)["told"]
-    assert told["memory"].startswith("not locked: limited to 65536")
-    assert told["scheduler"].startswith("default: ")
+    granted = json.loads(out.stdout)["granted"]
+    assert granted["memory"].startswith("not locked: limited to 65536")
+    assert granted["scheduler"].startswith("default: ")
 
 
 ELEVATED = """

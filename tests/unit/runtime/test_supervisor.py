@@ -57,10 +57,10 @@ class FakeChild:
 
 @pytest.fixture
 def supervisor():
-    FakeChild.made, said = [], []
-    watcher = Supervisor(said.append, FakeChild)
-    watcher.said = said
-    return watcher
+    FakeChild.made, reported = [], []
+    supervisor = Supervisor(reported.append, FakeChild)
+    supervisor.reported = reported
+    return supervisor
 
 
 def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
@@ -71,7 +71,7 @@ def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
     assert len(FakeChild.made) == 1
     supervisor.poll(1 * S + 200 * MS)
     assert len(FakeChild.made) == 2
-    assert supervisor.said == ["executive ended with -9; starting again in 0.2 s"]
+    assert supervisor.reported == ["executive ended with -9; starting again in 0.2 s"]
     assert supervisor.ended("executive") is None
 
 
@@ -82,7 +82,7 @@ def test_a_crash_loop_is_given_up(supervisor):
         supervisor.poll(k * 100 * MS)
     assert len(FakeChild.made) == 5
     assert supervisor.ended("executive") == 1
-    assert supervisor.said[-1] == "executive ended with 1; gave up: too many starts within a minute"
+    assert supervisor.reported[-1] == "executive ended with 1; gave up: too many starts within a minute"
 
 
 @pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
@@ -124,7 +124,7 @@ def test_a_child_that_ended_for_good_is_reported(supervisor):
     FakeChild.made[0].code = -9
     supervisor.poll(S)
     supervisor.poll(2 * S)
-    assert supervisor.said == ["record ended with -9; not started again"]
+    assert supervisor.reported == ["record ended with -9; not started again"]
 
 
 def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(supervisor):

@@ -56,13 +56,13 @@ def a_run(path, speed=0.5, slower_ms=0):
     return script.close()
 
 
-def told(capsys, *arguments):
+def json_of(capsys, *arguments):
     code = main([*arguments, "--json"])
     return code, json.loads(capsys.readouterr().out)
 
 
 def test_info_summarises_a_recording(tmp_path, capsys):
-    code, info = told(capsys, "info", a_run(tmp_path / "a.mcap"))
+    code, info = json_of(capsys, "info", a_run(tmp_path / "a.mcap"))
     assert code == 0
     assert (info["messages"], info["duration_s"], info["damage"], info["drops"]) == (101, 2.0, "", {})
     odom = next(t for t in info["topics"] if t["key"] == "agilo/odom")
@@ -86,29 +86,29 @@ def test_info_summarises_a_recording(tmp_path, capsys):
 
 def test_info_in_words_names_the_actions(tmp_path, capsys):
     assert main(["info", a_run(tmp_path / "a.mcap")]) == 0
-    said = capsys.readouterr().out
-    assert "goToPose done 4.00 5.00 +25%" in " ".join(said.split())
-    assert "driver stopped: agilo: r" in said
+    output = capsys.readouterr().out
+    assert "goToPose done 4.00 5.00 +25%" in " ".join(output.split())
+    assert "driver stopped: agilo: r" in output
 
 
 def test_info_of_a_damaged_file_reports_it_and_returns_1(tmp_path, capsys):
     path = a_run(tmp_path / "a.mcap")
     (tmp_path / "cut.mcap").write_bytes(Path(path).read_bytes()[:-100])
-    code, info = told(capsys, "info", str(tmp_path / "cut.mcap"))
+    code, info = json_of(capsys, "info", str(tmp_path / "cut.mcap"))
     assert code == 1
     assert info["damage"].startswith("no footer")
 
 
 def test_a_run_compares_equal_to_itself(tmp_path, capsys):
     path = a_run(tmp_path / "a.mcap")
-    code, comparison = told(capsys, "compare", path, path)
+    code, comparison = json_of(capsys, "compare", path, path)
     assert (code, comparison["equal"]) == (0, True)
     assert comparison["commands"] == {"seconds": 1.7, "first_s": None, "rms": 0.0, "max": 0.0}
 
 
 def test_different_runs_are_distinguished(tmp_path, capsys):
     first, second = a_run(tmp_path / "a.mcap"), a_run(tmp_path / "b.mcap", speed=0.25, slower_ms=500)
-    code, comparison = told(capsys, "compare", first, second)
+    code, comparison = json_of(capsys, "compare", first, second)
     assert (code, comparison["equal"]) == (1, False)
     assert comparison["commands"]["first_s"] == 0.0
     assert comparison["commands"]["max"] == 0.25
@@ -123,5 +123,5 @@ def test_a_file_that_is_no_recording_is_reported_in_one_line_with_exit_code_2(co
     path = tmp_path / "no.mcap"
     path.write_text("not at all")
     assert main([command, *[str(path)] * (2 if command == "compare" else 1)]) == 2
-    said = capsys.readouterr().err
-    assert said == f"tailor {command}: {path}: not an MCAP file\n"
+    output = capsys.readouterr().err
+    assert output == f"tailor {command}: {path}: not an MCAP file\n"

@@ -31,11 +31,11 @@ def executive(whole):
     return next(message.sender for message in whole if message.key == TICK_KEY)
 
 
-def written(path, messages, said=()):
-    """The messages, with what else was said on exec/tick: rows of sender, bytes and ROS type."""
+def written(path, messages, extra=()):
+    """Recording of the messages and extra ones on exec/tick: (sender, bytes, ROS type)."""
     tape = McapWriter(path, {}, compact=True)
     rows = [(m.key, m.data, m.sender, m.sequence, m.ros_type) for m in messages]
-    rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(said)]
+    rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(extra)]
     for n, (key, data, sender, sequence, kind) in enumerate(rows):
         attachment = pack(Origin(sequence, 10 + n, sender)) if sender else None
         tape.write(Raw(key, data, attachment, ENCODING + kind, True, None), 10 + n)
@@ -47,9 +47,9 @@ def written(path, messages, said=()):
 def test_foreign_garbage_on_the_tick_topic_is_ignored(tmp_path, capsys, whole, sender):
     path = written(tmp_path / "a.mcap", whole, [(sender, GARBAGE, TICK)] * 3)
     assert main(["verify", str(path)]) == 0
-    said = capsys.readouterr().out.splitlines()
-    assert said[0].startswith("equal: ")
-    assert said[1] == f"  ignored on exec/tick: 3 from {sender[:8] or 'an unknown sender'}, not an executive"
+    extra = capsys.readouterr().out.splitlines()
+    assert extra[0].startswith("equal: ")
+    assert extra[1] == f"  ignored on exec/tick: 3 from {sender[:8] or 'an unknown sender'}, not an executive"
 
 
 def test_foreign_well_formed_ticks_are_not_a_run(tmp_path, whole, executive):
@@ -59,12 +59,10 @@ def test_foreign_well_formed_ticks_are_not_a_run(tmp_path, whole, executive):
     assert runs.left_out.total() == 1
 
 
-def test_garbage_under_the_executives_sender_is_reported_and_the_run_is_verified(
-    tmp_path, capsys, whole, executive
-):
+def test_garbage_under_the_executives_sender_is_reported_and_the_run_is_verified(tmp_path, capsys, whole, executive):
     stop = encode(EStop(True))
-    said = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
-    assert main(["verify", str(written(tmp_path / "a.mcap", whole, said))]) == 0
+    extra = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
+    assert main(["verify", str(written(tmp_path / "a.mcap", whole, extra))]) == 0
     assert "ignored on exec/tick: 2 malformed, 1 std_msgs/msg/Bool" in capsys.readouterr().out
 
 
@@ -90,6 +88,6 @@ def test_without_any_provenance_every_sender_of_ticks_has_a_run(tmp_path, whole,
 
 
 def test_any_number_of_foreign_senders_is_reported_in_one_short_line(tmp_path, whole):
-    said = [(f"{n:08x}" * 4, GARBAGE, TICK) for n in range(40)]
-    runs = RecordedRuns(written(tmp_path / "a.mcap", whole, said))
+    extra = [(f"{n:08x}" * 4, GARBAGE, TICK) for n in range(40)]
+    runs = RecordedRuns(written(tmp_path / "a.mcap", whole, extra))
     assert runs.left_out_text().endswith(", 37 others")
