@@ -22,37 +22,40 @@ class Driver:
       guard: The guard; `guard.output(now_ns)` gives the set-points for the motors.
     """
 
-    def __init__(self, spec: DriverSpec, epoch: int) -> None:
+    def __init__(self, spec: DriverSpec, epoch: int, leave: str = "") -> None:
         """Start disarmed.
 
         Args:
           spec: Command topic, axes, limits and timeout of the driver.
           epoch: Identifies this start; different at every start, and not 0.
+          leave: Sender id of the executive that may arm the driver by itself, once; empty: only people may.
         """
-        self.guard = Guard(spec.limits, epoch, spec.timeout_ns)
+        self.guard = Guard(spec.limits, epoch, spec.timeout_ns, leave)
         self._axes = spec.axes
         self._published: tuple[str, str, str] | None = None
         self._due_ns = 0
         self._rejected: Mapping[str, int] = {}
 
     def take(self, samples: Iterable[Sample], rejected: Mapping[str, int], now_ns: int) -> None:
-        """Process received messages, e-stops first: an e-stop beats an arming request of the same moment.
+        """Process received messages; an e-stop wins over every arming request of the same call, earlier or later.
 
         Args:
           samples: Commands, arming requests and e-stops.
           rejected: Undecodable messages on these topics since start, by reason; only reported in the driver state.
           now_ns: Monotonic time, not before any arrival.
         """
-        for sample in sorted(samples, key=lambda sample: (not isinstance(sample.message, EStop), sample.arrival_ns)):
+        ordered = sorted(samples, key=lambda sample: sample.arrival_ns)
+        stopped = any(isinstance(sample.message, EStop) and sample.message.stop for sample in ordered)
+        if stopped:
+            self.guard.estop()
+        for sample in ordered:
             message = sample.message
-            if isinstance(message, EStop):
-                if message.stop:
-                    self.guard.estop()
-            elif isinstance(message, ArmRequest):
-                self._arm(message, sample.sender, now_ns)
-            else:
-                values = command_values(message, self._axes)
-                self.guard.command(sample.arrival_ns, sample.sender, sample.sequence, values)
+            if isinstance(message, ArmRequest):
+                if not (stopped and message.arm):
+                    self._arm(message, sample.sender, now_ns)
+            elif not isinstance(message, EStop):
+                values, stamp_ns = command_values(message, self._axes), getattr(message, "stamp_ns", 0)
+                self.guard.command(sample.arrival_ns, sample.sender, sample.sequence, values, stamp_ns)
         self._rejected = rejected
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
@@ -84,7 +87,8 @@ class Driver:
 
     def _arm(self, request: ArmRequest, sender: str, now_ns: int) -> None:
         if request.arm:
-            self.guard.arm(now_ns, request.sender or sender, request.epoch, request.reset)
+            armed = request.sender or sender
+            self.guard.arm(now_ns, armed, request.epoch, request.reset, by_people=armed != sender)
         elif request.epoch in (0, self.guard.epoch):
             self.guard.disarm(Reason.DISARM_REQUEST, f"by {(sender or 'unknown')[:8]}")
 

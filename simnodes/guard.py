@@ -12,7 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tailor.simnodes.arming import Arming, Cause, next_arming
+
 TIMEOUT_NS = 300_000_000  # three ticks of the executive: one may be lost, two are an outage
+MAX_DELAY_NS = 300_000_000  # beyond the fastest command since arming
+MAX_JUMP = 100  # sequence numbers from one command to the next; the timeout lets no sender below 300 Hz miss as many
 
 
 class Mode(StrEnum):
@@ -43,6 +47,8 @@ class CommandRefusal(StrEnum):
     NOT_ARMED = "not armed"
     OTHER_SENDER = "other sender"
     OLD_SEQUENCE = "old sequence"
+    SEQUENCE_JUMP = "sequence jump"
+    LATE = "late"
     WRONG_COUNT = "wrong count"  # of axes
     NOT_FINITE = "not finite"
     BEYOND_LIMIT = "beyond limit"
@@ -54,7 +60,18 @@ class ArmRefusal(StrEnum):
     OTHER_EPOCH = "other epoch"
     NO_SENDER = "no sender"
     ESTOP_LATCHED = "e-stop is latched"
+    PEOPLE_ONLY = "only people may arm"
     OTHER_SENDER_ARMED = "another sender is armed"
+
+
+MODES = {
+    Arming.EXPECTING: Mode.DISARMED,
+    Arming.NEVER_ARMED: Mode.DISARMED,
+    Arming.ARMED: Mode.ARMED,
+    Arming.STOPPED: Mode.STOPPED,
+    Arming.DISARMED: Mode.DISARMED,
+    Arming.ESTOPPED: Mode.ESTOPPED,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,35 +87,54 @@ class Guard:
 
     Attributes:
       epoch: Identifies this start of the driver; an arming request for another one is refused.
-      mode, reason, detail: The mode, the reason for it, and free text about the reason.
+      arming: State of the arming, see arming.py; the mode follows from it.
+      reason, detail: The reason for the mode, and free text about the reason.
       sender: The armed sender of commands; empty unless armed.
       accepted: Number of commands passed since the start.
       refused: Number of commands refused since the start, by reason.
     """
 
-    def __init__(self, limits: Sequence[Limit], epoch: int, timeout_ns: int = TIMEOUT_NS) -> None:
+    def __init__(self, limits: Sequence[Limit], epoch: int, timeout_ns: int = TIMEOUT_NS, leave: str = "") -> None:
+        """Start disarmed.
+
+        Args:
+          limits: Limits of the axes, in the order of the command's values.
+          epoch: Identifies this start; different at every start, and not 0.
+          timeout_ns: The output is zero this long after the last valid command.
+          leave: Sender id of the program that may arm the driver by itself, once; empty: only people may.
+        """
         self.epoch = epoch
-        self.mode = Mode.DISARMED
+        self.arming = Arming.EXPECTING if leave else Arming.NEVER_ARMED
         self.reason = Reason.STARTED
         self.detail = ""
         self.sender = ""
         self.accepted = 0
         self.refused: Counter[CommandRefusal] = Counter()
+        self._leave = leave
         self._limits = tuple(limits)
         self._timeout_ns = timeout_ns
         self._zero = (0.0,) * len(self._limits)
         self._values = self._zero
         self._valid_ns = 0  # time of the last valid command, or of arming
         self._sequences: dict[str, int] = {}  # highest passed, by sender: kept when disarmed, against replays
+        self._fastest_ns: int | None = None  # least distance from stamp to arrival since arming; None: no command yet
 
-    def arm(self, now_ns: int, sender: str, epoch: int = 0, reset: bool = False) -> ArmRefusal | None:
+    @property
+    def mode(self) -> Mode:
+        """Mode of the guard."""
+        return MODES[self.arming]
+
+    def arm(
+        self, now_ns: int, sender: str, epoch: int = 0, reset: bool = False, by_people: bool = True
+    ) -> ArmRefusal | None:
         """Pass the commands of `sender` from now on.
 
         Args:
           now_ns: Monotonic time; the first command is due within the timeout.
           sender: Sender to arm. It is refused while another one is armed: disarm first.
           epoch: The start of the driver that is meant; 0: any.
-          reset: Also release a latched e-stop.
+          reset: Also release a latched e-stop; only people may.
+          by_people: False for a program that arms itself; it needs the leave.
 
         Returns:
           The reason for a refusal; None if `sender` is armed now.
@@ -108,30 +144,25 @@ class Guard:
             return ArmRefusal.OTHER_EPOCH
         if not sender:
             return ArmRefusal.NO_SENDER
-        if self.mode is Mode.ESTOPPED and not reset:
-            return ArmRefusal.ESTOP_LATCHED
-        if self.mode is Mode.ARMED and sender != self.sender:
-            return ArmRefusal.OTHER_SENDER_ARMED
-        if self.mode is not Mode.ARMED:
-            self.mode, self.reason, self.detail = Mode.ARMED, Reason.NONE, ""
-            self.sender, self._valid_ns = sender, now_ns
-        return None
+        if self.mode is Mode.ARMED:
+            return None if sender == self.sender else ArmRefusal.OTHER_SENDER_ARMED
+        return self._arm(now_ns, sender, reset, by_people)
 
     def disarm(self, reason: Reason, detail: str = "") -> None:
         """Set the output to zero at once; a latched e-stop stays latched."""
-        if self.mode is not Mode.ESTOPPED:
-            self._halt(Mode.DISARMED, reason, detail)
+        self._halt(Cause.DISARM, reason, detail)
 
     def estop(self) -> None:
         """Set the output to zero at once and latch."""
-        self._halt(Mode.ESTOPPED, Reason.ESTOP)
+        self._halt(Cause.ESTOP, Reason.ESTOP)
 
     def stop(self, fault: str) -> None:
         """Set the output to zero at once for a fault of the driver, e.g. of a motor; a latched e-stop stays latched."""
-        if self.mode is not Mode.ESTOPPED:
-            self._halt(Mode.STOPPED, Reason.DRIVER_FAULT, fault)
+        self._halt(Cause.STOP, Reason.DRIVER_FAULT, fault)
 
-    def command(self, now_ns: int, sender: str, sequence: int, values: Sequence[float]) -> CommandRefusal | None:
+    def command(
+        self, now_ns: int, sender: str, sequence: int, values: Sequence[float], stamp_ns: int = 0
+    ) -> CommandRefusal | None:
         """Accept or refuse a command.
 
         Args:
@@ -139,12 +170,14 @@ class Guard:
           sender: Its sender, 32 hex digits.
           sequence: Its number, counted by the sender.
           values: Set-points in the order and units of the limits.
+          stamp_ns: Time of its creation by the sender's clock; 0: unknown, its delay is not checked.
 
         Returns:
           The reason for a refusal, which changes nothing but a count; None if the command is accepted.
         """
         self._expire(now_ns)
-        refusal = self._refusal(sender, sequence, values)
+        distance_ns = now_ns - stamp_ns
+        refusal = self._refusal(sender, sequence, values) or self._lateness(distance_ns, stamp_ns)
         if refusal is not None:
             self.refused[refusal] += 1
             return refusal
@@ -152,12 +185,24 @@ class Guard:
         self._sequences[sender] = sequence
         self._values = tuple(float(value) for value in values)
         self._valid_ns = max(self._valid_ns, now_ns)
+        self._fastest_ns = distance_ns if self._fastest_ns is None else min(self._fastest_ns, distance_ns)
         return None
 
     def output(self, now_ns: int) -> tuple[float, ...]:
         """Set-points for the motors at `now_ns`: the last valid command, or zero."""
         self._expire(now_ns)
         return self._values
+
+    def _arm(self, now_ns: int, sender: str, reset: bool, by_people: bool) -> ArmRefusal | None:
+        if not by_people and sender != self._leave:
+            return ArmRefusal.PEOPLE_ONLY
+        cause = (Cause.RESET if reset else Cause.PEOPLE) if by_people else Cause.LEAVE
+        following = next_arming(self.arming, cause)
+        if following is None:
+            return ArmRefusal.ESTOP_LATCHED if self.mode is Mode.ESTOPPED else ArmRefusal.PEOPLE_ONLY
+        self.arming, self.reason, self.detail = following, Reason.NONE, ""
+        self.sender, self._valid_ns, self._fastest_ns = sender, now_ns, None
+        return None
 
     def _refusal(self, sender: str, sequence: int, values: Sequence[float]) -> CommandRefusal | None:
         if self.mode is not Mode.ARMED:
@@ -166,6 +211,8 @@ class Guard:
             return CommandRefusal.OTHER_SENDER
         if sequence <= self._sequences.get(sender, -1):
             return CommandRefusal.OLD_SEQUENCE
+        if self._fastest_ns is not None and sequence > self._sequences[sender] + MAX_JUMP:
+            return CommandRefusal.SEQUENCE_JUMP  # one forged number must not lock the true sender out
         if len(values) != len(self._limits):
             return CommandRefusal.WRONG_COUNT
         if not all(math.isfinite(value) for value in values):  # before any comparison: nan passes most of them
@@ -174,10 +221,18 @@ class Guard:
             return CommandRefusal.BEYOND_LIMIT
         return None
 
+    def _lateness(self, distance_ns: int, stamp_ns: int) -> CommandRefusal | None:
+        """Refusal of a delayed command; the clocks need not agree, only the change of their distance counts."""
+        if stamp_ns and self._fastest_ns is not None and distance_ns > self._fastest_ns + MAX_DELAY_NS:
+            return CommandRefusal.LATE
+        return None
+
     def _expire(self, now_ns: int) -> None:
         if self.mode is Mode.ARMED and now_ns - self._valid_ns > self._timeout_ns:
-            self._halt(Mode.STOPPED, Reason.COMMAND_TIMEOUT)
+            self._halt(Cause.STOP, Reason.COMMAND_TIMEOUT)
 
-    def _halt(self, mode: Mode, reason: Reason, detail: str = "") -> None:
-        self.mode, self.reason, self.detail = mode, reason, detail
-        self.sender, self._values = "", self._zero
+    def _halt(self, cause: Cause, reason: Reason, detail: str = "") -> None:
+        following = next_arming(self.arming, cause)
+        if following is not None:
+            self.arming, self.reason, self.detail = following, reason, detail
+            self.sender, self._values = "", self._zero

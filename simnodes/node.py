@@ -37,6 +37,7 @@ class Node:
         clock: Clock,
         epoch: int,
         speed: float = 1.0,
+        leave: str = "",
     ) -> None:
         """Subscribe and declare publishers and services.
 
@@ -47,9 +48,10 @@ class Node:
           clock: Monotonic clock.
           epoch: Identifies this start; different at every start, and not 0.
           speed: World seconds per real second; the guard's timeout stays in real time.
+          leave: Sender id of the executive that may arm the driver by itself, once; empty: only people may.
         """
         robot = world.body.robot
-        self.driver = Driver(spec, epoch)
+        self.driver = Driver(spec, epoch, leave)
         self._world, self._clock = world, clock
         self._loop = Loop(round(PERIOD_NS / speed), clock)
         self._inbox = session.inbox((spec.command_topic, *TOPICS), robot)

@@ -13,14 +13,15 @@ import zenoh
 
 from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.attachment import SENDER_BYTES
-from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError
-from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.topics import TOPICS, Topic, key_of
 from tailor.schemas.typesystem import ros_type
 
 SELF_CONNECT_MS = 500
@@ -59,8 +60,15 @@ def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session
 
 
 @contextmanager
-def open_client(connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0) -> Iterator[Session]:
+def open_client(
+    connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0, sender: str = ""
+) -> Iterator[Session]:
     """Session with the router at the endpoint `connect`.
+
+    Args:
+      connect: Endpoint of the router.
+      timeout_s: Time limit for the connection.
+      sender: Id of the session on the bus, 32 hex digits; empty: random.
 
     Raises:
       UsageError: No router responds within `timeout_s`.
@@ -71,15 +79,16 @@ def open_client(connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float =
     except zenoh.ZError as error:
         raise UsageError(f"bus endpoint {connect}: no router responds; start one with `tailor bus`") from error
     with opened:
-        yield Session(opened)
+        yield Session(opened, sender)
 
 
 class Session:
-    """One process on the bus; `sender` is its id: 32 random hex digits."""
+    """One process on the bus; `sender` is its id: 32 hex digits."""
 
-    def __init__(self, opened: zenoh.Session) -> None:
-        self.sender = secrets.token_hex(SENDER_BYTES)
+    def __init__(self, opened: zenoh.Session, sender: str = "") -> None:
+        self.sender = sender or secrets.token_hex(SENDER_BYTES)
         self._zenoh = opened
+        self._latches: list[Any] = []  # subscriptions that live as long as the session
 
     @property
     def connected(self) -> bool:
@@ -125,10 +134,18 @@ class Session:
         subscriptions = []
         for name in names:
             topic, key = TOPICS[name], key_of(name, robot)
-            capacity = depth(topic) if newest_only else EVENT_DEPTH
-            subscriber = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(capacity))
-            subscriptions.append((topic, key, _Source(subscriber)))
-        return Inbox(subscriptions, encoding_of, time.monotonic_ns)
+            source = self._latch(topic, key) if name == "estop" else self._ring(key)
+            subscriptions.append((topic, key, source))
+        return Inbox(subscriptions, encoding_of, time.monotonic_ns, newest_only=newest_only)
+
+    def _ring(self, key: str) -> Source:
+        return _Source(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)))
+
+    def _latch(self, topic: Topic, key: str) -> Source:
+        latch = EStopLatch(topic, key)
+        handler: Any = zenoh.handlers.Callback(lambda sample: latch.offer(_raw(sample)), indirect=False)
+        self._latches.append(self._zenoh.declare_subscriber(key, handler))
+        return latch
 
     def service_server(self, key: str) -> ServiceServer:
         """Server of the requests under `key`; a loop polls it."""

@@ -22,12 +22,14 @@ class ProcessSpec:
 
     `silence_ns`: kill the process after this long without a sign of life (`Supervisor.report_alive`); None: no limit.
     This is the only way to detect a hung loop whose bus threads still run.
+    `first_argv`: arguments of the first start alone, such as a leave to arm, which a restart must not have.
     """
 
     name: str
     argv: Sequence[str]
     restarts: bool = True
     silence_ns: int | None = None
+    first_argv: Sequence[str] = ()
 
 
 @dataclass(slots=True)
@@ -53,7 +55,7 @@ class Supervisor:
 
     def start(self, spec: ProcessSpec, now_ns: int) -> None:
         """Start a process and supervise it."""
-        process = _Supervised(spec, self._launch(spec.name, spec.argv), now_ns)
+        process = _Supervised(spec, self._launch(spec.name, [*spec.argv, *spec.first_argv]), now_ns)
         process.restart.started(now_ns)
         self._processes[spec.name] = process
 

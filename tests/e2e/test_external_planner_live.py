@@ -31,6 +31,9 @@ def program(tmp_path, body):
     return path
 
 
+LEAVE = "1e" * 16
+
+
 def command(*arguments):
     return subprocess.run(
         tailor(*map(str, arguments)), capture_output=True, text=True, timeout=3 * PATIENCE_S, cwd=ROOT
@@ -47,11 +50,21 @@ def run_with(tmp_path, planner, before_percepts=lambda: None, limit_s=PATIENCE_S
         wait_until(session.publisher("plan", "agilo").matched, "recorder")
         status = session.inbox(("status",), "agilo")
         executive = start(
-            "tailor.tools.main", "executive", "soccer", *at, "--config", config, "--once", "--goal", "(visited way1)"
+            "tailor.tools.main",
+            "executive",
+            "soccer",
+            *at,
+            "--config",
+            config,
+            "--once",
+            "--goal",
+            "(visited way1)",
+            "--sender",
+            LEAVE,
         )
         wait_until(status.drain, "executive")
         before_percepts()
-        start("tailor.tools.main", "sim", "agilo", *at)
+        start("tailor.tools.main", "sim", "agilo", *at, "--leave", LEAVE)
         assert executive.wait(2 * PATIENCE_S) == 0
         recorder.stop(PATIENCE_S)
     verify = command("verify", path, "--json")

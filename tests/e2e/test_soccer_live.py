@@ -149,6 +149,9 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
     assert (commands[-1].v, commands[-1].omega) == (0.0, 0.0)
 
 
+LEAVE = "1e" * 16
+
+
 class Live:
     """Simulator and executives on a bus, with what they say of themselves."""
 
@@ -159,6 +162,7 @@ class Live:
         self.arming = session.publisher("arm_request", "agilo")
         self.latest = {}
         self.stopped_s = None
+        self.leaves = iter([("--sender", LEAVE)])  # for the first executive alone
 
     def update(self):
         for sample in self.inbox.drain():
@@ -182,13 +186,14 @@ class Live:
 
     def executive(self, *flags):
         self.latest.clear()
+        flags += next(self.leaves, ())
         return Child("executive", tailor("executive", "soccer", "--connect", self.endpoint, *flags))
 
 
 @pytest.fixture
 def live():
     with bus_system() as (session, endpoint, start):
-        start("tailor.tools.main", "sim", "agilo", "--connect", endpoint)
+        start("tailor.tools.main", "sim", "agilo", "--connect", endpoint, "--leave", LEAVE)
         found = Live(session, endpoint)
         wait_until(found.driver("disarmed"), "simulator")
         yield found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import socket
 import tempfile
 import time
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig, build_context
+from tailor.runtime.bus.attachment import SENDER_BYTES
 from tailor.runtime.bus.inbox import Inbox
 from tailor.runtime.bus.session import Session, open_router
 from tailor.runtime.clock import MonotonicClock
@@ -76,10 +78,12 @@ def _run(config: LaunchConfig, robot: str, session: Session, supervisor: Supervi
         supervisor.start(ProcessSpec("record", _record(config), restarts=False), time.monotonic_ns())
         if not _wait_until_ready(supervisor, "record", provenance.matched, stop):
             return "failed: the recorder did not start"
-    supervisor.start(ProcessSpec("sim", _sim(config, robot)), time.monotonic_ns())
+    leave = secrets.token_hex(SENDER_BYTES)  # a restarted executive or driver has none
+    supervisor.start(ProcessSpec("sim", _sim(config, robot), first_argv=("--leave", leave)), time.monotonic_ns())
     if not _wait_until_ready(supervisor, "sim", lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop):
         return "failed: the simulator did not start"
-    supervisor.start(ProcessSpec("executive", _executive(config), silence_ns=SILENCE_NS), time.monotonic_ns())
+    executive = ProcessSpec("executive", _executive(config), silence_ns=SILENCE_NS, first_argv=("--sender", leave))
+    supervisor.start(executive, time.monotonic_ns())
     return _supervise(config, inbox, supervisor, screen, stop)
 
 

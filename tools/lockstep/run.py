@@ -108,7 +108,7 @@ class _Link:
     def __init__(self, domain: Domain, world: World, transport: Transport | None) -> None:
         self._robot, self._sensors, self._world, self._transport = domain.robot, domain.sensors, world, transport
         self._spec = shipped_driver_spec(domain.robot)
-        self._driver = Driver(self._spec, EPOCH)
+        self._driver = Driver(self._spec, EPOCH, leave=SENDER)
         self._sequences: Counter[str] = Counter()  # by topic, as publishers count
 
     def send(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:

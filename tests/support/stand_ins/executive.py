@@ -1,4 +1,4 @@
-"""An executive that only drives: arms the driver once and commands a speed at 10 Hz. Arguments: endpoint, speed."""
+"""An executive that only drives, armed by a person; commands a speed at 10 Hz. Arguments: endpoint, speed."""
 
 import sys
 
@@ -13,14 +13,14 @@ from tailor.schemas.messages import ArmRequest, VelocityCommand
 def main(endpoint, speed):
     stop = stop_on_signals()
     codec.prime()
-    with open_client(endpoint) as session:
-        commands, arming = session.publisher("cmd_vel", "agilo"), session.publisher("arm_request", "agilo")
+    with open_client(endpoint) as session, open_client(endpoint) as person:
+        commands, arming = session.publisher("cmd_vel", "agilo"), person.publisher("arm_request", "agilo")
         inbox, armed = session.inbox(["driver"], "agilo"), False
         loop = Loop(100_000_000, MonotonicClock())
         while not stop.requested:
             period = loop.wait_for_next_period()
             if inbox.drain(period.now_ns) and not armed:
-                arming.publish(ArmRequest(True, False, "", 0))
+                arming.publish(ArmRequest(True, False, session.sender, 0))
                 armed = True
             commands.publish(VelocityCommand(period.now_ns, float(speed), 0.0))
 

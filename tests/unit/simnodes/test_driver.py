@@ -20,19 +20,34 @@ def command(v, sequence, sender=A, at_ns=0):
 
 
 def test_an_arming_request_without_a_sender_arms_its_own_sender():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A), command(0.5, 1, A, 1)], {}, 1)
     assert driver.guard.output(1) == (0.5, 0.0)
 
 
-def test_a_person_may_arm_the_executive():
+def test_a_program_that_arms_itself_is_refused_without_leave():
     driver = Driver(SPEC, 7)
+    for name in ("", A):
+        driver.take([arm(A, sender=name, reset=True), command(0.5, 1, A, 1)], {}, 1)
+        assert driver.guard.output(1) == (0.0, 0.0)
+
+
+def test_an_estop_wins_over_an_arming_request_that_was_sent_after_it():
+    driver = Driver(SPEC, 7)
+    driver.take([arm(B, sender=A)], {}, 0)
+    stop = Sample("estop", EStop(True), 5 * MS, 1, B)
+    driver.take([stop, arm(B, 10 * MS, sender=A, reset=True)], {}, 10 * MS)
+    assert driver.guard.mode is Mode.ESTOPPED
+
+
+def test_a_person_may_arm_the_executive():
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(B, sender=A), command(0.5, 1, A, 1)], {}, 1)
     assert driver.guard.sender == A
 
 
 def test_an_estop_beats_everything_that_arrives_with_it():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A)], {}, 0)
     driver.take([command(0.5, 1), arm(A, 1), Sample("estop", EStop(True), 2, 1, B)], {}, 2)
     assert driver.guard.mode is Mode.ESTOPPED
@@ -42,7 +57,7 @@ def test_an_estop_beats_everything_that_arrives_with_it():
 
 
 def test_disarming_names_the_sender_and_respects_the_epoch():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A)], {}, 0)
     driver.take([arm(B, arm=False, epoch=6)], {}, 0)
     assert driver.guard.mode is Mode.ARMED
@@ -52,7 +67,7 @@ def test_disarming_names_the_sender_and_respects_the_epoch():
 
 
 def test_the_state_is_published_at_10_hz_and_on_change():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     assert driver.state(0, 5).mode == "disarmed"
     assert driver.state(99 * MS, 5) is None
     assert driver.state(100 * MS, 5) is not None
@@ -62,14 +77,14 @@ def test_the_state_is_published_at_10_hz_and_on_change():
 
 
 def test_the_state_counts_refusals_and_undecodable_bytes():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([command(0.5, 1)], {"malformed": 3}, 0)
     state = driver.state(0, 5)
     assert dict(zip(state.refused_reasons, state.refused_counts, strict=True)) == {"not armed": 1, "malformed": 3}
 
 
 def test_a_message_that_is_no_command_never_moves_the_robot():
-    driver = Driver(SPEC, 7)
+    driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A)], {}, 0)
     driver.take([Sample("agilo/cmd_vel", EStop(False), 0, 1, A), Sample("x", None, 0, 2, A)], {}, 0)
     assert driver.guard.output(0) == (0.0, 0.0)

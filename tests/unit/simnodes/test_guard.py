@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tailor.simnodes.guard import TIMEOUT_NS, ArmRefusal, CommandRefusal, Guard, Limit, Mode, Reason
+from tailor.simnodes.guard import MAX_JUMP, TIMEOUT_NS, ArmRefusal, CommandRefusal, Guard, Limit, Mode, Reason
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000
@@ -248,3 +248,71 @@ def test_the_timeout_can_be_configured():
     guard.command(0, A, 1, (0.1, 0.0))
     assert guard.output(100 * MS) == (0.1, 0.0)
     assert guard.output(100 * MS + 1) == ZERO
+
+
+def test_a_forged_number_far_ahead_does_not_lock_the_sender_out():
+    guard = moving()
+    assert guard.command(10 * MS, A, 2**63 - 1, (1.0, 0.0)) is CommandRefusal.SEQUENCE_JUMP
+    assert guard.command(20 * MS, A, 1 + MAX_JUMP + 1, (1.0, 0.0)) is CommandRefusal.SEQUENCE_JUMP
+    assert guard.output(20 * MS) == (0.4, -1.0)
+    assert guard.command(30 * MS, A, 2, (0.3, 0.0)) is None
+    assert guard.command(40 * MS, A, 2 + MAX_JUMP, (0.2, 0.0)) is None
+
+
+def test_after_arming_numbers_may_have_gone_on_but_not_back():
+    """A partition lasts longer than the time-out: people arm again, and the executive has counted on."""
+    guard = moving()
+    guard.output(TIMEOUT_NS + 1)
+    assert guard.arm(10_000 * MS, A) is None
+    assert guard.command(10_000 * MS, A, 1, (0.4, 0.0)) is CommandRefusal.OLD_SEQUENCE
+    assert guard.command(10_000 * MS, A, 900, (0.4, 0.0)) is None
+
+
+@pytest.mark.parametrize("offset_ns", [0, 10**18, -5_000 * MS])
+def test_commands_that_are_held_up_are_refused_whatever_the_clocks_distance(offset_ns):
+    guard = armed()
+    clock = 10_000 * MS + offset_ns  # the sender's, at our time 0
+    assert guard.command(20 * MS, A, 1, (0.4, 0.0), clock) is None
+    assert guard.command(110 * MS, A, 2, (0.4, 0.0), clock + 100 * MS) is None, "10 ms faster than the first"
+    assert guard.command(409 * MS, A, 3, (0.5, 0.0), clock + 99 * MS) is None, "300 ms slower than the fastest"
+    assert guard.command(410 * MS, A, 4, (0.6, 0.0), clock + 99 * MS) is CommandRefusal.LATE
+    assert guard.output(709 * MS) == (0.5, 0.0)
+    assert guard.output(710 * MS) == ZERO
+
+
+def test_a_delay_that_creeps_up_stops_the_robot():
+    """Each command a little later than the one before: none of them is late by much, all of them are in the end."""
+    guard = armed()
+    for k in range(1, 30):
+        guard.command(k * 140 * MS, A, k, (0.4, 0.0), k * 100 * MS)  # 40 ms a command
+    assert (guard.mode, guard.refused[CommandRefusal.LATE] > 0) == (Mode.STOPPED, True)
+
+
+def test_a_command_without_a_stamp_is_judged_by_its_arrival_alone():
+    guard = armed()
+    assert guard.command(0, A, 1, (0.4, 0.0)) is None
+    assert guard.command(299 * MS, A, 2, (0.4, 0.0)) is None
+    assert guard.command(598 * MS, A, 3, (0.4, 0.0)) is None
+
+
+@pytest.mark.parametrize("cause", ["disarm", "stop", "estop", "silence", "restart"])
+def test_leave_is_for_one_arming_and_revoked_by_whatever_stops(cause):
+    guard = Guard(LIMITS, epoch=7, leave=A)
+    if cause == "silence":
+        assert guard.arm(0, A, by_people=False) is None
+        guard.output(TIMEOUT_NS + 1)
+    elif cause == "restart":
+        guard = Guard(LIMITS, epoch=8)
+    else:
+        arguments = {"stop": ["motor failed"], "disarm": [Reason.DISARM_REQUEST]}.get(cause, [])
+        getattr(guard, cause)(*arguments)
+    assert guard.arm(10**9, A, by_people=False, reset=True) is not None
+    assert guard.mode is not Mode.ARMED
+    assert guard.arm(10**9, A, reset=True) is None, "people may"
+
+
+def test_leave_is_for_one_sender():
+    guard = Guard(LIMITS, epoch=7, leave=A)
+    assert guard.arm(0, B, by_people=False) is ArmRefusal.PEOPLE_ONLY
+    assert guard.arm(0, A, by_people=False) is None
+    assert guard.mode is Mode.ARMED

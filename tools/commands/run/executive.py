@@ -29,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
     parser.add_argument("--wait", action="store_true", help="start without a goal; `tailor goal` sends one")
+    parser.add_argument("--sender", metavar="HEX", default="", help="sender id, 32 hex digits (default: random)")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
@@ -40,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
-    with open_client(deployment.bus.endpoint) as session:
+    with open_client(deployment.bus.endpoint, sender=arguments.sender) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()

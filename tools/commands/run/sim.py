@@ -31,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="simulated seconds per second (default 1)"
     )
+    parser.add_argument("--leave", metavar="HEX", default="", help="sender id of the executive that may arm it once")
     configure_bus(parser)
 
 
@@ -47,11 +48,20 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
-        run_node(world, shipped_driver_spec(arguments.robot), session, lambda: stop.requested, arguments.speed)
+        run_node(
+            world,
+            shipped_driver_spec(arguments.robot),
+            session,
+            lambda: stop.requested,
+            arguments.speed,
+            arguments.leave,
+        )
     return 0
 
 
-def run_node(world: World, declared: DriverSpec, session: Any, stopped: Callable[[], bool], speed: float = 1.0) -> None:
+def run_node(
+    world: World, declared: DriverSpec, session: Any, stopped: Callable[[], bool], speed: float = 1.0, leave: str = ""
+) -> None:
     """Put a world on the bus, under a new random epoch."""
     epoch = 1 + secrets.randbelow(2**62)
-    Node(world, declared, session, MonotonicClock(), epoch, speed).run(stopped)
+    Node(world, declared, session, MonotonicClock(), epoch, speed, leave).run(stopped)

@@ -1,0 +1,120 @@
+"""Nobody is moved unasked: after a restart of either side, or an operator's disarm, only people arm again."""
+
+import os
+import random
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.bus.session import open_client
+from tailor.runtime.processes.child import Child, tailor
+from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
+from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tests.support.bus_system import answers, free_endpoint
+from tests.support.patience import wait_until
+
+MOVING_MPS = 0.2
+QUIET_S = 2.0  # so long nothing may move; the executive asks within half a second
+
+
+class Launched:
+    """A system that `tailor up` started, as another session on the bus sees it."""
+
+    def __init__(self, up, session):
+        self.up, self.inbox = up, session.inbox(("driver", "status", "truth"), "agilo")
+        self.outlet = session.publisher("arm_request", "agilo")
+        self.latest, self.fastest_mps = {}, 0.0
+
+    def poll(self):
+        for sample in self.inbox.drain():
+            self.latest[type(sample.message)] = sample.message
+            if isinstance(sample.message, SoccerGroundTruth):
+                self.fastest_mps = max(self.fastest_mps, abs(sample.message.v), abs(sample.message.omega))
+        return self.latest
+
+    def moves(self):
+        self.fastest_mps = 0.0
+        self.poll()
+        return self.fastest_mps > MOVING_MPS
+
+    def at_rest(self):
+        truth = self.poll().get(SoccerGroundTruth)
+        return truth is not None and abs(truth.v) < 0.01 and abs(truth.omega) < 0.01
+
+    def arm(self, arm=True):
+        self.outlet.publish(ArmRequest(arm, False, self.latest[ExecStatus].sender if arm else "", 0))
+
+    def kill(self, *names):
+        for name in names:
+            os.kill(self.pid(name), signal.SIGKILL)
+
+    def pid(self, name):
+        """Process id of a child, by the command that it runs."""
+        for line in Path(f"/proc/{self.up.pid}/task/{self.up.pid}/children").read_text().split():
+            if f"tailor.tools.main\0{name}\0" in Path(f"/proc/{line}/cmdline").read_text():
+                return int(line)
+        raise LookupError(name)
+
+    def changed(self, kind, field, before):
+        return lambda: getattr(self.poll().get(kind), field, before) != before
+
+
+@pytest.fixture
+def launched():
+    endpoint = free_endpoint()
+    words = tailor("up", "soccer", "--scenario", "waypoints", "--connect", endpoint)
+    up = Child("up", words, subprocess.DEVNULL)
+    try:
+        wait_until(lambda: answers(endpoint), "router")
+        with open_client(endpoint) as session:
+            system = Launched(up, session)
+            wait_until(system.moves, "the launched robot moves: its executive has leave")
+            yield system
+    finally:
+        up.stop()
+
+
+def restarted(system, *names):
+    """Kill children and wait until their successors are heard."""
+    sender, epoch = system.poll()[ExecStatus].sender, system.latest[DriverState].epoch
+    system.kill(*names)
+    if "sim" in names:
+        wait_until(system.changed(DriverState, "epoch", epoch), "another driver")
+    if "executive" in names:
+        wait_until(system.changed(ExecStatus, "sender", sender), "another executive")
+
+
+def disarmed(system):
+    system.arm(False)
+    wait_until(lambda: system.poll()[DriverState].mode == "disarmed", "disarmed")
+
+
+WAYS = {
+    "disarmed": disarmed,
+    "disarmed, then the executive restarts": lambda system: (disarmed(system), restarted(system, "executive")),
+    "the executive restarts": lambda system: restarted(system, "executive"),
+    "the driver restarts": lambda system: restarted(system, "sim"),
+    "both restart": lambda system: restarted(system, "sim", "executive"),
+}
+
+
+@pytest.mark.xdist_group("live")
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("number", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 20))])
+def test_only_people_arm_again(launched, way, number):
+    time.sleep(random.Random(number).uniform(0.0, 0.3))
+    WAYS[way](launched)
+    wait_until(launched.at_rest, "robot at rest")
+    launched.fastest_mps = 0.0
+    ends = time.monotonic() + QUIET_S
+    while time.monotonic() < ends:
+        launched.poll()
+        time.sleep(0.01)
+    assert launched.latest[DriverState].mode != "armed"
+    assert launched.fastest_mps < 0.02
+    wait_until(lambda: ExecStatus in launched.poll(), "executive")
+    launched.arm()
+    wait_until(launched.moves, "the robot moves when people arm it")
