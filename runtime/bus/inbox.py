@@ -41,9 +41,9 @@ class Source(Protocol):
         ...
 
 
-def depth(topic: Topic) -> int:
-    """Number of samples to keep between two drains: 1 for a state, EVENT_DEPTH for events and commands."""
-    return 1 if topic.rate_hz > 0 and topic.priority != "real_time" else EVENT_DEPTH
+def is_state(topic: Topic) -> bool:
+    """True if a newer sample replaces an older one; events and commands do not replace each other."""
+    return topic.rate_hz > 0 and topic.priority != "real_time"
 
 
 class Inbox:
@@ -55,10 +55,11 @@ class Inbox:
         encodings: Callable[[type], str],
         now: Callable[[], int],
         wall: Callable[[], int] = wall_ns,
+        newest_only: bool = False,  # of a state topic, the newest valid sample alone
     ) -> None:
         self.rejected: Counter[tuple[str, str]] = Counter()  # (key, reason) -> count
         self._subscriptions = [(topic, key, source, encodings(topic.type)) for topic, key, source in subscriptions]
-        self._now, self._wall = now, wall
+        self._now, self._wall, self._newest_only = now, wall, newest_only
         self._previous = Instant(now(), wall())
         self._last: dict[str, tuple[str, int]] = {}  # (sender, sequence) of the newest message, by key
 
@@ -67,15 +68,16 @@ class Inbox:
         now = Instant(self._now() if now_ns is None else now_ns, self._wall())
         samples = []
         for topic, key, source, encoding in self._subscriptions:
-            for _ in range(EVENT_DEPTH):  # bounded, also during a flood
-                raw = source.receive()
-                if raw is None:
-                    break
+            newest_only = self._newest_only and is_state(topic)
+            waiting = _received(source)
+            for raw in reversed(waiting) if newest_only else waiting:
                 sample = self._read(topic, key, encoding, raw, now)
                 if isinstance(sample, Rejected):
                     self.rejected[key, sample.reason] += 1
-                else:
-                    samples.append(sample)
+                    continue
+                samples.append(sample)
+                if newest_only:  # the newest valid one: an invalid sample must not replace a valid one
+                    break
         self._previous = now
         return tuple(sorted(samples, key=lambda each: each.arrival_ns))
 
@@ -97,3 +99,11 @@ class Inbox:
         self._last[key] = (origin.sender, origin.sequence)
         arrived = arrival_ns(raw.received_wall_ns, self._previous, now)
         return Sample(key, message, arrived, origin.sequence, origin.sender)
+
+
+def _received(source: Source) -> list[Raw]:
+    """Waiting samples, oldest first; at most EVENT_DEPTH, also during a flood."""
+    waiting: list[Raw] = []
+    while len(waiting) < EVENT_DEPTH and (raw := source.receive()) is not None:
+        waiting.append(raw)
+    return waiting

@@ -10,12 +10,18 @@ import re
 from typing import Any
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import ArmRequest
+from tailor.schemas.topics import TOPICS, Topic
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a peer that is silent for longer counts as gone
 QUEUE_SIZE = 16  # zenoh's 2 loses the tail of a burst under load
 CONNECT_MS = 3000
 RETRY_MS = 200  # zenoh's back-off reaches 4 s; data must be back within a second
+MAX_PENDING = 2000  # connections that have sent nothing yet; zenoh's 100 let a port scan lock everyone out
+ACCEPT_MS = 1000  # such a connection is closed then
+COMMAND_LIMIT_HZ = 500.0  # for each peer; replays may run at many times their rate
+REQUEST_LIMIT_HZ = 50.0  # e-stops and arming requests: tools repeat them every 20 ms at most
 PRIORITIES = (
     "control",
     "real_time",
@@ -53,10 +59,23 @@ def _base(mode: str) -> dict[str, Any]:
     }
 
 
+def _rate_limits() -> dict[str, Any]:
+    """Rate limits for each peer on the keys that move and stop robots; the router drops what exceeds them."""
+    topics = [topic for topic in TOPICS.values() if topic.priority == "real_time" or topic.type is ArmRequest]
+    rules = [{"key_expr": topic.key.format(robot="*"), "freq": _limit_hz(topic)} for topic in topics]
+    return {"id": "floods", "messages": ["put", "delete"], "flows": ["ingress"], "rules": rules}
+
+
+def _limit_hz(topic: Topic) -> float:
+    return COMMAND_LIMIT_HZ if topic.rate_hz else REQUEST_LIMIT_HZ
+
+
 def router(listen: str) -> str:
     """JSON of a router that listens at one endpoint and connects to none; a port in use is an error at once."""
     listening = {"endpoints": [check_endpoint(listen)], "timeout_ms": 0, "exit_on_failure": True}
-    return json.dumps(_base("router") | {"listen": listening, "connect": {"endpoints": []}})
+    config = _base("router") | {"downsampling": [_rate_limits()]}
+    config["transport"]["unicast"] = {"accept_pending": MAX_PENDING, "accept_timeout": ACCEPT_MS}
+    return json.dumps(config | {"listen": listening, "connect": {"endpoints": []}})
 
 
 def client(connect: str, timeout_ms: int = CONNECT_MS) -> str:

@@ -4,7 +4,8 @@ import pytest
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, pack, unpack
-from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, depth
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, is_state
+from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import encoding_of
 from tailor.schemas.codec import encode
@@ -97,13 +98,43 @@ def test_a_frozen_sensor_without_numbers_is_accepted():  # a ROS 2 bridge sends 
 
 
 def test_states_replace_each_other_events_and_commands_do_not():
-    assert {name: depth(TOPICS[name]) for name in ("odom", "status", "cmd_vel", "arm_request", "estop")} == {
-        "odom": 1,
-        "status": 1,
-        "cmd_vel": EVENT_DEPTH,
-        "arm_request": EVENT_DEPTH,
-        "estop": EVENT_DEPTH,
-    }
+    assert [name for name in ("odom", "status", "cmd_vel", "arm_request", "estop") if is_state(TOPICS[name])] == [
+        "odom",
+        "status",
+    ]
+
+
+def test_junk_does_not_push_a_good_state_out():
+    good = raw(ODOMETRY)
+    junk = [raw(ODOMETRY, payload=b"x"), raw(ODOMETRY, key="**"), raw(ODOMETRY, is_put=False)]
+    box = Inbox(
+        [(TOPICS["odom"], "agilo/odom", Line(good, *junk))], encoding_of, lambda: 0, lambda: 0, newest_only=True
+    )
+    assert [sample.message for sample in box.drain(9)] == [ODOMETRY]
+    assert sum(box.rejected.values()) == 3
+
+
+def test_of_several_valid_states_the_newest_counts():
+    older, newer = raw(ODOMETRY), raw(ODOMETRY, attachment=pack(Origin(8, 124, SENDER)))
+    box = Inbox(
+        [(TOPICS["odom"], "agilo/odom", Line(older, newer))], encoding_of, lambda: 0, lambda: 0, newest_only=True
+    )
+    assert [sample.sequence for sample in box.drain(9)] == [8]
+
+
+def test_the_estop_is_latched_on_arrival_whatever_floods_its_key():
+    latch = EStopLatch(TOPICS["estop"], "estop")
+    stop = raw(EStop(True), "estop")
+    for _ in range(1000):
+        latch.offer(raw(EStop(False), "estop"))
+        latch.offer(raw(EStop(True), "**"))
+        latch.offer(raw(EStop(True), "estop", payload=b""))
+    assert latch.receive() is None
+    latch.offer(stop)
+    for _ in range(1000):
+        latch.offer(raw(EStop(False), "estop"))
+    assert latch.receive() is stop
+    assert latch.receive() is None
 
 
 def test_arrival_is_the_time_of_reception_not_of_the_drain():
