@@ -10,8 +10,8 @@ import re
 from typing import Any
 
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import ArmRequest
-from tailor.schemas.topics import TOPICS, Topic
+from tailor.schemas.messages import ArmRequest, EStop
+from tailor.schemas.topics import TOPICS
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a peer that is silent for longer counts as gone
@@ -20,8 +20,7 @@ CONNECT_MS = 3000
 RETRY_MS = 200  # zenoh's back-off reaches 4 s; data must be back within a second
 MAX_PENDING = 2000  # connections that have sent nothing yet; zenoh's 100 let a port scan lock everyone out
 ACCEPT_MS = 1000  # such a connection is closed then
-COMMAND_LIMIT_HZ = 500.0  # for each peer; replays may run at many times their rate
-REQUEST_LIMIT_HZ = 50.0  # e-stops and arming requests: tools repeat them every 20 ms at most
+REQUEST_LIMIT_HZ = 1000.0  # a flood brings 50 000; a release and a stop 1 ms apart both pass
 PRIORITIES = (
     "control",
     "real_time",
@@ -60,14 +59,13 @@ def _base(mode: str) -> dict[str, Any]:
 
 
 def _rate_limits() -> dict[str, Any]:
-    """Rate limits for each peer on the keys that move and stop robots; the router drops what exceeds them."""
-    topics = [topic for topic in TOPICS.values() if topic.priority == "real_time" or topic.type is ArmRequest]
-    rules = [{"key_expr": topic.key.format(robot="*"), "freq": _limit_hz(topic)} for topic in topics]
+    """Rate limits for each peer on the keys of e-stops and arming; the router drops what exceeds them.
+
+    Commands have none: of two in quick succession the newer one would be dropped.
+    """
+    topics = [topic for topic in TOPICS.values() if topic.type in (EStop, ArmRequest)]
+    rules = [{"key_expr": topic.key.format(robot="*"), "freq": REQUEST_LIMIT_HZ} for topic in topics]
     return {"id": "floods", "messages": ["put", "delete"], "flows": ["ingress"], "rules": rules}
-
-
-def _limit_hz(topic: Topic) -> float:
-    return COMMAND_LIMIT_HZ if topic.rate_hz else REQUEST_LIMIT_HZ
 
 
 def router(listen: str) -> str:
