@@ -50,7 +50,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
     parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file, - for standard input")
     parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file, - for standard input")
-    _configure_search(parser.add_argument_group("search, as in VHPOP"))
+    search = parser.add_argument_group("search, as in VHPOP")
+    _configure_search(search)
+    _configure_costs(search)
     parser.set_defaults(node_limit=MAX_PLANS)
     _configure_output(parser.add_argument_group("output"))
 
@@ -74,6 +76,10 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
         type=lambda name: name.upper().removesuffix("*"),
         help="A* (default) or IDA*",
     )
+
+
+def _configure_costs(group: argparse._ArgumentGroup) -> None:
+    add = group.add_argument
     add(
         "-w",
         "--weight",
