@@ -68,6 +68,7 @@ def predictions_of(boxes: TreeBoxes, number: int, features: Floats) -> Floats:
     predictions = np.full(len(features), np.nan, np.float32)
     for leaf in leaves_of(boxes, number):
         inside = ((features > boxes.lower[leaf]) & (features <= boxes.upper[leaf])).all(axis=1)
-        value = features[inside] @ boxes.slopes[leaf] + boxes.intercept[leaf]
+        with np.errstate(invalid="ignore"):  # BLAS computes with its padding too, and may raise the flag for that
+            value = features[inside] @ boxes.slopes[leaf] + boxes.intercept[leaf]
         predictions[inside] = np.clip(value, boxes.low[leaf], boxes.high[leaf])
     return predictions
