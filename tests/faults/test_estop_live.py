@@ -1,4 +1,4 @@
-"""An e-stop gets through, whatever else goes on: from the first call of a new session to zero at the guard."""
+"""An e-stop gets through on a busy machine: from the first call of a new session to zero at the guard."""
 
 import socket
 import sys
@@ -17,22 +17,10 @@ from tests.support.stalls import repeat_on_stall
 LIMIT_S = 0.2  # faults.md, row 38
 SILENT = 110  # zenoh's own limit of connections that have sent nothing is 100
 BURN = "while True: pass"
-ALL_KEYS = ("agilo/driver", "agilo/cmd_vel", "agilo/arm_request", "agilo/odom", "exec/status", "estop")
 
 
 @contextmanager
-def flood(endpoint, start, *keys):
-    """Three processes that publish as fast as they can."""
-    children = [start("tests.support.flood", endpoint, *keys) for _ in range(3)]
-    time.sleep(2.0)  # by then they run
-    assert all(child.exit_code() is None for child in children)
-    yield
-    for child in children:
-        child.kill()
-
-
-@contextmanager
-def burners(endpoint, start):
+def burners():
     """Four processes that want two cores."""
     children = [Child("burner", [sys.executable, "-c", BURN]) for _ in range(4)]
     yield
@@ -41,9 +29,7 @@ def burners(endpoint, start):
 
 
 LOADS = {
-    "nothing": lambda endpoint, start: ExitStack(),
-    "a flood of its key": lambda endpoint, start: flood(endpoint, start, "estop"),
-    "a flood of all keys": lambda endpoint, start: flood(endpoint, start, *ALL_KEYS),
+    "nothing": ExitStack,
     "4 CPU burners": burners,
 }
 
@@ -91,7 +77,7 @@ class Driven:
 def test_an_estop_stops_the_robot_within_200_ms_beside(tmp_path, load, tries):
     with guarded_robot(tmp_path) as (session, endpoint, start, trace):
         robot = Driven(session, endpoint, start, trace)
-        with LOADS[load](endpoint, start):
+        with LOADS[load]():
             times = [repeat_on_stall(5, robot.stopping_s) for _ in range(tries)]
     print(f"\ne-stop beside {load}, {tries} times: max {max(times) * 1e3:.0f} ms", file=sys.stderr)
 
