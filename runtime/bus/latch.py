@@ -25,5 +25,7 @@ class EStopLatch:
 
     def receive(self) -> Raw | None:
         """The request to stop since the last call, if there was one."""
-        raw, self._latched = self._latched, None
+        raw = self._latched
+        if raw is not None:  # else a stop that is offered at this moment would be erased unread
+            self._latched = None
         return raw

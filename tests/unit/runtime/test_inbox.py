@@ -137,6 +137,20 @@ def test_the_estop_is_latched_on_arrival_whatever_floods_its_key():
     assert latch.receive() is None
 
 
+def test_polling_an_empty_latch_cannot_erase_a_stop_that_arrives_at_that_moment():
+    class Written(EStopLatch):
+        writes = 0
+
+        def __setattr__(self, name, value):
+            type(self).writes += 1
+            super().__setattr__(name, value)
+
+    latch = Written(TOPICS["estop"], "estop")
+    before = Written.writes
+    assert latch.receive() is None
+    assert Written.writes == before, "the bus's thread may have written since the read"
+
+
 def test_arrival_is_the_time_of_reception_not_of_the_drain():
     before, now = Instant(1000 * MS, 5000 * MS), Instant(1100 * MS, 5100 * MS)
     assert arrival_ns(5070 * MS, before, now) == 1070 * MS
