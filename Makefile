@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all goldens lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults goldens lint types bench clean
 
 setup: .venv/.installed
 
@@ -24,6 +24,10 @@ test: setup
 
 test-all: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+test-faults: setup  # the promises of SAFETY.md; one test after another, or they would load the machine
+	@mkdir -p out
+	$(BIN)/python -m pytest -m promise --promises --promises-json out/promises.json
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew

@@ -5,6 +5,8 @@
 
 from hypothesis import HealthCheck, settings
 
+pytest_plugins = ["tests.support.safety.promises"]
+
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeat", settings.get_profile("explore"), derandomize=True)
 settings.load_profile("repeat")

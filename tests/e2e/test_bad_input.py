@@ -64,6 +64,7 @@ def test_an_error_on_the_command_line_is_reported_in_one_line(arguments, expecte
     assert expected in refused(*arguments)
 
 
+@pytest.mark.promise("P39")
 def test_unknown_key_in_a_deployment_file(tmp_path):
     file = tmp_path / "d.toml"
     file.write_text("[executive]\nsed = 1\n[bus]\nendpoint = 5\n")
@@ -72,6 +73,7 @@ def test_unknown_key_in_a_deployment_file(tmp_path):
     assert "'bus.endpoint' is 5" in line
 
 
+@pytest.mark.promise("P39")
 def test_planner_of_a_deployment_file_is_checked_before_anything_starts(tmp_path):
     file = tmp_path / "d.toml"
     file.write_text('[planner]\ncommand = "no-such-vhpop"\nlimit_s = 2\n')

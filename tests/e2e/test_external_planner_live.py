@@ -89,6 +89,7 @@ def test_a_plan_of_a_real_process_is_executed_and_the_recording_verifies(tmp_pat
     assert ways(found) == [("solved", "external"), ("solved", "suffix")]
 
 
+@pytest.mark.promise("P8")
 @pytest.mark.xdist_group("live")
 def test_a_planner_that_hangs_costs_its_limit_but_no_tick_and_leaves_no_process(tmp_path):
     folders = (tmp_path / str(number) for number in range(3))

@@ -145,6 +145,7 @@ def test_plan_finds_a_plan(run):
     assert run("plan", PDDL / "kitchen-domain.pddl", PDDL / "kitchen-s1.pddl")
 
 
+@pytest.mark.promise("P56")
 def test_a_system_starts_records_verifies_and_is_drawn(run, hostile_folder):
     run("up", "arm", "--scenario", "letter-I", "--once", "--record", "run.mcap", "--connect", free_endpoint())
     run("verify", "run.mcap")

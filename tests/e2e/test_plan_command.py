@@ -198,6 +198,7 @@ def test_bad_input_is_one_line_and_exit_code_2(capsys, arguments, message):
         assert message in err
 
 
+@pytest.mark.promise("P40")
 def test_a_huge_file_is_rejected_before_it_is_read(capsys, tmp_path):
     path = tmp_path / "huge.pddl"
     with path.open("wb") as huge:

@@ -62,6 +62,7 @@ def test_a_recording_holds_every_message_in_order_and_decodes(robot, tmp_path):
     assert {"recorder", "topics"} <= metadata.keys()
 
 
+@pytest.mark.promise("P9", "P35")
 def test_kill_9_of_the_recorder_loses_at_most_a_second(robot, tmp_path):
     _, record = robot
     for number in range(2):

@@ -120,6 +120,7 @@ def test_keys_step_pause_and_end_a_replay(tmp_path):
             assert "footer" not in player.stderr.read(), "what was not played is not damaged"
 
 
+@pytest.mark.promise("P14")
 def test_recorded_commands_are_not_published_to_a_live_driver(recording, tmp_path):
     with bus_system() as (session, endpoint, start):
         start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace")

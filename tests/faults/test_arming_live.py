@@ -101,6 +101,7 @@ WAYS = {
 }
 
 
+@pytest.mark.promise("P41")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("number", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 20))])

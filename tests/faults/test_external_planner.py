@@ -45,6 +45,7 @@ def test_a_planner_that_behaves_well_is_handed_on_with_number_and_time(tmp_path)
     )
 
 
+@pytest.mark.promise("P8")
 @pytest.mark.parametrize(
     ("body", "outcome", "reason"),
     [

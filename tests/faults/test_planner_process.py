@@ -60,6 +60,7 @@ def test_a_planner_that_behaves_well_gets_its_plan_parsed_and_validated(tmp_path
     assert validate(parse_plan(answer.output), *own("kitchen-s1")) == ""
 
 
+@pytest.mark.promise("P8")
 def test_a_planner_that_hangs_is_killed_with_its_whole_group(tmp_path):
     body = """
 grandchild = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
@@ -79,6 +80,7 @@ time.sleep(60)"""
     assert gone(child.pid)
 
 
+@pytest.mark.promise("P8")
 def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
     body = "import signal\nfor s in (2, 15, 1): signal.signal(s, signal.SIG_IGN)\ntime.sleep(60)"
     child, answer, _ = run(program(tmp_path, body), limit_s=0.5)
@@ -101,6 +103,7 @@ def test_a_planner_that_prints_garbage_has_no_plan(tmp_path):
         parse_plan(answer.output)
 
 
+@pytest.mark.promise("P8")
 def test_a_planner_that_floods_is_stopped_at_a_limit(tmp_path):
     flood = program(tmp_path, "while True: sys.stdout.write('x' * 65536)")
     child, answer = run_without_blocking(flood, longest_s=1.0)
@@ -118,6 +121,7 @@ print(grandchild.pid)"""
     assert gone(int(answer.output))
 
 
+@pytest.mark.promise("P8")
 def test_a_planner_that_eats_memory_runs_into_a_limit(tmp_path):
     limited = "while resource.getrlimit(resource.RLIMIT_AS)[0] < 0: time.sleep(0.01)"  # it is set from outside
     _, answer, _ = run(program(tmp_path, f"import resource\n{limited}\nheap = bytearray(4 << 30)\nprint('plenty')"))
@@ -125,6 +129,7 @@ def test_a_planner_that_eats_memory_runs_into_a_limit(tmp_path):
     assert "plenty" not in answer.output
 
 
+@pytest.mark.promise("P8")
 def test_a_planner_dies_with_the_process_that_asked_it(tmp_path):
     body = f"""
 import sys

@@ -28,6 +28,7 @@ def noise(number):
     return Odometry(number, number * 0.7310585786, -number / 7, number % 3.1, number / 11, number / 13)
 
 
+@pytest.mark.promise("P9")
 def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     path = tmp_path / "full.mcap"
     with bus_system() as (session, endpoint, _), (tmp_path / "log").open("w") as log:
@@ -57,6 +58,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     assert recording.damage.damaged_chunks == 0
 
 
+@pytest.mark.promise("P9")
 @pytest.mark.slow
 def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     path = tmp_path / "flood.mcap"

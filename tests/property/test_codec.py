@@ -71,6 +71,7 @@ def test_poses_survive_with_their_angle_within_rounding(message, phi):
     assert replace(decoded, phi=phi) == message
 
 
+@pytest.mark.promise("P18")
 @given(st.sampled_from(MESSAGES), st.binary(max_size=400))
 @settings(max_examples=300, deadline=None)
 def test_random_bytes_never_raise(kind, noise):
@@ -78,6 +79,7 @@ def test_random_bytes_never_raise(kind, noise):
     assert isinstance(decode(kind, b"\0\1\0\0" + noise), Rejected | kind)
 
 
+@pytest.mark.promise("P18")
 @given(any_message, st.data())
 @settings(max_examples=200, deadline=None)
 def test_truncated_bytes_are_rejected(message, data):
@@ -86,6 +88,7 @@ def test_truncated_bytes_are_rejected(message, data):
     assert decode(type(message), whole[:cut]) in (Rejected("malformed"), Rejected("trailing bytes"))
 
 
+@pytest.mark.promise("P18")
 @given(any_message, st.data())
 @settings(max_examples=300, deadline=None)
 def test_mutated_bytes_never_raise(message, data):
@@ -124,6 +127,7 @@ FLOAT_FIELDS = [
 ]
 
 
+@pytest.mark.promise("P19")
 @pytest.mark.parametrize(("kind", "path", "put"), FLOAT_FIELDS)
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
@@ -133,6 +137,7 @@ def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
     assert decoded == Rejected("not finite")
 
 
+@pytest.mark.promise("P19")
 @pytest.mark.parametrize(("kind", "path", "put"), FLOAT_FIELDS)
 @pytest.mark.parametrize("huge", [1e308, -1e16])
 def test_a_number_so_large_that_its_square_might_overflow_is_refused(kind, path, put, huge):
@@ -153,6 +158,7 @@ def test_a_negative_variance_is_refused(reading):
     assert decode(type(reading), encode(reading)) == Rejected("negative variance")
 
 
+@pytest.mark.promise("P17")
 @pytest.mark.parametrize("topic", TOPICS.values(), ids=TOPICS)
 def test_a_message_longer_than_its_topic_allows_is_refused(topic):
     assert decode(topic, bytes(topic.max_bytes + 1)) == Rejected("too long")

@@ -69,10 +69,12 @@ def fuzz(count, seed):
     return seen
 
 
+@pytest.mark.promise("P28")
 def test_600_mutated_files_end_in_a_plan_a_verdict_or_an_error():
     fuzz(600, seed=1)
 
 
+@pytest.mark.promise("P28")
 @pytest.mark.slow
 def test_10000_mutated_files_end_in_a_plan_a_verdict_or_an_error():
     fuzz(10_000, seed=2)
@@ -173,11 +175,13 @@ def explode(name):
         pass
 
 
+@pytest.mark.promise("P28")
 @pytest.mark.parametrize("name", BOMBS)
 def test_bombs_end_in_a_limit_within_a_second(name):
     assert min_cpu_s(lambda: explode(name)) < 1.0
 
 
+@pytest.mark.promise("P28")
 @pytest.mark.slow
 def test_bombs_stay_within_512_mb():
     import subprocess

@@ -2,6 +2,7 @@
 
 import math
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -24,6 +25,7 @@ READINGS = st.one_of(
 )
 
 
+@pytest.mark.promise("P19")
 @given(st.lists(READINGS, max_size=40))
 @settings(deadline=None, max_examples=100)
 def test_no_legal_reading_leaves_the_belief_without_a_number(readings):

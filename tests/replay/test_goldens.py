@@ -81,6 +81,7 @@ def nudged(by, change=lambda made_of: None):
     return changed
 
 
+@pytest.mark.promise("P35")
 @pytest.mark.parametrize("name", GOLDENS)
 def test_core_publishes_what_it_published_when_the_golden_was_recorded(name):
     try:
@@ -104,6 +105,7 @@ def test_a_golden_opens_in_another_reader_and_lacks_no_number():
     assert numbers == list(range(1, len(numbers) + 1))
 
 
+@pytest.mark.promise("P35")
 def test_a_changed_setting_fails_with_tick_field_and_both_values(tmp_path, capsys):
     path = rewritten(SOME, tmp_path / "changed.mcap", with_provenance(other_horizon))
     assert main(["verify", str(path)]) == 1

@@ -8,7 +8,7 @@ import tailor
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
-PAGES = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
+PAGES = ["README.md", "CONTRIBUTING.md", "SAFETY.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
 TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
 PATH = re.compile(rf"`((?:{TOPS}|core|planning|refinement)/[\w./-]*)`")
 LINK = re.compile(r"\]\((?!http|#)([^)#]+)")
@@ -39,7 +39,7 @@ def test_the_readme_lists_the_folders_of_the_table() -> None:
 
 def test_the_readme_links_every_page() -> None:
     links = LINK.findall((ROOT / "README.md").read_text())
-    assert set(PAGES) - {"README.md"} <= set(links)
+    assert set(PAGES) - {"README.md", "SAFETY.md"} <= set(links)
 
 
 def test_the_citation_names_the_version() -> None:

@@ -50,6 +50,7 @@ def test_a_model_loads_by_name_too() -> None:
     assert np.isnan([mean[1], std[1]]).all()
 
 
+@pytest.mark.promise("P32")
 def test_an_answer_out_of_range_is_invalid() -> None:
     model = runtime.load_model("agilo/goToPose/duration")
     narrow = runtime.OnnxDuration(model.session, model.card, 0.0, 0.1)
@@ -61,6 +62,7 @@ def test_probability_of_what_is_not_a_number_is_invalid() -> None:
     assert np.isnan(model.probability(np.array([[0, 0, np.nan, 0, 2.0, 0, 0, 0]]))).all()
 
 
+@pytest.mark.promise("P32")
 @pytest.mark.parametrize("seed", range(20))
 def test_a_flipped_bit_is_refused(zoo: Path, seed: int) -> None:
     content = bytearray(duration(zoo).read_bytes())
@@ -71,6 +73,7 @@ def test_a_flipped_bit_is_refused(zoo: Path, seed: int) -> None:
         runtime.load_robot("agilo", zoo)
 
 
+@pytest.mark.promise("P32")
 def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -> None:
     content = duration(zoo).read_bytes()[:-2000]
     duration(zoo).write_bytes(content)
@@ -79,6 +82,7 @@ def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -
         runtime.load_model(duration(zoo))
 
 
+@pytest.mark.promise("P32")
 def test_a_model_of_another_robot_is_refused(zoo: Path) -> None:
     shutil.copytree(zoo / "agilo", zoo / "b21")
     with pytest.raises(UsageError, match=r"model of agilo/\w+/duration, expected b21/\w+/duration"):
@@ -106,6 +110,7 @@ def test_ranges_that_the_model_has_not_seen_are_refused(zoo: Path) -> None:
         runtime.load_robot("agilo", zoo, {"goToPose": {"z": (0.0, 0.9)}})
 
 
+@pytest.mark.promise("P32")
 def test_a_model_that_answers_otherwise_than_its_card_says_is_refused(zoo: Path) -> None:
     golden = dict(read_card(card_path(duration(zoo)))["golden"])
     golden["mean_s"] = [value + (0.001 if k == 5 else 0) for k, value in enumerate(golden["mean_s"])]
@@ -174,6 +179,7 @@ def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: 
     assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
 
 
+@pytest.mark.promise("P40")
 def test_an_oversized_card_is_refused_before_it_is_read(zoo: Path) -> None:
     with card_path(duration(zoo)).open("wb") as file:
         file.truncate(1 << 30)
@@ -181,6 +187,7 @@ def test_an_oversized_card_is_refused_before_it_is_read(zoo: Path) -> None:
         runtime.load_robot("agilo", zoo)
 
 
+@pytest.mark.promise("P40")
 @pytest.mark.parametrize("name", ["../../etc/passwd", "agilo/goToPose", "agilo/../duration", "agilo/goToPose/x"])
 def test_a_name_cannot_leave_the_zoo(name: str) -> None:
     with pytest.raises(UsageError, match="names no model"):

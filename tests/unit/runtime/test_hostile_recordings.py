@@ -132,6 +132,7 @@ def test_a_run_without_valid_provenance_is_refused_in_one_line(monkeypatch, text
         rebuild_context(RecordedRuns(GOLDEN).runs[0].provenance)
 
 
+@pytest.mark.promise("P40")
 @pytest.mark.parametrize("name", ["config", "sender", "stamp_offset_ns", "models", "machine"])
 @pytest.mark.parametrize("value", [None, "x", 1.5, []])
 def test_every_part_of_a_provenance_is_checked(name, value):
@@ -149,6 +150,7 @@ def test_the_error_for_a_file_without_a_run_includes_its_damage(tmp_path, capsys
     assert "no footer" in capsys.readouterr().err
 
 
+@pytest.mark.promise("P40")
 def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch):
     """A recording of 0.2 MB can hold 2.5 GB of zeros."""
     monkeypatch.setattr(recorded_run, "MAX_BYTES", 10_000)

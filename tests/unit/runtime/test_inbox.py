@@ -54,6 +54,7 @@ def test_an_empty_inbox_gives_nothing():
     assert inbox().drain(9) == ()
 
 
+@pytest.mark.promise("P18")
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
@@ -81,11 +82,13 @@ def numbered(message, number, key="agilo/odom", sender=SENDER):
     return raw(message, key, attachment=pack(Origin(number, 123, sender)))
 
 
+@pytest.mark.promise("P17")
 def test_a_flood_is_drained_in_bounded_portions():
     flood = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in range(1, 41)]
     assert len(inbox(*flood, topic="cmd_vel", key="agilo/cmd_vel").drain(1)) == EVENT_DEPTH
 
 
+@pytest.mark.promise("P6")
 def test_repeated_messages_of_a_frozen_sensor_are_rejected_but_not_those_of_a_restart_or_replay():
     line = Line(*(numbered(ODOMETRY, number) for number in (7, 7, 7, 8, 8, 3)), numbered(ODOMETRY, 3, sender="ff" * 16))
     box = Inbox([(TOPICS["odom"], "agilo/odom", line)], encoding_of, now=lambda: 0, wall=lambda: 0)
@@ -104,6 +107,7 @@ def test_states_replace_each_other_events_and_commands_do_not():
     ]
 
 
+@pytest.mark.promise("P17")
 def test_junk_does_not_push_a_good_state_out():
     good = raw(ODOMETRY)
     junk = [raw(ODOMETRY, payload=b"x"), raw(ODOMETRY, key="**"), raw(ODOMETRY, is_put=False)]
@@ -122,6 +126,7 @@ def test_of_several_valid_states_the_newest_counts():
     assert [sample.sequence for sample in box.drain(9)] == [8]
 
 
+@pytest.mark.promise("P38")
 def test_the_estop_is_latched_on_arrival_whatever_floods_its_key():
     latch = EStopLatch(TOPICS["estop"], "estop")
     stop = raw(EStop(True), "estop")
@@ -137,6 +142,7 @@ def test_the_estop_is_latched_on_arrival_whatever_floods_its_key():
     assert latch.receive() is None
 
 
+@pytest.mark.promise("P38")
 def test_polling_an_empty_latch_cannot_erase_a_stop_that_arrives_at_that_moment():
     class Written(EStopLatch):
         writes = 0
@@ -157,6 +163,7 @@ def test_arrival_is_the_time_of_reception_not_of_the_drain():
     assert arrival_ns(None, before, now) == 1100 * MS
 
 
+@pytest.mark.promise("P22")
 @pytest.mark.parametrize("jump_ns", [3600 * 1000 * MS, -3600 * 1000 * MS])
 def test_a_jump_of_the_wall_clock_moves_an_arrival_by_less_than_a_tick(jump_ns):
     before, now = Instant(1000 * MS, 5000 * MS), Instant(1100 * MS, 5100 * MS + jump_ns)

@@ -37,6 +37,7 @@ def test_oversleeping_is_lateness_and_does_not_accumulate():
     assert turns[-1].deadline_ns == 500 * MS
 
 
+@pytest.mark.promise("P26")
 def test_an_overrun_skips_whole_periods_and_keeps_the_phase():
     clock = SteppedClock()
     loop = Loop(100 * MS, clock)
@@ -58,6 +59,7 @@ def test_a_tick_that_just_fills_its_period_skips_nothing():
     assert loop.skipped == 0
 
 
+@pytest.mark.promise("P22")
 def test_a_clock_that_goes_back_does_not_break_the_loop():
     clock = SteppedClock(1000 * MS)
     loop = Loop(100 * MS, clock)

@@ -80,6 +80,7 @@ def test_an_unsigned_message_of_a_known_key_gets_its_type_from_the_table(tmp_pat
     ]
 
 
+@pytest.mark.promise("P35")
 @pytest.mark.parametrize("share", [0.0, 0.05, 0.3, 0.5, 0.9, 0.99])
 def test_a_cut_file_gives_back_every_whole_chunk(tmp_path, share):
     data = write_tape(tmp_path / "a.mcap").read_bytes()
@@ -114,6 +115,7 @@ def test_a_damaged_chunk_costs_its_own_messages_only(tmp_path):
     assert "1 damaged" in recording.damage.text()
 
 
+@pytest.mark.promise("P40")
 def test_flipped_bits_anywhere_never_raise_anything_but_a_usage_error(tmp_path):
     data = write_tape(tmp_path / "a.mcap", count=10, chunks=2).read_bytes()
     path = tmp_path / "bad.mcap"
@@ -137,6 +139,7 @@ def test_a_record_that_claims_to_be_huge_is_not_read(tmp_path, length):
     assert damage.lost_bytes == 109
 
 
+@pytest.mark.promise("P40")
 def test_a_compression_bomb_is_not_unpacked(tmp_path):
     import zstandard
 
@@ -164,6 +167,7 @@ def test_a_file_that_is_no_recording_is_reported_in_one_line(tmp_path):
         open_recording(tmp_path / "absent.mcap")
 
 
+@pytest.mark.promise("P35")
 def test_a_changed_schema_is_refused_by_name(tmp_path, monkeypatch):
     write_tape(tmp_path / "a.mcap")
     monkeypatch.setattr("tailor.runtime.recordings.recording.type_hash", lambda _: "RIHS01_other")
@@ -171,6 +175,7 @@ def test_a_changed_schema_is_refused_by_name(tmp_path, monkeypatch):
         list(open_recording(tmp_path / "a.mcap").messages())
 
 
+@pytest.mark.promise("P9")
 def test_a_full_disk_leaves_whole_blocks_and_the_rest_is_written_when_there_is_space(tmp_path, monkeypatch):
     sink = Sink(tmp_path / "f")
     sink.write(b"first")
@@ -228,6 +233,7 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
     assert dict(recording.metadata())["drops"] == {"agilo/odom": str(lost)}
 
 
+@pytest.mark.promise("P17")
 def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
     queue = IngestQueue(max_bytes=2000)
     for sequence in range(100):

@@ -19,6 +19,7 @@ S = 1_000_000_000
 MS = 1_000_000
 
 
+@pytest.mark.promise("P2")
 def test_the_back_off_doubles_up_to_five_seconds_and_forgets_after_a_minute():
     restart, delays = Restart(), []
     for k in range(5):
@@ -75,6 +76,7 @@ def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
     assert supervisor.ended("executive") is None
 
 
+@pytest.mark.promise("P2")
 def test_a_crash_loop_is_given_up(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"]), 0)
     for k in range(1, 400):
@@ -94,6 +96,7 @@ def test_a_process_that_ended_well_or_must_not_restart_stays_ended(supervisor, r
     assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
 
 
+@pytest.mark.promise("P2")
 def test_a_silent_child_is_killed_after_a_second_and_a_live_one_is_not(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     for now_ns in range(0, 30 * S, 50 * MS):
@@ -127,6 +130,7 @@ def test_a_child_that_ended_for_good_is_reported(supervisor):
     assert supervisor.reported == ["record ended with -9; not started again"]
 
 
+@pytest.mark.promise("P2")
 def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
     supervisor.poll(STARTUP_NS)
@@ -135,6 +139,7 @@ def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(sup
     assert FakeChild.made[0].killed
 
 
+@pytest.mark.promise("P10")
 def test_a_child_ends_when_its_parent_is_killed():
     parent = (
         "from tailor.runtime.processes.child import Child; print(Child('c', ['sleep', '60']).pid, flush=True); input()"
@@ -148,6 +153,7 @@ def test_a_child_ends_when_its_parent_is_killed():
     assert gone(child)
 
 
+@pytest.mark.promise("P10")
 def test_children_are_stopped_in_reverse_order_and_one_that_ignores_it_is_killed(tmp_path):
     order = []
 

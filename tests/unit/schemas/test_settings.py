@@ -48,6 +48,7 @@ def test_a_mistake_is_reported_with_its_key_and_the_expected_value(table, expect
     assert str(caught.value) == expected
 
 
+@pytest.mark.promise("P39")
 def test_all_mistakes_are_reported_at_once():
     with pytest.raises(UsageError) as caught:
         from_table(Deployment, {"colour": 1, "executive": {"seeds": 1, "coast_ticks": 1.5}}, "f.toml")

@@ -1,5 +1,7 @@
 """The driver without a bus."""
 
+import pytest
+
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
 from tailor.simnodes.driver import Driver, command_values
 from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
@@ -32,6 +34,7 @@ def test_a_program_that_arms_itself_is_refused_without_leave():
         assert driver.guard.output(1) == (0.0, 0.0)
 
 
+@pytest.mark.promise("P38")
 def test_an_estop_wins_over_an_arming_request_that_was_sent_after_it():
     driver = Driver(SPEC, 7)
     driver.take([arm(B, sender=A)], {}, 0)
@@ -46,6 +49,7 @@ def test_a_person_may_arm_the_executive():
     assert driver.guard.sender == A
 
 
+@pytest.mark.promise("P38")
 def test_an_estop_beats_everything_that_arrives_with_it():
     driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A)], {}, 0)

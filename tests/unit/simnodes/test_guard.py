@@ -29,6 +29,7 @@ def moving(at_ns=0):
     return guard
 
 
+@pytest.mark.promise("P1")
 def test_the_timeout_is_300_ms():
     assert TIMEOUT_NS == 300 * MS
 
@@ -49,6 +50,7 @@ def test_an_armed_guard_passes_commands_and_counts_them():
     assert not guard.refused
 
 
+@pytest.mark.promise("P1")
 def test_the_last_command_holds_until_the_end_of_the_timeout_and_no_longer():
     guard = moving()
     assert guard.output(TIMEOUT_NS) == (0.4, -1.0)
@@ -85,6 +87,7 @@ def test_a_refused_command_does_not_extend_the_timeout():
     assert guard.output(300 * MS + 1) == ZERO
 
 
+@pytest.mark.promise("P1")
 def test_a_command_after_the_timeout_is_refused_until_armed_again():
     guard = moving()
     assert guard.command(300 * MS + 1, A, 2, (0.1, 0.0)) is CommandRefusal.NOT_ARMED
@@ -101,6 +104,7 @@ def test_a_command_stamped_before_the_last_one_does_not_shorten_its_time():
     assert guard.output(400 * MS + 1) == ZERO
 
 
+@pytest.mark.promise("P14")
 @pytest.mark.parametrize("sequence", [1, 0, -5])
 def test_a_sequence_that_does_not_rise_is_refused_and_the_old_command_stays(sequence):
     guard = moving()
@@ -116,6 +120,7 @@ def test_sequence_numbers_may_skip():
     assert guard.command(20 * MS, A, 89, (0.2, 0.0)) is CommandRefusal.OLD_SEQUENCE
 
 
+@pytest.mark.promise("P14")
 def test_recorded_commands_are_refused_even_after_arming_again():
     guard = moving()
     guard.disarm(Reason.DISARM_REQUEST)
@@ -140,6 +145,7 @@ def test_another_sender_is_refused_and_has_a_sequence_of_its_own():
     assert guard.command(30 * MS, B, 0, (0.9, 0.0)) is None
 
 
+@pytest.mark.promise("P14")
 def test_another_sender_cannot_arm_over_the_first():
     guard = moving()
     assert guard.arm(10 * MS, B) is ArmRefusal.OTHER_SENDER_ARMED
@@ -149,6 +155,7 @@ def test_another_sender_cannot_arm_over_the_first():
     assert guard.output(300 * MS + 1) == ZERO
 
 
+@pytest.mark.promise("P19")
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_number_that_is_not_finite_is_refused_on_every_axis(bad, axis):
@@ -159,6 +166,7 @@ def test_a_number_that_is_not_finite_is_refused_on_every_axis(bad, axis):
     assert guard.output(10 * MS) == (0.4, -1.0)
 
 
+@pytest.mark.promise("P19")
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_the_limit_itself_is_legal_and_the_next_float_is_refused_not_clamped(axis, side):
@@ -178,6 +186,7 @@ def test_a_command_with_another_number_of_axes_is_refused(values):
     assert moving().command(10 * MS, A, 2, values) is CommandRefusal.WRONG_COUNT
 
 
+@pytest.mark.promise("P38")
 def test_an_estop_sets_zero_at_once_and_latches():
     guard = moving()
     guard.estop()
@@ -199,6 +208,7 @@ def test_estop_works_while_disarmed():
     assert guard.arm(0, A) is ArmRefusal.ESTOP_LATCHED
 
 
+@pytest.mark.promise("P38")
 def test_reset_for_another_epoch_does_not_unlatch():
     guard = moving()
     guard.estop()
@@ -236,6 +246,7 @@ def test_arming_for_another_epoch_or_without_a_sender_is_refused():
     assert guard.arm(0, A, epoch=7) is None
 
 
+@pytest.mark.promise("P22")
 def test_time_that_goes_back_neither_stops_nor_extends():
     guard = moving(1000 * MS)
     assert guard.output(500 * MS) == (0.4, -1.0)
@@ -250,6 +261,7 @@ def test_the_timeout_can_be_configured():
     assert guard.output(100 * MS + 1) == ZERO
 
 
+@pytest.mark.promise("P14")
 def test_a_forged_number_far_ahead_does_not_lock_the_sender_out():
     guard = moving()
     assert guard.command(10 * MS, A, 2**63 - 1, (1.0, 0.0)) is CommandRefusal.SEQUENCE_JUMP
@@ -268,6 +280,7 @@ def test_after_arming_numbers_may_have_gone_on_but_not_back():
     assert guard.command(10_000 * MS, A, 900, (0.4, 0.0)) is None
 
 
+@pytest.mark.promise("P13")
 @pytest.mark.parametrize("offset_ns", [0, 10**18, -5_000 * MS])
 def test_commands_that_are_held_up_are_refused_whatever_the_clocks_distance(offset_ns):
     guard = armed()
@@ -280,6 +293,7 @@ def test_commands_that_are_held_up_are_refused_whatever_the_clocks_distance(offs
     assert guard.output(710 * MS) == ZERO
 
 
+@pytest.mark.promise("P13")
 def test_a_delay_that_creeps_up_stops_the_robot():
     """Each command a little later than the one before: none of them is late by much, all of them are in the end."""
     guard = armed()
@@ -295,6 +309,7 @@ def test_a_command_without_a_stamp_is_judged_by_its_arrival_alone():
     assert guard.command(598 * MS, A, 3, (0.4, 0.0)) is None
 
 
+@pytest.mark.promise("P41")
 @pytest.mark.parametrize("cause", ["disarm", "stop", "estop", "silence", "restart"])
 def test_leave_is_for_one_arming_and_revoked_by_whatever_stops(cause):
     guard = Guard(LIMITS, epoch=7, leave=A)

@@ -36,6 +36,7 @@ def test_a_file_that_specifies_no_driver_is_refused(tmp_path):
         driver_of("agilo", str(file))
 
 
+@pytest.mark.promise("P39")
 @pytest.mark.parametrize(
     ("line", "wrong", "expected"),
     [

@@ -95,6 +95,7 @@ def test_starved_budget_only_delays_and_never_moves_without_a_decision():
     assert run[-1][0].task.result == "achieved"
 
 
+@pytest.mark.promise("P6")
 @pytest.mark.parametrize("silent", ["odom", "driver"])
 def test_stale_input_stops_the_robot_within_its_limit_and_motion_resumes_with_it(silent):
     def world(n, given, x):
@@ -132,6 +133,7 @@ def test_driver_is_requested_to_arm_once_and_never_again_after_it_stopped_or_res
     assert all(state.command == (0.0,) for state, _, _ in run[9:])
 
 
+@pytest.mark.promise("P30")
 def test_failing_action_is_replanned_once_and_then_a_fault():
     context = line_context(places={"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}})
     run = list(drive(context, goal="(visited a)", ticks=20))
@@ -142,6 +144,7 @@ def test_failing_action_is_replanned_once_and_then_a_fault():
     assert run[-1][0].command == (0.0,)
 
 
+@pytest.mark.promise("P30")
 def test_action_that_never_ends_fails_at_its_time_limit():
     def stuck(n, given, x):
         return inputs(n * TICK, 0.0, given.goal)
@@ -151,6 +154,7 @@ def test_action_that_never_ends_fails_at_its_time_limit():
     assert (finished[0].reason, finished[0].detail) == (Reason.ACTION_TIMEOUT, "10.0 s")
 
 
+@pytest.mark.promise("P28")
 def test_unsolvable_goal_is_reported_once_and_nothing_moves():
     run = list(drive(line_context(), goal="(visited home)", ticks=10))
     assert run[-1][0].task.result is Result.FAILED
@@ -183,6 +187,7 @@ def test_place_that_moves_redirects_the_running_action():
     assert finished[0].actual_s > 1.5, "its clock goes on"
 
 
+@pytest.mark.promise("P11")
 def test_stopping_publishes_a_zero_command_and_disarms_the_driver():
     def world(n, given, x):
         return dataclasses.replace(given, stopping=n == 6)
@@ -194,6 +199,7 @@ def test_stopping_publishes_a_zero_command_and_disarms_the_driver():
     assert ArmRequest(arm=False, reset=False, sender=SENDER, epoch=7) in last
 
 
+@pytest.mark.promise("P26")
 def test_three_overruns_in_a_second_hold_the_robot():
     def world(n, given, x):
         return dataclasses.replace(given, skipped=1 if n in (5, 6, 7) else 0)
@@ -204,6 +210,7 @@ def test_three_overruns_in_a_second_hold_the_robot():
     assert run[-1][0].task.result == "achieved"
 
 
+@pytest.mark.promise("P22")
 def test_clock_that_goes_back_holds_for_that_tick():
     context = line_context()
     state = initial_state(context)
@@ -233,6 +240,7 @@ def test_mode_table(mode, now, expected):
     assert next_mode(mode, now) == expected
 
 
+@pytest.mark.promise("P19")
 @pytest.mark.parametrize(
     ("command", "expected"),
     [
@@ -291,6 +299,7 @@ def test_a_stopped_driver_gets_no_commands_although_it_names_this_executive():
     assert messages(list(drive(line_context(), world=world, ticks=5)), VelocityCommand) == []
 
 
+@pytest.mark.promise("P6")
 def test_after_a_stop_planning_starts_again_from_the_robots_place():
     def world(n, given, x):
         return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "stopped" if 6 <= n < 10 else "armed")), given.goal)
@@ -328,6 +337,7 @@ def test_robot_coasts_two_ticks_between_actions_and_then_stands():
     assert commands[arrived : arrived + 4] == [CREEP_MPS, CREEP_MPS, CREEP_MPS, 0.0]
 
 
+@pytest.mark.promise("P30")
 def test_action_whose_support_is_gone_does_not_start():
     def world(n, given, x):
         return Inputs((odometry(n * TICK, x, n, CLOSED if n >= 2 else 0.0), driver(n * TICK)), given.goal)
@@ -345,6 +355,7 @@ def test_a_better_subgoal_is_adopted_while_the_action_runs_only_if_it_gains_enou
     assert announced(0.0) > announced(1e9)
 
 
+@pytest.mark.promise("P19")
 def test_command_that_is_not_finite_fails_the_action_and_is_never_sent():
     context = line_context(places={"home": {"x": 0.0}, "a": {"x": -6.0}, "b": {"x": 1.0}})
     run = list(drive(context, goal="(visited a)", ticks=12))
@@ -353,6 +364,7 @@ def test_command_that_is_not_finite_fails_the_action_and_is_never_sent():
     assert all(command.v == 0.0 for command in messages(run, VelocityCommand))
 
 
+@pytest.mark.promise("P30")
 def test_unsound_plan_is_not_executed(monkeypatch):
     class Broken:
         def __init__(self, *arguments):
@@ -369,6 +381,7 @@ def test_unsound_plan_is_not_executed(monkeypatch):
     assert all(state.command == (0.0,) for state, _, _ in run)
 
 
+@pytest.mark.promise("P32")
 def test_reports_of_a_refinement_without_a_valid_choice_can_be_encoded():
     class Never:
         def predict(self, arguments):
