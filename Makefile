@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all test-faults goldens lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants goldens lint types bench clean
 
 setup: .venv/.installed
 
@@ -28,6 +28,9 @@ test-all: setup
 test-faults: setup  # the promises of SAFETY.md; one test after another, or they would load the machine
 	@mkdir -p out
 	$(BIN)/python -m pytest -m promise --promises --promises-json out/promises.json
+
+test-mutants: setup  # hand-made mistakes in safety code, each of which a test must see
+	$(BIN)/python -m tests.mutants.runner
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew

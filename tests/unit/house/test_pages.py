@@ -8,7 +8,12 @@ import tailor
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
-PAGES = ["README.md", "CONTRIBUTING.md", "SAFETY.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
+PAGES = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "SAFETY.md",
+    *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")),
+]
 TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
 PATH = re.compile(rf"`((?:{TOPS}|core|planning|refinement)/[\w./-]*)`")
 LINK = re.compile(r"\]\((?!http|#)([^)#]+)")

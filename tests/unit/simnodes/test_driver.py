@@ -5,7 +5,7 @@ import pytest
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
 from tailor.simnodes.driver import Driver, command_values
 from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
-from tailor.simnodes.guard import Limit, Mode, Reason
+from tailor.simnodes.guard import CommandRefusal, Limit, Mode, Reason
 
 A, B = "a" * 32, "b" * 32
 MS = 1_000_000
@@ -68,6 +68,50 @@ def test_disarming_names_the_sender_and_respects_the_epoch():
     driver.take([arm(B, arm=False, epoch=7)], {}, 0)
     assert (driver.guard.mode, driver.guard.reason) == (Mode.DISARMED, Reason.DISARM_REQUEST)
     assert driver.guard.detail == "by bbbbbbbb"
+
+
+def test_a_request_to_disarm_any_start_of_the_driver_is_obeyed():
+    driver = Driver(SPEC, 7, leave=A)
+    driver.take([arm(A), command(0.5, 1, A, 1)], {}, 1)
+    driver.take([arm(B, 2, arm=False, epoch=0)], {}, 2)
+    assert (driver.guard.mode, driver.guard.output(2)) == (Mode.DISARMED, (0.0, 0.0))
+
+
+def test_requests_count_in_the_order_of_their_arrival():
+    driver = Driver(SPEC, 7, leave=A)
+    driver.take([arm(B, 2, arm=False), arm(B, 1, sender=A)], {}, 2)
+    assert driver.guard.mode is Mode.DISARMED
+    driver.take([arm(B, 4, sender=A), arm(B, 3, arm=False)], {}, 4)
+    assert driver.guard.mode is Mode.ARMED
+
+
+def test_an_estop_message_that_stops_nobody_leaves_no_trace():
+    driver = Driver(SPEC, 7, leave=A)
+    driver.take([arm(A), command(0.5, 1, A, 1), Sample("estop", EStop(False), 1, 1, B)], {}, 1)
+    assert (driver.guard.mode, driver.guard.output(1)) == (Mode.ARMED, (0.5, 0.0))
+
+
+def test_a_command_is_as_old_as_its_arrival_when_the_driver_takes_it_late():
+    driver = Driver(SPEC, 7, leave=A)
+    driver.take([arm(A)], {}, 0)
+    driver.take([command(0.5, 1, A, 100 * MS)], {}, 300 * MS)
+    assert driver.guard.output(400 * MS) == (0.5, 0.0)
+    assert driver.guard.output(400 * MS + 1) == (0.0, 0.0)
+
+
+def test_the_stamp_of_a_command_lets_the_guard_refuse_a_delayed_one():
+    driver = Driver(SPEC, 7, leave=A)
+    delayed = [
+        Sample("agilo/cmd_vel", VelocityCommand(stamp_ns, v, 0.0), at_ns, k, A)
+        for k, (stamp_ns, v, at_ns) in enumerate(
+            [(50 * MS, 0.5, 0), (150 * MS, 0.4, 250 * MS), (160 * MS, 0.3, 511 * MS)]
+        )
+    ]
+    driver.take([arm(A), *delayed[:2]], {}, 250 * MS)
+    assert driver.guard.output(250 * MS) == (0.4, 0.0)
+    driver.take(delayed[2:], {}, 511 * MS)
+    assert driver.guard.output(511 * MS) == (0.4, 0.0)
+    assert driver.guard.refused == {CommandRefusal.LATE: 1}
 
 
 def test_the_state_is_published_at_10_hz_and_on_change():
