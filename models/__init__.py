@@ -2,6 +2,6 @@
 
 import os
 
-# Since 1.29 onnxruntime's wheel starts threads that keep a database below the home folder and report sessions and models
-# to its vendor: traffic that no robot may send unasked, and threads beside the loop. It reads this when it is imported.
+# Since 1.29 onnxruntime's wheels start threads that keep a database in the home folder and report sessions and models
+# to the vendor: traffic that nobody asked for, and threads beside the loop. They read this variable when imported.
 os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
