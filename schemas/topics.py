@@ -13,6 +13,7 @@ from tailor.schemas import messages as m
 from tailor.schemas.messages import soccer
 
 Priority = Literal["real_time", "interactive_high", "data"]
+Source = Literal["driver", "executive", "people", "simulator", "player", "launcher"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +23,16 @@ class Topic:
     key: str
     type: type[m.Message]
     rate_hz: float  # 0: on demand or on change
-    source: Literal["driver", "executive", "people", "simulator"]
+    source: Source
     fresh_s: float | None = None  # a message older than this is stale; None: never
     priority: Priority = "data"
     recorded: bool = True
     max_bytes: int = 4096
+
+    @property
+    def drives(self) -> bool:
+        """Whether it moves, arms or stops a robot."""
+        return self.priority == "real_time" or self.type is m.ArmRequest
 
 
 STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
@@ -41,8 +47,9 @@ TOPICS: dict[str, Topic] = {
     "currents": Topic("{robot}/currents", m.MotorCurrents, 10, "driver"),
     "driver": Topic("{robot}/driver", m.DriverState, 10, "driver", STALE_S, "interactive_high"),
     "arm_request": Topic("{robot}/arm_request", m.ArmRequest, 0, "people", priority="interactive_high"),
+    "self_arm": Topic("{robot}/self_arm", m.ArmRequest, 0, "executive", priority="interactive_high"),  # by its leave
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
-    "clock": Topic("clock", m.Clock, 0, "people", recorded=False),  # of a replay
+    "clock": Topic("clock", m.Clock, 0, "player", recorded=False),  # of a replay
     "truth": Topic("{robot}/sim/truth", soccer.SoccerGroundTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),

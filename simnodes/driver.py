@@ -12,7 +12,8 @@ from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Guard, Reason
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
-TOPICS = ("arm_request", "estop")  # inputs of every driver besides its command
+SELF_ARM = "self_arm"  # requests of the executive; those of people come on another topic, which it may not write
+TOPICS = ("arm_request", SELF_ARM, "estop")  # inputs of every driver besides its command
 
 
 class Driver:
@@ -52,7 +53,7 @@ class Driver:
             message = sample.message
             if isinstance(message, ArmRequest):
                 if not (stopped and message.arm):
-                    self._arm(message, sample.sender, now_ns)
+                    self._arm(message, sample, now_ns)
             elif not isinstance(message, EStop):
                 values, stamp_ns = command_values(message, self._axes), getattr(message, "stamp_ns", 0)
                 self.guard.command(sample.arrival_ns, sample.sender, sample.sequence, values, stamp_ns)
@@ -85,12 +86,13 @@ class Driver:
             refused_counts=tuple(refused.values()),
         )
 
-    def _arm(self, request: ArmRequest, sender: str, now_ns: int) -> None:
+    def _arm(self, request: ArmRequest, sample: Sample, now_ns: int) -> None:
+        by_people = not sample.key.endswith(f"/{SELF_ARM}")
         if request.arm:
-            armed = request.sender or sender
-            self.guard.arm(now_ns, armed, request.epoch, request.reset, by_people=armed != sender)
+            sender = (request.sender if by_people else "") or sample.sender
+            self.guard.arm(now_ns, sender, request.epoch, request.reset, by_people)
         elif request.epoch in (0, self.guard.epoch):
-            self.guard.disarm(Reason.DISARM_REQUEST, f"by {(sender or 'unknown')[:8]}")
+            self.guard.disarm(Reason.DISARM_REQUEST, f"by {(sample.sender or 'unknown')[:8]}")
 
 
 def command_values(message: Message, axes: Sequence[str]) -> tuple[float, ...]:

@@ -32,7 +32,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
         outputs.append(Output(context.domain.command_topic, command))
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
-        outputs.append(Output("arm_request", request))
+        outputs.append(Output("self_arm", request))
     if finished is not None:
         outputs.append(Output("finished", finished))
     return state, tuple(outputs)

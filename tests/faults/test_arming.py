@@ -38,7 +38,8 @@ class Robot(RuleBasedStateMachine):
 
     def send(self, *messages, by="") -> None:
         by = by or self.executive
-        samples = [Sample("", message, self.now_ns, next(self.numbers), by) for message in messages]
+        key = "agilo/arm_request" if by == PERSON else "agilo/self_arm"
+        samples = [Sample(key, message, self.now_ns, next(self.numbers), by) for message in messages]
         self.driver.take(samples, {}, self.now_ns)
 
     @rule(named=st.booleans(), reset=st.booleans())

@@ -14,7 +14,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
 
 SUBSTITUTES = ("executive",)
-OMITTED = tuple(name for name, topic in TOPICS.items() if topic.source in ("executive", "people"))
+OMITTED = tuple(name for name, topic in TOPICS.items() if topic.source in ("executive", "people", "player"))
 WAIT_S = 10.0  # for a status of the live executive
 
 

@@ -14,7 +14,8 @@ SPEC = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)
 
 def arm(by=A, at_ns=0, **changes):
     request = {"arm": True, "reset": False, "sender": "", "epoch": 0, **changes}
-    return Sample("agilo/arm_request", ArmRequest(**request), at_ns, 1, by)
+    topic = "arm_request" if by == B else "self_arm"  # B is a person
+    return Sample(f"agilo/{topic}", ArmRequest(**request), at_ns, 1, by)
 
 
 def command(v, sequence, sender=A, at_ns=0):

@@ -31,7 +31,7 @@ from tailor.tools.cli.number_checks import check_within
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
 from tailor.tools.recordings.substitution import OMITTED, SUBSTITUTES, armed_for, live_executive
 
-DRIVING = ("arm_request", "estop", *(name for name, t in TOPICS.items() if t.priority == "real_time"))
+DRIVING = tuple(name for name, topic in TOPICS.items() if topic.drives)
 LISTEN_S = 0.5  # for a live driver; drivers publish at 10 Hz
 MAX_S = 1e9  # beyond any recording
 MAX_CLOCK_HZ = 10_000.0
