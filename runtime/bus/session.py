@@ -1,17 +1,16 @@
-"""The only module that imports zenoh: sessions with their publishers, inboxes, services and subscriptions."""
+"""The only module that imports zenoh: a session with its publishers, inboxes, services and subscriptions."""
 
 from __future__ import annotations
 
 import secrets
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
 import zenoh
 
-from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.attachment import SENDER_BYTES
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
@@ -19,12 +18,10 @@ from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import TOPICS, Topic, key_of
 from tailor.schemas.typesystem import ros_type
 
-SELF_CONNECT_MS = 500
 MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
@@ -38,48 +35,27 @@ def encoding_of(kind: type) -> str:
     return f"application/cdr;{ros_type(kind)}"
 
 
-@contextmanager
-def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
-    """Session that routes for all clients of the endpoint `listen`; it publishes and subscribes like a client.
-
-    Raises:
-      UsageError: The port is in use, or cannot be listened at.
-    """
-    config = zenoh.Config.from_json5(zenoh_config.router(listen))
-    try:
-        opened = zenoh.open(config)
-    except zenoh.ZError as error:
-        reason = "the port is in use" if "in use" in str(error) else "cannot listen there"
-        raise UsageError(f"bus endpoint {listen}: {reason}; expected a free one, see --connect") from error
-    with opened:
-        # zenoh starts its serving threads with the first client. Connect once, so that they can be elevated now.
-        with suppress(zenoh.ZError), zenoh.open(zenoh.Config.from_json5(zenoh_config.client(listen, SELF_CONNECT_MS))):
-            pass
-        elevate_bus_threads()
-        yield Session(opened)
+class CannotOpenError(Exception):
+    """No session opens with a configuration; the message is zenoh's."""
 
 
 @contextmanager
-def open_client(
-    connect: str = zenoh_config.DEFAULT_ENDPOINT, timeout_s: float = 3.0, sender: str = ""
-) -> Iterator[Session]:
-    """Session with the router at the endpoint `connect`.
+def opened(config: str, sender: str = "") -> Iterator[Session]:
+    """Session with a configuration of zenoh_config.py.
 
     Args:
-      connect: Endpoint of the router.
-      timeout_s: Time limit for the connection.
+      config: zenoh's configuration in JSON.
       sender: Id of the session on the bus, 32 hex digits; empty: random.
 
     Raises:
-      UsageError: No router responds within `timeout_s`.
+      CannotOpenError: See its message.
     """
-    config = zenoh.Config.from_json5(zenoh_config.client(connect, int(timeout_s * 1000)))
     try:
-        opened = zenoh.open(config)
+        session = zenoh.open(zenoh.Config.from_json5(config))
     except zenoh.ZError as error:
-        raise UsageError(f"bus endpoint {connect}: no router responds; start one with `tailor bus`") from error
-    with opened:
-        yield Session(opened, sender)
+        raise CannotOpenError(str(error)) from error
+    with session:
+        yield Session(session, sender)
 
 
 class Session:

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tailor.runtime.bus import access
+from tailor.runtime.bus.credentials import Identity, Password
+from tailor.runtime.bus.run_folder import RunFolder
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import ArmRequest, EStop
-from tailor.schemas.topics import TOPICS
+from tailor.schemas.roles import ROLES
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a peer that is silent for longer counts as gone
@@ -20,7 +23,6 @@ CONNECT_MS = 3000
 RETRY_MS = 200  # zenoh's back-off reaches 4 s; data must be back within a second
 MAX_PENDING = 2000  # connections that have sent nothing yet; zenoh's 100 let a port scan lock everyone out
 ACCEPT_MS = 1000  # such a connection is closed then
-REQUEST_LIMIT_HZ = 1000.0  # a flood brings 50 000; a release and a stop 1 ms apart both pass
 PRIORITIES = (
     "control",
     "real_time",
@@ -58,30 +60,81 @@ def _base(mode: str) -> dict[str, Any]:
     }
 
 
-def _rate_limits() -> dict[str, Any]:
-    """Rate limits for each peer on the keys of e-stops and arming; the router drops what exceeds them.
-
-    Commands have none: of two in quick succession the newer one would be dropped.
-    """
-    topics = [topic for topic in TOPICS.values() if topic.type in (EStop, ArmRequest)]
-    rules = [{"key_expr": topic.key.format(robot="*"), "freq": REQUEST_LIMIT_HZ} for topic in topics]
-    return {"id": "floods", "messages": ["put", "delete"], "flows": ["ingress"], "rules": rules}
-
-
 def router(listen: str) -> str:
-    """JSON of a router that listens at one endpoint and connects to none; a port in use is an error at once."""
-    listening = {"endpoints": [check_endpoint(listen)], "timeout_ms": 0, "exit_on_failure": True}
-    config = _base("router") | {"downsampling": [_rate_limits()]}
+    """JSON of an open router that listens at one endpoint and connects to none; a port in use is an error at once."""
+    config = _listening(check_endpoint(listen)) | {"downsampling": access.rate_limits()}
+    return json.dumps(config | {"connect": {"endpoints": []}})
+
+
+def local_router(folder: RunFolder) -> str:
+    """JSON of the router of one machine: it listens at the socket of a run folder alone, secured if that has users."""
+    config = _listening(folder.socket_endpoint) | {"connect": {"endpoints": []}}
+    config |= {"downsampling": access.rate_limits(access.LOCAL_LIMIT_HZ)}
+    if folder.users_file.exists():
+        subjects = [{"id": name, "usernames": [name]} for name in (*ROLES, access.GATEWAY)]
+        config |= _secured(subjects)
+        config["transport"]["auth"] = {"usrpwd": {"dictionary_file": str(folder.users_file)}}
+    return json.dumps(config)
+
+
+def gateway(listen: str, folder: RunFolder, identity: Identity | None, names: Mapping[str, str]) -> str:
+    """JSON of a router that listens for other sessions and passes what they may publish on to the local router.
+
+    Args:
+      listen: Its endpoint.
+      folder: Of the local router.
+      identity: Certificate of a TLS endpoint; None: passwords as the local router, if it has any.
+      names: Role of each certificate's common name, for a TLS endpoint.
+    """
+    config = _listening(check_endpoint(listen)) | {"downsampling": access.rate_limits()}
+    config["connect"] = _connecting([folder.socket_endpoint], CONNECT_MS)
+    password = folder.password(access.GATEWAY)
+    if password is not None:
+        own = Password(access.GATEWAY, password)
+        config["transport"]["auth"] = own.auth(folder.users_file if identity is None else None)
+        config |= _secured([*_subjects(names, identity), {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}])
+    if identity is not None:
+        config["transport"]["link"]["tls"] = identity.listening()
+    return json.dumps(config)
+
+
+def _subjects(names: Mapping[str, str], identity: Identity | None) -> list[dict[str, Any]]:
+    if identity is None:
+        return [{"id": role, "usernames": [role]} for role in ROLES]
+    common = {role: sorted(name for name, each in names.items() if each == role) for role in ROLES}
+    return [{"id": role, "cert_common_names": found} for role, found in common.items() if found]
+
+
+def client(
+    connect: Sequence[str],
+    timeout_ms: int = CONNECT_MS,
+    password: Password | None = None,
+    identity: Identity | None = None,
+) -> str:
+    """JSON of a client of the router at one of the endpoints; it does not listen, and reconnects after a restart."""
+    config = _base("client") | {"connect": _connecting(connect, timeout_ms), "listen": {"endpoints": []}}
+    if password is not None:
+        config["transport"]["auth"] = password.auth()
+    if identity is not None:
+        config["transport"]["link"]["tls"] = identity.connecting()
+    return json.dumps(config)
+
+
+def _listening(endpoint: str) -> dict[str, Any]:
+    config = _base("router")
+    config["listen"] = {"endpoints": [endpoint], "timeout_ms": 0, "exit_on_failure": True}
     config["transport"]["unicast"] = {"accept_pending": MAX_PENDING, "accept_timeout": ACCEPT_MS}
-    return json.dumps(config | {"listen": listening, "connect": {"endpoints": []}})
+    return config
 
 
-def client(connect: str, timeout_ms: int = CONNECT_MS) -> str:
-    """JSON of a client of the router at `connect`; it does not listen, and reconnects to a router that restarts."""
-    connecting = {
-        "endpoints": [check_endpoint(connect)],
+def _connecting(endpoints: Sequence[str], timeout_ms: int) -> dict[str, Any]:
+    return {
+        "endpoints": list(endpoints),
         "timeout_ms": timeout_ms,
         "exit_on_failure": True,
         "retry": {"period_init_ms": RETRY_MS, "period_max_ms": RETRY_MS, "period_increase_factor": 1},
     }
-    return json.dumps(_base("client") | {"connect": connecting, "listen": {"endpoints": []}})
+
+
+def _secured(subjects: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    return {"access_control": access.access_control(subjects), "low_pass_filter": access.size_limits()}

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from tailor.runtime.bus.session import open_client, open_router
+from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand

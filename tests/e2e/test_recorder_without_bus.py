@@ -3,7 +3,7 @@
 import signal
 import subprocess
 
-from tailor.runtime.bus.session import open_router
+from tailor.runtime.bus.opening import open_router
 from tailor.runtime.processes.child import tailor
 from tailor.tools.commands.run.record import DISCONNECTED, RECONNECTED
 from tests.support.bus_system import ROOT, free_endpoint

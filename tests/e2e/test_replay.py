@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import pytest
 
-from tailor.runtime.bus.session import open_client, open_router
+from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example

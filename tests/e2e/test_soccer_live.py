@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus, VelocityCommand
 from tailor.schemas.messages.soccer import SoccerGroundTruth

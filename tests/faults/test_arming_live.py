@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
 from tailor.schemas.messages.soccer import SoccerGroundTruth

@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from tailor.runtime.bus.session import open_client, open_router
+from tailor.runtime.bus.opening import open_client, open_router
 from tailor.runtime.processes.child import Child
 from tailor.schemas.messages import ArmRequest, DriverState, EStop
 from tests.support.bus_system import driving, free_endpoint, guarded_robot, moving, outputs

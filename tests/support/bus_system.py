@@ -4,7 +4,7 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-from tailor.runtime.bus.session import open_client, open_router
+from tailor.runtime.bus.opening import open_client, open_router
 from tailor.runtime.processes.child import Child
 from tailor.schemas.errors import UsageError
 from tailor.tools.launch.system import free_endpoint

@@ -14,7 +14,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tailor.runtime.bus.session import Session, open_router
+from tailor.runtime.bus.opening import open_router
+from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.errors import UsageError

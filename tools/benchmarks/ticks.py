@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from tailor.runtime.bus.session import Session, open_client
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected

@@ -13,7 +13,8 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.runtime.bus.attachment import SENDER_BYTES
 from tailor.runtime.bus.inbox import Inbox
-from tailor.runtime.bus.session import Session, open_router
+from tailor.runtime.bus.opening import open_router
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
 from tailor.runtime.processes.child import Child, tailor

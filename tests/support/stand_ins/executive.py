@@ -2,7 +2,7 @@
 
 import sys
 
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
 from tailor.runtime.stopping import stop_on_signals

@@ -6,7 +6,7 @@ Arguments: endpoint, file.
 import sys
 import time
 
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec

@@ -50,7 +50,7 @@ def test_without_privileges_the_refusals_are_reported():
 
 ELEVATED = """
 import json, os, sys
-from tailor.runtime.bus.session import open_router
+from tailor.runtime.bus.opening import open_router
 with open_router(sys.argv[1]):
     threads = {t: open(f"/proc/self/task/{t}/comm").read().strip() for t in os.listdir("/proc/self/task")}
     print(json.dumps({name: os.sched_getscheduler(int(t)) for t, name in threads.items()}))

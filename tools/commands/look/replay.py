@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from tailor.runtime.bus.session import Session, open_client
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, PlaybackClock
 from tailor.runtime.recordings.player import PlaybackStats, Player

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec

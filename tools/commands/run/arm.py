@@ -6,7 +6,8 @@ import argparse
 import re
 import time
 
-from tailor.runtime.bus.session import Session, open_client
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text

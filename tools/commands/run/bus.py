@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from tailor.runtime.bus.session import open_router
+from tailor.runtime.bus.opening import open_router
 from tailor.runtime.stopping import stop_on_signals
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 

@@ -6,8 +6,8 @@ import argparse
 import time
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.session import open_client
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import DriverState, EStop
 from tailor.schemas.topics import TOPICS

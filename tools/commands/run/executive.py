@@ -10,7 +10,7 @@ from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.context import Context, check_goal
 from tailor.executive.shell import Shell
 from tailor.runtime import realtime
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock, wall_ns
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.stopping import stop_on_signals

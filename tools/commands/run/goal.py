@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 
 

@@ -18,8 +18,9 @@ from rich.console import Console
 from rich.live import Live
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.service import ServiceServer
-from tailor.runtime.bus.session import Session, open_client
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata

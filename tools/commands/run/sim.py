@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tailor.runtime import realtime
-from tailor.runtime.bus.session import open_client
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec

@@ -1,0 +1,107 @@
+"""Who may publish, call and serve what on a secured bus: zenoh's rules, from the tables of topics and services.
+
+Everything that is not allowed here is denied (an allow-list): a put on a pattern such as `agilo/*` matches no rule.
+Everybody on the bus may subscribe to everything. This module does not import zenoh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from tailor.schemas.messages import ArmRequest, EStop
+from tailor.schemas.roles import ROLES, Role
+from tailor.schemas.services import SERVICES
+from tailor.schemas.topics import TOPICS, Source, Topic
+
+GATEWAY = "gateway"  # user name of the process that listens for other machines; it has applied these rules already
+PEER_LIMIT_HZ = 1000.0  # requests of one peer; a release and a stop 1 ms apart both pass, a flood brings 50 000
+LOCAL_LIMIT_HZ = 5000.0  # of all peers behind one gateway together
+MAX_REQUEST_BYTES = 65_536  # of a service
+_PUBLISHERS: dict[Source, tuple[Role, ...]] = {
+    "executive": ("executive", "player"),
+    "driver": ("driver", "player"),
+    "simulator": ("driver", "player"),
+    "people": ("people",),
+    "player": ("player",),
+    "launcher": (),  # publishes as the router itself
+}
+
+
+def may_publish(topic: Topic) -> tuple[Role, ...]:
+    """Roles that may publish a topic; a player of recordings never drives, arms or stops a robot."""
+    roles = _PUBLISHERS[topic.source]
+    return tuple(role for role in roles if role != "player") if topic.drives else roles
+
+
+def access_control(subjects: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """zenoh's `access_control`.
+
+    Args:
+      subjects: One for each role that may connect: `id` is the role (or GATEWAY), besides `usernames` or
+        `cert_common_names`.
+    """
+    rules = [*_common_rules(), *(rule for role in ROLES for rule in _rules_of(role))]
+    policies = [{"subjects": [subject["id"]], "rules": _rule_names(subject["id"], rules)} for subject in subjects]
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": list(subjects),
+        "policies": policies,
+    }
+
+
+def size_limits() -> list[dict[str, Any]]:
+    """zenoh's `low_pass_filter`: the largest payload of each topic, and of requests."""
+    sizes = sorted({topic.max_bytes for topic in TOPICS.values()})
+    limits = [
+        {"messages": ["put"], "key_exprs": _keys(t for t in TOPICS.values() if t.max_bytes == size), "size_limit": size}
+        for size in sizes
+    ]
+    requests = {"messages": ["query"], "key_exprs": ["**"], "size_limit": MAX_REQUEST_BYTES}
+    return [{"flows": ["ingress"], **limit} for limit in (*limits, requests)]
+
+
+def rate_limits(limit_hz: float = PEER_LIMIT_HZ) -> list[dict[str, Any]]:
+    """zenoh's `downsampling`: rates of each peer on the keys of e-stops and arming; the router drops what exceeds them.
+
+    Commands have none: of two in quick succession the newer one would be dropped.
+    """
+    topics = [topic for topic in TOPICS.values() if topic.type in (EStop, ArmRequest)]
+    rules = [{"key_expr": key, "freq": limit_hz} for key in _keys(topics)]
+    return [{"id": "floods", "messages": ["put", "delete"], "flows": ["ingress"], "rules": rules}]
+
+
+def _common_rules() -> list[dict[str, Any]]:
+    everything = ["**"]
+    inward, both = ["ingress"], ["ingress", "egress"]
+    heard = ["put", "delete", "reply", "query", "declare_queryable"]
+    whole = [*heard, "declare_subscriber", "liveliness_token", "liveliness_query", "declare_liveliness_subscriber"]
+    return [
+        _rule("subscribe", ["declare_subscriber"], both, everything),
+        _rule("hear", heard, ["egress"], everything),
+        _rule(GATEWAY, whole, inward, everything),
+    ]
+
+
+def _rules_of(role: Role) -> list[dict[str, Any]]:
+    published = _keys(topic for topic in TOPICS.values() if role in may_publish(topic))
+    called = [service.pattern for service in SERVICES.values() if role in service.callers]
+    served = [service.pattern for service in SERVICES.values() if role == service.server]
+    rows = [("publish", ["put"], published), ("call", ["query"], called)]
+    rows += [("serve", ["declare_queryable", "reply"], served)]
+    return [_rule(f"{role} {name}", kinds, ["ingress"], keys) for name, kinds, keys in rows if keys]
+
+
+def _rule_names(subject: str, rules: Sequence[Mapping[str, Any]]) -> list[str]:
+    own = [rule["id"] for rule in rules if rule["id"] == subject or rule["id"].startswith(f"{subject} ")]
+    return ["subscribe", "hear", *own]
+
+
+def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> dict[str, Any]:
+    return {"id": name, "messages": messages, "flows": flows, "permission": "allow", "key_exprs": keys}
+
+
+def _keys(topics: Any) -> list[str]:
+    return sorted({topic.key.format(robot="*") for topic in topics})

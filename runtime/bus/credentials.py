@@ -1,0 +1,46 @@
+"""What a session proves itself with: the password of a role, or the certificate of a name (mutual TLS)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Password:
+    """A role and its password in one run."""
+
+    user: str
+    password: str
+
+    def auth(self, dictionary: Path | None = None) -> dict[str, Any]:
+        """zenoh's `transport/auth`; with a dictionary, others must prove themselves by it, too."""
+        own = {"user": self.user, "password": self.password}
+        return {"usrpwd": own | ({"dictionary_file": str(dictionary)} if dictionary else {})}
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """A certificate, its private key, and the authority that both sides trust (PEM files in one folder)."""
+
+    folder: Path
+
+    def listening(self) -> dict[str, Any]:
+        """zenoh's `transport/link/tls` of a router: it refuses whoever has no certificate of the authority."""
+        return self._files("listen") | self._files("connect")
+
+    def connecting(self) -> dict[str, Any]:
+        """zenoh's `transport/link/tls` of a client: it checks the name of the router."""
+        return self._files("connect") | {"verify_name_on_connect": True}
+
+    def _files(self, side: str) -> dict[str, Any]:
+        return {
+            "root_ca_certificate": str(self.folder / AUTHORITY),
+            "enable_mtls": True,
+            f"{side}_private_key": str(self.folder / PRIVATE_KEY),
+            f"{side}_certificate": str(self.folder / CERTIFICATE),
+        }
+
+
+AUTHORITY, CERTIFICATE, PRIVATE_KEY = "authority.pem", "certificate.pem", "key.pem"

@@ -1,0 +1,133 @@
+"""Opens sessions of the bus: the router of a machine, a gateway for other sessions, and clients."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+
+from tailor.runtime.bus import access, zenoh_config
+from tailor.runtime.bus.credentials import Identity, Password
+from tailor.runtime.bus.run_folder import SOCKET, RunFolder, hosted, run_folder
+from tailor.runtime.bus.session import CannotOpenError, Session, opened
+from tailor.runtime.realtime import elevate_bus_threads
+from tailor.schemas.errors import UsageError
+from tailor.schemas.roles import ROLES, Role
+
+SELF_CONNECT_MS = 500
+PROBE_S = 0.5
+
+
+@contextmanager
+def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
+    """Router of an open bus at one endpoint, without local socket, passwords and rules; also a session like a client's.
+
+    Raises:
+      UsageError: The port is in use, or cannot be listened at.
+    """
+    with _router(zenoh_config.router(listen), listen) as session:
+        _start_threads(zenoh_config.client([listen], SELF_CONNECT_MS))
+        yield session
+
+
+@contextmanager
+def open_local_router(endpoint: str, secured: bool = True) -> Iterator[tuple[Session, RunFolder]]:
+    """Router of this machine's processes; `open_gateway` listens at the endpoint itself, for all others.
+
+    Args:
+      endpoint: Names the bus; the local socket is in its run folder.
+      secured: Demand the passwords of this run, and apply the access rules.
+
+    Raises:
+      UsageError: The bus runs already, or its folder cannot be made.
+    """
+    users = (*ROLES, access.GATEWAY) if secured else ()
+    with hosted(endpoint, users) as folder, _router(zenoh_config.local_router(folder), endpoint) as session:
+        (folder.path / SOCKET).chmod(0o660)  # the folder decides who reaches it
+        _start_threads(_local_client(folder, "observer", SELF_CONNECT_MS))
+        yield session, folder
+
+
+@contextmanager
+def open_gateway(
+    listen: str, folder: RunFolder, identity: Identity | None = None, names: Mapping[str, Role] | None = None
+) -> Iterator[Session]:
+    """Router for other sessions, linked to the local router of `folder`; see `zenoh_config.gateway`.
+
+    Raises:
+      UsageError: The port is in use, cannot be listened at, or there is no local router.
+    """
+    with _router(zenoh_config.gateway(listen, folder, identity, names or {}), listen) as session:
+        yield session
+
+
+@contextmanager
+def open_client(
+    connect: str = zenoh_config.DEFAULT_ENDPOINT,
+    timeout_s: float = 3.0,
+    sender: str = "",
+    role: Role = "observer",
+    identity: Identity | None = None,
+) -> Iterator[Session]:
+    """Session with the bus at the endpoint `connect`; through its local socket if it runs on this machine.
+
+    Args:
+      connect: Endpoint that names the bus.
+      timeout_s: Time limit for the connection.
+      sender: Id of the session on the bus, 32 hex digits; empty: random.
+      role: Decides what the session may publish, call and serve on a secured bus.
+      identity: Certificate for a TLS endpoint, whose name decides instead of `role`.
+
+    Raises:
+      UsageError: No router responds within `timeout_s`, or it refuses this user.
+    """
+    zenoh_config.check_endpoint(connect)
+    folder, timeout_ms = run_folder(connect), int(timeout_s * 1000)
+    if identity is None and folder.running():
+        config = _local_client(folder, role, timeout_ms)
+    else:
+        config = zenoh_config.client([connect], timeout_ms, identity=identity)
+    with _opened(config, lambda _: f"bus endpoint {connect}: {_why_no_session(connect)}", sender) as session:
+        yield session
+
+
+def _local_client(folder: RunFolder, role: Role, timeout_ms: int) -> str:
+    password = folder.password(role)
+    credentials = None if password is None else Password(role, password)
+    return zenoh_config.client([folder.socket_endpoint], timeout_ms, credentials)
+
+
+@contextmanager
+def _router(config: str, listen: str) -> Iterator[Session]:
+    def explain(cause: str) -> str:
+        reason = "the port is in use" if "in use" in cause else "cannot listen there"
+        return f"bus endpoint {listen}: {reason}; expected a free one, see --connect"
+
+    with _opened(config, explain) as session:
+        yield session
+
+
+@contextmanager
+def _opened(config: str, explain: Callable[[str], str], sender: str = "") -> Iterator[Session]:
+    with ExitStack() as stack:
+        try:
+            session = stack.enter_context(opened(config, sender))
+        except CannotOpenError as error:
+            raise UsageError(explain(str(error))) from error
+        yield session
+
+
+def _start_threads(client: str) -> None:
+    """Connect once: zenoh starts its serving threads with the first client, and they can be elevated then."""
+    with suppress(CannotOpenError), opened(client):
+        pass
+    elevate_bus_threads()
+
+
+def _why_no_session(endpoint: str) -> str:
+    host, _, port = endpoint.partition("/")[2].rpartition(":")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
+    except OSError:
+        return "no router responds; start one with `tailor bus`"
+    return "it opens no session here: the bus belongs to another user, or this one has no key for it (`tailor keys`)"

@@ -1,0 +1,134 @@
+"""Folder of one running bus: its local socket and the passwords of this run, readable by the user who started it.
+
+Processes of the same user find it by the bus's endpoint. Whoever cannot read it opens no session. If TAILOR_RUN_DIR is
+set, as for a service, the group of that folder may read it as well.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import re
+import secrets
+import socket
+import stat
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from tailor.schemas.errors import UsageError
+
+VARIABLE = "TAILOR_RUN_DIR"  # replaces the folder of all runs, e.g. with a service's /run/tailor
+SOCKET, USERS, LOCK = "bus.sock", "users", "lock"
+MAX_SOCKET_BYTES = 100  # Linux: 107, less zenoh's own suffix ".lock"
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolder:
+    """One bus on this machine.
+
+    Attributes:
+      path: The folder.
+    """
+
+    path: Path
+
+    @property
+    def socket_endpoint(self) -> str:
+        """zenoh's endpoint of the local socket."""
+        return f"unixsock-stream/{self.path / SOCKET}"
+
+    @property
+    def users_file(self) -> Path:
+        """zenoh's dictionary of users and passwords; missing on an open bus."""
+        return self.path / USERS
+
+    def running(self) -> bool:
+        """Whether a router of this bus listens on this machine."""
+        with socket.socket(socket.AF_UNIX) as probe:
+            try:
+                probe.connect(str(self.path / SOCKET))
+            except OSError:
+                return False
+        return True
+
+    def password(self, user: str) -> str | None:
+        """Password of a role in this run; None on an open bus.
+
+        Raises:
+          UsageError: The bus has passwords, but none for this role or none that this user may read.
+        """
+        try:
+            lines = self.users_file.read_text().splitlines()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise UsageError(f"{self.users_file}: {error.strerror}, expected a bus of the same user") from error
+        found = dict(line.split(":", 1) for line in lines).get(user)
+        if found is None:
+            raise UsageError(f"{self.users_file}: no password for the role {user}")
+        return found
+
+
+def run_folder(endpoint: str) -> RunFolder:
+    """Folder of the bus that listens at `endpoint`, whether it runs or not."""
+    return RunFolder(_base() / re.sub(r"[^A-Za-z0-9.]+", "-", endpoint).strip("-"))
+
+
+@contextmanager
+def hosted(endpoint: str, users: Sequence[str]) -> Iterator[RunFolder]:
+    """Own the folder of a new bus, with a fresh password for each of `users` (none: an open bus); emptied at the end.
+
+    Raises:
+      UsageError: The bus runs already, or the folder cannot be made or is not private.
+    """
+    folder = run_folder(endpoint)
+    _make_private(folder.path)
+    if len(str(folder.path / SOCKET)) > MAX_SOCKET_BYTES:
+        raise UsageError(f"{folder.path}: too long for a socket, expected a shorter {VARIABLE}")
+    with (folder.path / LOCK).open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise UsageError(f"bus endpoint {endpoint}: it runs already; expected a free one, see --connect") from error
+        try:
+            _empty(folder.path)
+            if users:
+                _write_passwords(folder.users_file, users)
+            yield folder
+        finally:
+            _empty(folder.path)
+
+
+def _base() -> Path:
+    if VARIABLE in os.environ:
+        return Path(os.environ[VARIABLE])
+    if "XDG_RUNTIME_DIR" in os.environ:
+        return Path(os.environ["XDG_RUNTIME_DIR"]) / "tailor"
+    return Path(tempfile.gettempdir()) / f"tailor-{os.getuid()}"
+
+
+def _make_private(path: Path) -> None:
+    try:
+        path.mkdir(mode=0o750 if VARIABLE in os.environ else 0o700, parents=True, exist_ok=True)
+        for each in (path.parent, path):
+            status = each.lstat()
+            if not stat.S_ISDIR(status.st_mode) or status.st_uid not in (0, os.getuid()) or status.st_mode & 0o022:
+                raise UsageError(f"{each}: expected a folder that only this user may write, see {VARIABLE}")
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected a place for a private folder, see {VARIABLE}") from error
+
+
+def _write_passwords(path: Path, users: Sequence[str]) -> None:
+    text = "".join(f"{user}:{secrets.token_hex(16)}\n" for user in users)
+    mode = 0o640 if VARIABLE in os.environ else 0o600
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "w") as file:
+        file.write(text)
+
+
+def _empty(folder: Path) -> None:
+    for path in folder.iterdir():
+        if path.name != LOCK:
+            path.unlink()
