@@ -16,6 +16,7 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock
 from tailor.runtime.loop import Loop, Period
 from tailor.runtime.processes.external_planner import ExternalPlanner
+from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
@@ -30,7 +31,14 @@ TOPICS = (
 class Shell:
     """One executive on the bus."""
 
-    def __init__(self, context: Context, session: Session, clock: Clock, provenance: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        context: Context,
+        session: Session,
+        clock: Clock,
+        provenance: Mapping[str, Any],
+        notifier: Notifier = SILENT,
+    ) -> None:
         """Create subscribers and publishers; nothing is published before `run`.
 
         Args:
@@ -38,10 +46,12 @@ class Shell:
           session: Session on the bus.
           clock: Monotonic clock.
           provenance: Published once a second, so that the run can be repeated.
+          notifier: Receives that the executive is ready, and a report of every tick.
         """
         domain = context.domain
         self._context = context
         self._clock = clock
+        self._notifier = notifier
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
         self._goals = session.service_server("exec/goal")
@@ -62,13 +72,16 @@ class Shell:
           The state after the last tick.
         """
         loop = Loop(PERIOD_NS, self._clock)
+        self._notifier.ready()
         try:
             while True:
                 period = loop.wait_for_next_period()
                 stopping = until(self._state)
                 self._tick(period, goal, stopping)
                 goal = ""
+                self._notifier.alive()
                 if stopping:
+                    self._notifier.stopping()
                     return self._state
                 realtime.collect_young()
         finally:

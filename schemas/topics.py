@@ -61,6 +61,7 @@ TOPICS: dict[str, Topic] = {
     "refinement": Topic("exec/refinement", m.RefinementReport, 0, "executive", max_bytes=65536),
     "tick": Topic("exec/tick", m.TickReport, 10, "executive", max_bytes=65536),
     "provenance": Topic("exec/provenance", m.Provenance, 1, "executive", max_bytes=262144),
+    "processes": Topic("launch/processes", m.ProcessStates, 1, "launcher"),
 }
 
 

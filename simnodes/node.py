@@ -11,6 +11,7 @@ from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop, Period
+from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.simnodes.body import Reading
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
@@ -61,10 +62,18 @@ class Node:
         self._services = Services(world, servers, on_reset=lambda: self.driver.guard.disarm(Reason.WORLD_RESET))
         self._frozen_ns = 0  # real time during which the world was paused; the guard's clock leaves it out
 
-    def run(self, stopped: Callable[[], bool]) -> None:
-        """Run period after period until `stopped()` is true; the robot is disarmed at the end."""
+    def run(self, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> None:
+        """Run period after period until `stopped()` is true; the robot is disarmed at the end.
+
+        Args:
+          stopped: Called before every period.
+          notifier: Receives that the node is ready, and a report of every period.
+        """
+        notifier.ready()
         while not stopped():
             self._run_period(self._loop.wait_for_next_period())
+            notifier.alive()
+        notifier.stopping()
         self.driver.guard.disarm(Reason.SHUTDOWN)
         self._publish_state(self._clock.now_ns())
 

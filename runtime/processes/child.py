@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import secrets
 import signal
 import subprocess
 import sys
@@ -11,7 +13,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from tailor.runtime.processes.notify import SOCKET_VARIABLE
+from tailor.runtime.processes.notify_socket import NotifySocket, Report
+
 STOP_S = 3.0  # enough to close files and stop the robot; then SIGKILL
+KILL_S = 5.0  # after SIGKILL; a process that hangs in the kernel is left to end when it can
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # idle BLAS threads would spin beside the loop
 _PARENT_DEATH_SIGNAL = str(Path(__file__).with_name("parent_death_signal.py"))
 
@@ -24,16 +30,28 @@ def bound_to_parent(argv: Sequence[str]) -> list[str]:
 class Child:
     """One running child process."""
 
-    def __init__(self, name: str, argv: Sequence[str], output: IO[str] | int | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        argv: Sequence[str],
+        output: IO[str] | int | None = None,
+        notify_folder: Path | None = None,
+    ) -> None:
         """Start `argv`; the kernel terminates it when this process dies.
 
         Args:
           name: Name of the process in messages.
           argv: Program and arguments.
           output: Destination of stdout and stderr; None: those of this process.
+          notify_folder: Folder, of this user alone, for the socket that the child reports to; None: it cannot report.
         """
         self.name = name
         environment = {**os.environ, **ONE_THREAD}
+        environment.pop(SOCKET_VARIABLE, None)  # that of this process itself, e.g. a service of systemd
+        self._socket: NotifySocket | None = None
+        if notify_folder is not None:
+            self._socket = NotifySocket(notify_folder / f"{name}-{secrets.token_hex(4)}")
+            environment[SOCKET_VARIABLE] = str(self._socket.path)
         # A session of its own: Ctrl-C reaches only the launcher, which then stops its children in order.
         self._process = subprocess.Popen(
             bound_to_parent(argv),
@@ -49,29 +67,35 @@ class Child:
         """Process id; exec of the program keeps it."""
         return self._process.pid
 
+    def report(self) -> Report:
+        """What the child reported since the last call."""
+        return Report() if self._socket is None else self._socket.poll(self.pid)
+
     def exit_code(self) -> int | None:
         """Exit code; None while the process runs; negative: the number of the signal that ended it."""
-        return self._process.poll()
+        code = self._process.poll()
+        if code is not None and self._socket is not None:
+            self._socket.close()
+        return code
 
     def wait(self, timeout_s: float) -> int | None:
         """Exit code, or None if the process still runs after `timeout_s`."""
-        try:
-            return self._process.wait(timeout_s)
-        except subprocess.TimeoutExpired:
-            return None
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout_s)
+        return self.exit_code()
 
-    def stop(self, timeout_s: float = STOP_S) -> int:
-        """Send SIGTERM, wait, then SIGKILL; returns the exit code."""
-        if self._process.poll() is None:
+    def stop(self, timeout_s: float = STOP_S) -> int | None:
+        """Send SIGTERM, wait, then SIGKILL; returns the exit code, or None as `kill` does."""
+        if self.exit_code() is None:
             self._process.send_signal(signal.SIGTERM)
             if self.wait(timeout_s) is None:
-                self.kill()
-        return self._process.wait()
+                return self.kill()
+        return self.exit_code()
 
-    def kill(self) -> None:
-        """Send SIGKILL and wait for the end."""
+    def kill(self, timeout_s: float = KILL_S) -> int | None:
+        """Send SIGKILL and wait for the end; returns the exit code, or None if the kernel has not ended it in time."""
         self._process.kill()
-        self._process.wait()
+        return self.wait(timeout_s)
 
 
 def tailor(*arguments: str) -> list[str]:

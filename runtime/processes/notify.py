@@ -59,7 +59,10 @@ class Notifier:
         self._unsent.update(variables)
         lines = "\n".join(f"{name}={value}" for name, value in self._unsent.items())
         try:
-            self._socket.sendto(lines.encode(), self._address)
+            self._socket.sendto(lines.encode(errors="replace"), self._address)
         except OSError:  # nobody reads: the next report repeats this one
             return
         self._unsent.clear()
+
+
+SILENT = Notifier("")  # of a process without supervisor

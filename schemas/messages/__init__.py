@@ -6,6 +6,7 @@ robot alone are imported from their own module, e.g. `tailor.schemas.messages.so
 
 from tailor.schemas.messages.driving import *
 from tailor.schemas.messages.executing import *
+from tailor.schemas.messages.launching import *
 from tailor.schemas.messages.message import *
 from tailor.schemas.messages.planning import *
 from tailor.schemas.messages.recording import *

@@ -6,7 +6,8 @@ from tailor.runtime.stopping import Stop
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.commands.run.letters import recorded_track
-from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
+from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.system import free_endpoint, run_system
 from tailor.tools.writing.measures import waypoint_errors_rad
 
 

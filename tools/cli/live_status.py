@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, Subgoals, TickReport
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, ProcessStates, Subgoals, TickReport
 from tailor.schemas.reason_text import reason_text, result_text
 
 
@@ -23,7 +23,7 @@ class Screen(Protocol):
         ...
 
     def show(self, message: Message) -> None:
-        """Show a message of the executive."""
+        """Show a message of the executive, or the states of the processes."""
         ...
 
 
@@ -51,6 +51,7 @@ class _Panel:
         self._live = live
         self._status: ExecStatus | None = None
         self._tick: TickReport | None = None
+        self._processes: ProcessStates | None = None
 
     def report(self, line: str) -> None:
         self._live.console.print(line, highlight=False)
@@ -60,6 +61,8 @@ class _Panel:
             self._status = message
         elif isinstance(message, TickReport):
             self._tick = message
+        elif isinstance(message, ProcessStates):
+            self._processes = message
         elif isinstance(message, ActionFinished | PlanReport) and (line := _summary(message)):
             self.report(line)
         self._live.update(self._table())
@@ -67,6 +70,8 @@ class _Panel:
     def _table(self) -> Table:
         grid = Table.grid(padding=(0, 2))
         status, tick = self._status, self._tick
+        if self._processes is not None:
+            grid.add_row("processes", processes_text(self._processes))
         if status is None:
             grid.add_row("waiting for the executive")
             return grid
@@ -81,6 +86,15 @@ class _Panel:
             work, late = tick.work_ns / 1e6, tick.lateness_ns / 1e6
             grid.add_row("tick", f"{tick.tick}  work {work:.1f} ms  late {late:.2f} ms  checks {tick.checks_granted}")
         return grid
+
+
+def processes_text(states: ProcessStates) -> str:
+    """Processes with their states, e.g. "sim running  executive running (2 starts)  record ended"."""
+    parts = []
+    for process in states.processes:
+        starts = f" ({process.starts} starts)" if process.starts > 1 else ""
+        parts.append(f"{process.name} {process.state}{starts}" + (f": {process.status}" if process.status else ""))
+    return "  ".join(parts)
 
 
 @contextmanager

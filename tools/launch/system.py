@@ -2,44 +2,31 @@
 
 from __future__ import annotations
 
-import secrets
 import socket
 import tempfile
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
-from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.runtime.bus.attachment import SENDER_BYTES
-from tailor.runtime.bus.inbox import Inbox
+from tailor.executive.composition import build_context
 from tailor.runtime.bus.opening import open_router
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
-from tailor.runtime.processes.child import Child, tailor
-from tailor.runtime.processes.supervisor import ProcessSpec, Supervisor
+from tailor.runtime.processes.child import Child
+from tailor.runtime.processes.supervised import ProcessSpec, State
+from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
-from tailor.tools.launch.own_executive import OwnExecutive
+from tailor.tools.launch.process_reports import ProcessReports
+from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
+from tailor.tools.launch.recording_watch import RecordingWatch
+from tailor.tools.launch.senders import Senders
 
 PERIOD_NS = 50_000_000
-SILENCE_NS = 1_000_000_000  # faults.md, row 2
-START_S = 20.0
-
-
-@dataclass(frozen=True, slots=True)
-class LaunchConfig:
-    """Configuration of one system."""
-
-    executive: ExecutiveConfig
-    endpoint: str
-    record: Path | None = None  # MCAP file to write
-    once: bool = False  # end when the goal is achieved or has failed
-    deployment_file: str = ""  # passed on to the executive
+EXECUTIVE_TOPICS = ("status", "tick", "finished", "plan", "subgoals")
 
 
 def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
@@ -54,10 +41,14 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
     if config.record is not None and config.record.exists():
         raise UsageError(f"{config.record}: exists already, expected the name of a new file")
     robot = build_context(config.executive, sender="").domain.robot
-    with open_router(config.endpoint) as session, tempfile.TemporaryFile("w+") as log:
-        supervisor = Supervisor(screen.report, lambda name, argv: Child(name, argv, log))
+    with (
+        open_router(config.endpoint) as session,
+        tempfile.TemporaryFile("w+") as log,
+        tempfile.TemporaryDirectory(prefix="tailor-") as folder,  # of this user alone
+    ):
+        supervisor = Supervisor(screen.report, lambda name, argv: Child(name, argv, log, Path(folder)))
         try:
-            return _run(config, robot, session, supervisor, screen, stop)
+            return _System(config, robot, session, supervisor, screen, stop).run()
         finally:
             supervisor.stop()
             log.seek(0)
@@ -72,47 +63,75 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
-def _run(config: LaunchConfig, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
-    inbox = session.inbox(("driver", "status", "tick", "finished", "plan", "subgoals"), robot, newest_only=False)
-    if config.record is not None:
-        provenance = session.publisher("provenance", robot)  # only the recorder subscribes to this topic
-        supervisor.start(ProcessSpec("record", _record(config), restarts=False), time.monotonic_ns())
-        if not _wait_until_ready(supervisor, "record", provenance.matched, stop):
+class _System:
+    """One run of a system; its children are stopped by the caller."""
+
+    def __init__(
+        self, config: LaunchConfig, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop
+    ) -> None:
+        self._config, self._robot = config, robot
+        self._supervisor, self._screen, self._stop = supervisor, screen, stop
+        self._inbox = session.inbox(("driver", *EXECUTIVE_TOPICS), robot, newest_only=False)
+        self._senders = Senders()
+        self._reports = ProcessReports(session.publisher("processes", robot), self._senders, screen)
+        self._recording = RecordingWatch(config.require_recording, screen.report)
+        self._result = self._stopped = ""
+
+    def run(self) -> str:
+        """Start process after process, each once the one before is ready; then supervise them."""
+        config, senders = self._config, self._senders
+        if config.record is not None and not self._start(record_process(config, senders)):
             return "failed: the recorder did not start"
-    leave = secrets.token_hex(SENDER_BYTES)  # a restarted executive or driver has none
-    supervisor.start(ProcessSpec("sim", _sim(config, robot), first_argv=("--leave", leave)), time.monotonic_ns())
-    if not _wait_until_ready(supervisor, "sim", lambda: any(s.key == f"{robot}/driver" for s in inbox.drain()), stop):
-        return "failed: the simulator did not start"
-    executive = ProcessSpec("executive", _executive(config), silence_ns=SILENCE_NS, first_argv=("--sender", leave))
-    supervisor.start(executive, time.monotonic_ns())
-    return _supervise(config, inbox, supervisor, screen, stop)
+        if not self._start(sim_process(config, senders, self._robot)):
+            return "failed: the simulator did not start"
+        self._supervisor.start(executive_process(config, senders), time.monotonic_ns())
+        return self._supervise()
 
+    def _start(self, spec: ProcessSpec) -> bool:
+        """Start a process; False if it ends before it is ready, is not ready in time, or on a stop request."""
+        self._supervisor.start(spec, time.monotonic_ns())
+        while self._supervisor.state(spec.name) is State.STARTING and not self._stop.requested:
+            time.sleep(0.02)
+            self._poll(time.monotonic_ns())
+        return self._supervisor.state(spec.name) is State.RUNNING
 
-def _supervise(config: LaunchConfig, inbox: Inbox, supervisor: Supervisor, screen: Screen, stop: Stop) -> str:
-    loop = Loop(PERIOD_NS, MonotonicClock())
-    own, result, stopped = OwnExecutive(), "", ""
-    while not stop.requested:
-        period = loop.wait_for_next_period()
-        for sample in inbox.drain():
-            if isinstance(sample.message, DriverState):
-                stopped = _stopped(sample.message)
-            elif own.sent(sample, supervisor.pid("executive")):
-                supervisor.report_alive("executive", period.now_ns)
-                screen.show(sample.message)
-                if isinstance(sample.message, ExecStatus):
-                    status = sample.message
-                    result = result_text(status.result, status.result_reason, status.result_detail)
-        supervisor.poll(period.now_ns)
-        ended = _ended(supervisor) or (config.once and (result or stopped))
-        if ended:
-            return ended
-    return result
+    def _supervise(self) -> str:
+        loop = Loop(PERIOD_NS, MonotonicClock())
+        while not self._stop.requested:
+            period = loop.wait_for_next_period()
+            self._receive()
+            self._poll(period.now_ns)
+            ended = self._ended() or (self._config.once and (self._result or self._stopped))
+            if ended:
+                return ended
+        return self._result
 
+    def _receive(self) -> None:
+        """Take in what the own children publish; messages of strangers do not count."""
+        for sample in self._inbox.drain():
+            message = sample.message
+            if isinstance(message, DriverState):
+                if self._senders.sent(sample, "sim"):
+                    self._stopped = _stopped(message)
+            elif self._senders.sent(sample, "executive"):
+                self._screen.show(message)
+                if isinstance(message, ExecStatus):
+                    self._result = result_text(message.result, message.result_reason, message.result_detail)
 
-def _ended(supervisor: Supervisor) -> str:
-    """Failure if a required process has ended for good, or ""."""
-    ended = [name for name in ("sim", "executive") if supervisor.ended(name) is not None]
-    return f"failed: {ended[0]} ended" if ended else ""
+    def _poll(self, now_ns: int) -> None:
+        self._supervisor.poll(now_ns)
+        self._reports.publish(self._supervisor.states(now_ns), now_ns)
+
+    def _ended(self) -> str:
+        """Failure if a required process has ended for good, or ""."""
+        for name in ("sim", "executive"):
+            if self._supervisor.state(name) is State.ENDED:
+                return f"failed: {name} ended"
+        if self._config.record is None:
+            return ""
+        return self._recording.failure(
+            self._supervisor.state("record") is State.ENDED, self._supervisor.status("record")
+        )
 
 
 def _stopped(driver: DriverState) -> str:
@@ -120,34 +139,3 @@ def _stopped(driver: DriverState) -> str:
     if driver.mode not in ("stopped", "estopped"):
         return ""
     return f"failed: the driver is {driver.mode}: {reason_text(driver.reason, driver.detail)}"
-
-
-def _wait_until_ready(supervisor: Supervisor, name: str, ready: Callable[[], bool], stop: Stop) -> bool:
-    """Wait until a process is ready; False if it ends, after START_S, or on a stop request."""
-    deadline = time.monotonic() + START_S
-    while not ready():
-        supervisor.poll(time.monotonic_ns())
-        if stop.requested or time.monotonic() > deadline or supervisor.ended(name) is not None:
-            return False
-        time.sleep(0.02)
-    return True
-
-
-def _sim(config: LaunchConfig, robot: str) -> list[str]:
-    executive = config.executive
-    scene = ("--scenario", executive.scenario, "--seed", str(executive.settings.seed))
-    return tailor("sim", robot, *scene, "--connect", config.endpoint)
-
-
-def _record(config: LaunchConfig) -> list[str]:
-    return tailor("record", "--output", str(config.record), "--connect", config.endpoint)
-
-
-def _executive(config: LaunchConfig) -> list[str]:
-    executive = config.executive
-    flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.endpoint]
-    flags += ["--horizon", str(executive.settings.refinement.horizon)]
-    flags += ["--planner", executive.settings.external.command]
-    flags += ["--config", config.deployment_file] if config.deployment_file else []
-    flags += ["--zoo", executive.zoo] if executive.zoo else []
-    return tailor("executive", executive.domain, *flags)

@@ -10,8 +10,10 @@ from contextlib import contextmanager
 import pytest
 
 from tailor.runtime.processes.child import Child, stopped_in_order
+from tailor.runtime.processes.notify_socket import Report
 from tailor.runtime.processes.restart import Restart
-from tailor.runtime.processes.supervisor import STARTUP_NS, ProcessSpec, Supervisor
+from tailor.runtime.processes.supervised import STARTUP_NS, STOPPING_NS, ProcessSpec, State
+from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import SIGNALS, stop_on_signals
 from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
@@ -41,16 +43,23 @@ def test_five_starts_within_a_minute_are_a_crash_loop():
 
 class FakeChild:
     def __init__(self, name, argv):
-        self.name, self.code, self.killed = name, None, False
+        self.name, self.argv, self.code, self.killed, self.pid = name, argv, None, 0, 1000 + len(FakeChild.made)
+        self.reported = Report()
         FakeChild.made.append(self)
 
     made: list = []
+    code_if_killed: int | None = -9
 
     def exit_code(self):
         return self.code
 
-    def kill(self):
-        self.killed, self.code = True, -9
+    def report(self):
+        reported, self.reported = self.reported, Report()
+        return reported
+
+    def kill(self, timeout_s):
+        assert timeout_s == 0.0, "the supervisor never blocks"
+        self.killed, self.code = self.killed + 1, self.code_if_killed
 
     def stop(self):
         self.code = 0
@@ -73,7 +82,7 @@ def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
     supervisor.poll(1 * S + 200 * MS)
     assert len(FakeChild.made) == 2
     assert supervisor.reported == ["executive ended with -9; starting again in 0.2 s"]
-    assert supervisor.ended("executive") is None
+    assert supervisor.state("executive") is State.STARTING
 
 
 @pytest.mark.promise("P2")
@@ -83,7 +92,7 @@ def test_a_crash_loop_is_given_up(supervisor):
         FakeChild.made[-1].code = 1
         supervisor.poll(k * 100 * MS)
     assert len(FakeChild.made) == 5
-    assert supervisor.ended("executive") == 1
+    assert supervisor.state("executive") is State.ENDED
     assert supervisor.reported[-1] == "executive ended with 1; gave up: too many starts within a minute"
 
 
@@ -93,26 +102,29 @@ def test_a_process_that_ended_well_or_must_not_restart_stays_ended(supervisor, r
     FakeChild.made[0].code = code
     supervisor.poll(1)
     supervisor.poll(10 * S)
-    assert (len(FakeChild.made), supervisor.ended("sim")) == (1, code)
+    assert (len(FakeChild.made), supervisor.state("sim")) == (1, State.ENDED)
 
 
 @pytest.mark.promise("P2")
 def test_a_silent_child_is_killed_after_a_second_and_a_live_one_is_not(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    FakeChild.made[0].reported = Report(ready=True)
     for now_ns in range(0, 30 * S, 50 * MS):
-        if now_ns % S == 0:
-            supervisor.report_alive("executive", now_ns)
+        if now_ns % S == 0 and now_ns > 0:
+            FakeChild.made[0].reported = Report(alive=True)
         supervisor.poll(now_ns)
     supervisor.poll(30 * S)
     assert not FakeChild.made[0].killed
     supervisor.poll(30 * S + 1)
     assert FakeChild.made[0].killed
+    assert supervisor.reported == ["executive gave no sign of life; killed"]
 
 
 @pytest.mark.parametrize("paused_s", [0.6, 3.0, 3600.0])
 def test_a_paused_supervisor_does_not_time_out_its_children(supervisor, paused_s):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
-    supervisor.report_alive("executive", S)
+    FakeChild.made[0].reported = Report(ready=True)
+    supervisor.poll(S)
     supervisor.poll(S + 100 * MS)
     on_ns = S + 100 * MS + round(paused_s * S)
     for now_ns in range(on_ns, on_ns + 900 * MS, 50 * MS):
@@ -133,10 +145,65 @@ def test_a_child_that_ended_for_good_is_reported(supervisor):
 @pytest.mark.promise("P2")
 def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
-    supervisor.poll(STARTUP_NS)
-    assert not FakeChild.made[0].killed
+    for now_ns in range(0, STARTUP_NS + 1, 100 * MS):
+        FakeChild.made[0].reported = Report(alive=True)  # of a loop that turns before it is ready
+        supervisor.poll(now_ns)
+    assert (FakeChild.made[0].killed, supervisor.state("executive")) == (0, State.STARTING)
     supervisor.poll(STARTUP_NS + 1)
     assert FakeChild.made[0].killed
+
+
+def test_a_child_that_is_stopping_has_time_for_it(supervisor):
+    supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    FakeChild.made[0].reported = Report(ready=True, stopping=True)
+    for now_ns in range(0, STOPPING_NS + 1, 100 * MS):
+        supervisor.poll(now_ns)
+    assert not FakeChild.made[0].killed
+    supervisor.poll(STOPPING_NS + 1)
+    assert FakeChild.made[0].killed
+
+
+def test_a_killed_child_that_the_kernel_does_not_end_is_reported_once(supervisor, monkeypatch):
+    monkeypatch.setattr(FakeChild, "code_if_killed", None)
+    supervisor.start(ProcessSpec("record", ["x"], silence_ns=S), 0)
+    FakeChild.made[0].reported = Report(ready=True)
+    for now_ns in range(0, 5 * S, 100 * MS):
+        supervisor.poll(now_ns)
+    assert (FakeChild.made[0].killed, len(supervisor.reported)) == (1, 1)
+    assert supervisor.state("record") is State.RUNNING
+
+
+def test_each_start_gets_its_own_arguments(supervisor):
+    spec = ProcessSpec("sim", ["x"], arguments=lambda start: ("--leave",) if start == 1 else (f"--start={start}",))
+    supervisor.start(spec, 0)
+    FakeChild.made[0].code = -9
+    for now_ns in range(0, S, 50 * MS):
+        supervisor.poll(now_ns)
+    assert [child.argv for child in FakeChild.made] == [["x", "--leave"], ["x", "--start=2"]]
+
+
+def test_the_states_of_all_processes_are_published(supervisor):
+    supervisor.start(ProcessSpec("record", ["x"], restarts=False), 0)
+    supervisor.start(ProcessSpec("sim", ["x"]), 0)
+    FakeChild.made[0].reported = Report(ready=True)
+    supervisor.poll(0)
+    FakeChild.made[0].reported = Report(status="disk: full")
+    for now_ns in range(0, S, 100 * MS):
+        supervisor.poll(now_ns)
+
+    def states(now_ns):
+        return [(s.name, s.pid, s.state, s.starts, s.silent_s, s.status) for s in supervisor.states(now_ns)]
+
+    assert states(2 * S) == [
+        ("record", 1000, "running", 1, 2.0, "disk: full"),
+        ("sim", 1001, "starting", 1, 2.0, ""),
+    ]
+    for child in FakeChild.made:
+        child.code = -9
+    supervisor.poll(2 * S)
+    assert [state[2:5] for state in states(2 * S)] == [("ended", 1, 0.0), ("waiting", 1, 0.0)]
+    supervisor.poll(3 * S)
+    assert states(3 * S)[1] == ("sim", 1002, "starting", 2, 0.0, "")
 
 
 @pytest.mark.promise("P10")

@@ -17,7 +17,8 @@ from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.report_page import write_paths_page
 from tailor.tools.figures.track import Track
-from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
+from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.system import free_endpoint, run_system
 
 RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 

@@ -13,10 +13,12 @@ from tailor.runtime import realtime
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock, wall_ns
 from tailor.runtime.platform_fingerprint import platform_fingerprint
+from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
+from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 
@@ -29,25 +31,25 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
     parser.add_argument("--wait", action="store_true", help="start without a goal; `tailor goal` sends one")
-    parser.add_argument("--sender", metavar="HEX", default="", help="sender id, 32 hex digits (default: random)")
+    configure_sender(parser)
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compose and check the configuration, then tick until stopped."""
-    stop = stop_on_signals()
+    stop, notifier = stop_on_signals(), Notifier.from_environment()
     deployment = deployment_from(arguments)
     config = executive_config(arguments.domain, deployment)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
-    with open_client(deployment.bus.endpoint, sender=arguments.sender) as session:
+    with open_client(deployment.bus.endpoint, sender=sender_of(arguments)) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()
         origin = {**provenance(config, context), "machine": platform_fingerprint()}
         origin["realtime"] = realtime.prepare()
-        shell = Shell(context, session, MonotonicClock(), origin)
+        shell = Shell(context, session, MonotonicClock(), origin, notifier)
         state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
     return 1 if arguments.once and state.task.result != "achieved" else 0
 

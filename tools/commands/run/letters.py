@@ -19,7 +19,8 @@ from tailor.schemas.messages import JointState
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.figures.letters import draw_words
-from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
+from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.system import free_endpoint, run_system
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
 from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
 from tailor.tools.writing.writing_track import PERIOD_S, WritingTrack, writing_track

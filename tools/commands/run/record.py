@@ -22,6 +22,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.service import ServiceServer
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import wall_ns
+from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import selection
@@ -31,6 +32,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, endpoint_of
 from tailor.tools.cli.number_checks import check_within
+from tailor.tools.cli.sender_flag import configure_sender, sender_of
 
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9
 MAX_LIMIT = 1e9  # MB or seconds, beyond any disk and run
@@ -62,6 +64,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--write", action="store_true", help="request that a running `tailor record --snapshot` writes its file now")
     add("--quiet", action="store_true", help="print nothing unless something is lost")
+    configure_sender(parser)
     configure_bus(parser)
 
 
@@ -69,8 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Record until stopped; 0, or 1 if something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MAX_LIMIT, f"--{name.replace('_', '-')}")
-    stop = stop_on_signals()
-    with open_client(endpoint_of(arguments)) as session:
+    stop, notifier = stop_on_signals(), Notifier.from_environment()
+    with open_client(endpoint_of(arguments), sender=sender_of(arguments)) as session:
         if arguments.write:
             accepted, response = session.call(SNAPSHOT_KEY, "requested")
             print(response, file=sys.stdout if accepted else sys.stderr)
@@ -78,7 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
         queue, subscription = session.subscribe_all("**")
         recorder = _recorder(arguments, queue)
         requests = session.service_server(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
-        _record(recorder, requests, stop, session, quiet=arguments.quiet)
+        notifier.ready()
+        _record(recorder, requests, stop, session, notifier, quiet=arguments.quiet)
+        notifier.stopping()
         subscription.undeclare()
         health = recorder.close()
     if not arguments.quiet or health.drops or health.disk_error:
@@ -103,21 +108,39 @@ def _recorder(arguments: argparse.Namespace, queue: IngestQueue) -> Recorder | S
 
 
 def _record(
-    recorder: Recorder | SnapshotRecorder, requests: ServiceServer | None, stop: Stop, session: Session, quiet: bool
+    recorder: Recorder | SnapshotRecorder,
+    requests: ServiceServer | None,
+    stop: Stop,
+    session: Session,
+    notifier: Notifier,
+    quiet: bool,
 ) -> None:
     shown = Live(console=Console(stderr=True), refresh_per_second=4, transient=True)
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:
-        connected = True
+        connected, status = True, ""
         while not stop.requested:
             recorder.step(time.monotonic_ns())
             if session.connected != connected:
                 connected = not connected
                 print(RECONNECTED if connected else DISCONNECTED, file=sys.stderr, flush=True)
+            notifier.alive()
+            if (losses := _losses(recorder.health, connected)) != status:
+                status = losses
+                notifier.status(status)
             if requests is not None and isinstance(recorder, SnapshotRecorder):
                 _serve(recorder, requests)
             if live is not None:
                 live.update(_line(recorder.health))
             time.sleep(PERIOD_S)
+
+
+def _losses(health: Health, connected: bool) -> str:
+    """What this recording lacks, for the supervisor; empty while it is whole."""
+    if health.disk_error:
+        return f"disk: {health.disk_error}"
+    if not connected:
+        return DISCONNECTED
+    return f"{health.drops.total()} messages dropped" if health.drops else ""
 
 
 def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:

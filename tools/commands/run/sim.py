@@ -10,6 +10,7 @@ from typing import Any
 from tailor.runtime import realtime
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
@@ -17,6 +18,7 @@ from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.lockstep.worlds import ROBOTS, make_world
 
@@ -32,11 +34,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--speed", type=float, default=1.0, metavar="X", help="simulated seconds per second (default 1)"
     )
     parser.add_argument("--leave", metavar="HEX", default="", help="sender id of the executive that may arm it once")
+    configure_sender(parser)
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate until stopped."""
+    notifier = Notifier.from_environment()
     if arguments.robot not in ROBOTS:
         raise UsageError(f"unknown robot {arguments.robot!r}, expected one of: {', '.join(ROBOTS)}")
     if not 0.1 <= arguments.speed <= MAX_SPEED:
@@ -44,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     deployment = deployment_from(arguments)
     world = make_world(arguments.robot, deployment.scenario, deployment.executive.seed)
     stop = stop_on_signals()
-    with open_client(deployment.bus.endpoint) as session:
+    with open_client(deployment.bus.endpoint, sender=sender_of(arguments)) as session:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
@@ -55,13 +59,20 @@ def run(arguments: argparse.Namespace) -> int:
             lambda: stop.requested,
             arguments.speed,
             arguments.leave,
+            notifier,
         )
     return 0
 
 
 def run_node(
-    world: World, declared: DriverSpec, session: Any, stopped: Callable[[], bool], speed: float = 1.0, leave: str = ""
+    world: World,
+    declared: DriverSpec,
+    session: Any,
+    stopped: Callable[[], bool],
+    speed: float = 1.0,
+    leave: str = "",
+    notifier: Notifier = SILENT,
 ) -> None:
     """Put a world on the bus, under a new random epoch."""
     epoch = 1 + secrets.randbelow(2**62)
-    Node(world, declared, session, MonotonicClock(), epoch, speed, leave).run(stopped)
+    Node(world, declared, session, MonotonicClock(), epoch, speed, leave).run(stopped, notifier)

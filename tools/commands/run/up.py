@@ -6,16 +6,21 @@ import argparse
 from pathlib import Path
 
 from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
-from tailor.tools.launch.system import LaunchConfig, run_system
+from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.system import run_system
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
     configure_system(parser)
     parser.add_argument("--record", metavar="FILE", type=Path, help="record all messages into an MCAP file")
+    parser.add_argument(
+        "--require-recording", action="store_true", help="end (1) when the recording ends or lacks a message"
+    )
     parser.add_argument("--letters", metavar="TEXT", help="text that the arm writes; short for --scenario word-TEXT")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
@@ -26,6 +31,8 @@ def run(arguments: argparse.Namespace) -> int:
     A system that ends by itself is a failure as well (1).
     """
     stop = stop_on_signals()
+    if arguments.require_recording and arguments.record is None:
+        raise UsageError("--require-recording: expected --record FILE as well")
     if arguments.letters:
         arguments.scenario = f"word-{arguments.letters.upper()}"
     deployment = deployment_from(arguments)
@@ -35,6 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.record,
         arguments.once,
         arguments.config,
+        arguments.require_recording,
     )
     with screen() as shown:
         result = run_system(config, shown, stop)

@@ -31,7 +31,8 @@ from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.task_runs import dependencies, run_all
-from tailor.tools.launch.system import LaunchConfig, free_endpoint, run_system
+from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.system import free_endpoint, run_system
 
 NOISE_STRIDE = 500_000  # between the noise seeds of two lock-step runs of a start
 MARGIN_PCT = 5.0  # fixed before the first run: half of the improvement by refinement

@@ -1,0 +1,85 @@
+"""What the launcher concludes from its children: whose messages count, and what a lost recording means."""
+
+from tailor.schemas.messages import ExecStatus, ProcessState, Sample
+from tailor.schemas.own import example
+from tailor.tools.cli.live_status import processes_text
+from tailor.tools.launch.process_reports import ProcessReports
+from tailor.tools.launch.recording_watch import ENDED, RecordingWatch
+from tailor.tools.launch.senders import Senders
+
+S = 1_000_000_000
+
+
+def status(sender):
+    return Sample("exec/status", example(ExecStatus), 0, 1, sender)
+
+
+def test_only_the_current_child_counts_and_never_a_stranger_or_its_predecessor():
+    senders = Senders()
+    assert not senders.sent(status(""), "executive"), "before its first start nobody counts"
+    first = senders.arguments("executive", 1)[1]
+    assert senders.sent(status(first), "executive")
+    assert not senders.sent(status("bb" * 16), "executive")
+    assert not senders.sent(status(""), "executive")
+    second = senders.arguments("executive", 2)[1]
+    assert senders.sent(status(second), "executive")
+    assert not senders.sent(status(first), "executive")
+    senders.arguments("sim", 1)
+    assert not senders.sent(status(second), "sim")
+
+
+def test_only_the_first_executive_has_the_leave_to_arm():
+    senders = Senders()
+    assert senders.arguments("executive", 1) == ("--sender", senders.leave)
+    assert senders.leave not in senders.arguments("executive", 2)
+    assert senders.leave not in senders.arguments("sim", 1)
+
+
+def test_a_lost_recording_is_reported_once_and_the_run_goes_on():
+    lines = []
+    watch = RecordingWatch(False, lines.append)
+    for ended, lacks in [(False, ""), (False, "disk: full"), (False, "disk: full"), (True, "disk: full"), (True, "")]:
+        assert watch.failure(ended, lacks) == ""
+    assert lines == ["the recording is incomplete: disk: full", ENDED]
+
+
+def test_a_required_recording_ends_the_run_when_it_ends_or_lacks_something():
+    watch = RecordingWatch(True, lambda line: None)
+    assert watch.failure(False, "") == ""
+    assert watch.failure(False, "3 messages dropped") == "failed: the recording is incomplete: 3 messages dropped"
+    assert watch.failure(True, "") == "failed: the recording ended"
+
+
+def state(name, **changes):
+    fields = {"pid": 7, "state": "running", "starts": 1, "silent_s": 0.0, "status": "", "sender": ""}
+    return ProcessState(name, **(fields | changes))
+
+
+class Published:
+    def __init__(self):
+        self.messages = []
+
+    def publish(self, message):
+        self.messages.append(message)
+
+    show = publish
+
+
+def test_process_states_are_published_on_change_and_once_a_second():
+    senders, published, shown = Senders(), Published(), Published()
+    sender = senders.arguments("sim", 1)[1]
+    reports = ProcessReports(published, senders, shown)
+    for now_ns in range(0, 2 * S, 50_000_000):
+        reports.publish((state("sim", silent_s=now_ns / S),), now_ns)
+    assert len(published.messages) == 2
+    reports.publish((state("sim", starts=2),), 2 * S)
+    assert len(published.messages) == 3
+    assert published.messages[-1].processes == (state("sim", starts=2, sender=sender),)
+    assert shown.messages == published.messages
+
+
+def test_the_live_status_shows_every_process():
+    reports = Published()
+    processes = (state("sim"), state("executive", starts=2), state("record", state="ended", status="disk: full"))
+    ProcessReports(reports, Senders(), Published()).publish(processes, 0)
+    assert processes_text(reports.messages[0]) == "sim running  executive running (2 starts)  record ended: disk: full"

@@ -1,0 +1,21 @@
+"""The flag --sender: a launcher gives each of its children an id on the bus, by which it knows their messages."""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+from tailor.schemas.errors import UsageError
+
+
+def configure_sender(parser: argparse.ArgumentParser) -> None:
+    """Add the flag."""
+    parser.add_argument("--sender", metavar="HEX", default="", help="sender id, 32 hex digits (default: random)")
+
+
+def sender_of(arguments: argparse.Namespace) -> str:
+    """Sender id, or "" for a random one; raises UsageError for anything else."""
+    sender: str = arguments.sender or ""
+    if sender and not re.fullmatch("[0-9a-f]{32}", sender):
+        raise UsageError(f"--sender {sender}: expected 32 hex digits")
+    return sender

@@ -1,0 +1,68 @@
+"""The processes of a system, as the launcher starts them: command lines, ids, and limits of their silence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tailor.executive.composition import ExecutiveConfig
+from tailor.runtime.processes.child import tailor
+from tailor.runtime.processes.supervised import ProcessSpec
+from tailor.tools.launch.senders import Senders
+
+EXECUTIVE_SILENCE_NS = 1_000_000_000  # ten ticks
+SIM_SILENCE_NS = 2_000_000_000  # two hundred periods; physics may be late on a busy machine
+RECORDER_SILENCE_NS = 10_000_000_000  # a disk may be slow
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchConfig:
+    """Configuration of one system."""
+
+    executive: ExecutiveConfig
+    endpoint: str
+    record: Path | None = None  # MCAP file to write
+    once: bool = False  # end when the goal is achieved or has failed
+    deployment_file: str = ""  # passed on to the executive
+    require_recording: bool = False  # end when the recording ends or lacks something
+
+
+def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
+    """The recorder. It is never started again: its file exists."""
+    argv = tailor("record", "--output", str(config.record), "--connect", config.endpoint)
+    return ProcessSpec(
+        "record",
+        argv,
+        restarts=False,
+        silence_ns=RECORDER_SILENCE_NS,
+        arguments=lambda start: senders.arguments("record", start),
+    )
+
+
+def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSpec:
+    """The simulated robot; only its first start gives the first executive leave to arm it."""
+    executive = config.executive
+    scene = ("--scenario", executive.scenario, "--seed", str(executive.settings.seed))
+
+    def arguments(start: int) -> tuple[str, ...]:
+        leave = ("--leave", senders.leave) if start == 1 else ()
+        return (*senders.arguments("sim", start), *leave)
+
+    argv = tailor("sim", robot, *scene, "--connect", config.endpoint)
+    return ProcessSpec("sim", argv, silence_ns=SIM_SILENCE_NS, arguments=arguments)
+
+
+def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
+    """The executive."""
+    executive = config.executive
+    flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.endpoint]
+    flags += ["--horizon", str(executive.settings.refinement.horizon)]
+    flags += ["--planner", executive.settings.external.command]
+    flags += ["--config", config.deployment_file] if config.deployment_file else []
+    flags += ["--zoo", executive.zoo] if executive.zoo else []
+    return ProcessSpec(
+        "executive",
+        tailor("executive", executive.domain, *flags),
+        silence_ns=EXECUTIVE_SILENCE_NS,
+        arguments=lambda start: senders.arguments("executive", start),
+    )
