@@ -29,8 +29,17 @@ class Keyboard:
         if self._file is not None and self._saved is not None:
             termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)
 
+    @property
+    def there(self) -> bool:
+        """Whether there is a terminal to press keys in."""
+        return self._file is not None
+
     def pressed(self) -> str:
         """Name of a pressed key: space, up, down, right or quit; empty if there is none."""
+        return KEYS.get(self.read(), "")
+
+    def read(self) -> bytes:
+        """All bytes waiting, at most eight: of several keys pressed at once, none is lost; empty if there is none."""
         if self._file is None or not select.select([self._file], [], [], 0)[0]:
-            return ""
-        return KEYS.get(os.read(self._file, 8), "")
+            return b""
+        return os.read(self._file, 8)

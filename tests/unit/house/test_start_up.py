@@ -21,6 +21,7 @@ WITHOUT = {
     "bus": {*HEAVY, "onnxruntime", "executive"},
     "estop": {*HEAVY, "onnxruntime", "executive"},
     "arm": {*HEAVY, "onnxruntime", "executive"},
+    "status": {*HEAVY, "onnxruntime", "executive"},
     "goal": {*HEAVY, "onnxruntime", "executive"},
 }
 

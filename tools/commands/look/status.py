@@ -1,0 +1,105 @@
+"""Show the state of a running system: modes with reasons, freshness, tick timing, guard counters, foreign messages.
+
+In a terminal the view is live; s or space stops every driver at once, q ends the view. In a pipe, or with --json, the
+state is printed once. Exit code 0: healthy; 1: not; 2: bad input, or no router responds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import time
+from dataclasses import asdict
+
+from rich.console import Console, Group
+from rich.live import Live
+
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.session import Session
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.keyboard import Keyboard
+from tailor.tools.cli.number_checks import finite
+from tailor.tools.cli.terminal import table_console
+from tailor.tools.status.panel import panel
+from tailor.tools.status.picture import Picture
+from tailor.tools.status.stop_key import StopKey
+from tailor.tools.status.system_model import SystemModel
+from tailor.tools.status.watcher import Watcher
+
+OBSERVE_S = 1.5  # every periodic topic comes at least once, state and odometry more often
+MIN_S, MAX_S = 0.2, 3600.0
+NICENESS = 10  # the executive has priority over the observer
+DRAIN_S = 0.05
+KEY_S = 0.02  # from a key to the e-stop, at most
+DRAW_NS = 250_000_000
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor status`."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object (docs/deployment.md)")
+    parser.add_argument(
+        "--seconds",
+        type=finite("--seconds"),
+        metavar="S",
+        help=f"observe for S seconds, then print the state once (default in a pipe: {OBSERVE_S:g})",
+    )
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 if the system is healthy at the end, 1 if not."""
+    live = sys.stdout.isatty() and not arguments.json and arguments.seconds is None
+    seconds = OBSERVE_S if arguments.seconds is None else arguments.seconds
+    if not MIN_S <= seconds <= MAX_S:
+        raise UsageError(f"--seconds is {seconds:g}, expected {MIN_S:g} to {MAX_S:g}")
+    endpoint = endpoint_of(arguments)
+    stop = stop_on_signals()
+    with open_client(endpoint, role="people" if live else "observer") as session:
+        os.nice(NICENESS)
+        codec.prime()
+        queue, subscription = session.subscribe_all("**")
+        began_ns = time.monotonic_ns()
+        model = SystemModel(began_ns)
+        watcher = Watcher(queue, model, began_ns)
+        picture = _watch(session, model, watcher, endpoint, stop) if live else _observe(model, watcher, seconds, stop)
+        subscription.undeclare()
+    if arguments.json:
+        print(json.dumps(asdict(picture), allow_nan=False))
+    else:
+        table_console().print(panel(picture, endpoint))
+    return 0 if picture.healthy else 1
+
+
+def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -> Picture:
+    ends = time.monotonic() + seconds
+    while time.monotonic() < ends and not stop.requested:
+        time.sleep(DRAIN_S)
+        watcher.poll(time.monotonic_ns())
+    return model.picture(time.monotonic_ns())
+
+
+def _watch(session: Session, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
+    """The live view, until Ctrl-C or q."""
+    button = StopKey(session.publisher("estop", ""))
+    console = Console(highlight=False)
+    drawn_ns = 0
+    with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
+        while not stop.requested:
+            now_ns = time.monotonic_ns()
+            keys = keyboard.read()
+            if b"q" in keys:
+                break
+            button.poll(keys, now_ns)
+            if now_ns - drawn_ns >= DRAW_NS:
+                drawn_ns = now_ns
+                watcher.poll(now_ns)
+                picture = model.picture(now_ns)
+                shown = (button.line(picture, keyboard.there), panel(picture, endpoint))
+                live.update(Group(*shown), refresh=True)
+            time.sleep(KEY_S)
+    return model.picture(time.monotonic_ns())

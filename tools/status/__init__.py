@@ -1,0 +1,1 @@
+"""State of a running system, as any subscriber of the bus sees it: collected, judged, drawn."""

@@ -1,0 +1,105 @@
+"""What an observer knows of the executives on the bus: one, none, a restarted one, or several. Pure."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+
+from tailor.schemas.messages import ExecStatus, Provenance, TickReport
+from tailor.schemas.topics import STALE_S
+from tailor.tools.status.picture import ExecutiveView
+from tailor.tools.status.ticks import TickTimer
+
+MAX_EXECUTIVES = 8  # remembered; a flood of sender ids must not grow this process
+FORGET_S = 60.0  # a silent executive that another one has replaced
+
+
+@dataclass(slots=True)
+class _Record:
+    status: ExecStatus | None = None
+    at_ns: int = 0
+    ticks: TickTimer = field(default_factory=TickTimer)
+    realtime: dict[str, str] = field(default_factory=dict)
+
+
+class Executives:
+    """Executives by sender.
+
+    Attributes:
+      restarts: Executives whose first status came when another one had fallen silent.
+    """
+
+    def __init__(self) -> None:
+        self.restarts = 0
+        self._records: dict[str, _Record] = {}
+
+    def status(self, sender: str, status: ExecStatus, now_ns: int) -> None:
+        """Take a status."""
+        record = self._record(sender)
+        if record.status is None:
+            others = [each for each in self._records.values() if each.status is not None]
+            self.restarts += bool(others) and all(_silent(each, now_ns) for each in others)
+        record.status, record.at_ns = status, now_ns
+
+    def tick(self, sender: str, report: TickReport, now_ns: int) -> None:
+        """Take a tick's report."""
+        self._record(sender).ticks.add(now_ns, report)
+
+    def provenance(self, sender: str, provenance: Provenance) -> None:
+        """Take the privileges that the operating system granted; foreign content leaves them empty."""
+        self._record(sender).realtime = _realtime(provenance.json)
+
+    def views(self, now_ns: int) -> tuple[ExecutiveView, ...]:
+        """All executives with a status, the most recent one first; long gone ones only if there is no other."""
+        known = [(sender, each) for sender, each in self._records.items() if each.status is not None]
+        known.sort(key=lambda row: -row[1].at_ns)
+        kept = [row for row in known if _age_s(row[1], now_ns) <= FORGET_S] or known[:1]
+        return tuple(_view(sender, record, now_ns) for sender, record in kept)
+
+    def _record(self, sender: str) -> _Record:
+        record = self._records.pop(sender, None) or _Record()
+        self._records[sender] = record
+        if len(self._records) > MAX_EXECUTIVES:
+            del self._records[next(iter(self._records))]  # the one silent for longest
+        return record
+
+
+def _age_s(record: _Record, now_ns: int) -> float:
+    return max(0, now_ns - record.at_ns) / 1e9
+
+
+def _silent(record: _Record, now_ns: int) -> bool:
+    return _age_s(record, now_ns) > STALE_S
+
+
+def _realtime(text: str) -> dict[str, str]:
+    try:
+        granted = json.loads(text)["realtime"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return {}
+    if not isinstance(granted, dict):
+        return {}
+    return {str(name): str(value)[:100] for name, value in list(granted.items())[:10]}
+
+
+def _view(sender: str, record: _Record, now_ns: int) -> ExecutiveView:
+    status = record.status
+    assert status is not None, "only executives with a status are shown"
+    return ExecutiveView(
+        sender=sender,
+        age_s=round(_age_s(record, now_ns), 3),
+        silent=_silent(record, now_ns),
+        mode=status.mode,
+        reason=status.reason,
+        detail=status.detail,
+        scenario=status.scenario,
+        goal=status.goal,
+        result=status.result,
+        result_reason=status.result_reason,
+        result_detail=status.result_detail,
+        action=status.action,
+        action_elapsed_s=round(status.action_elapsed_s, 3),
+        action_predicted_s=round(status.action_predicted_s, 3),
+        ticks=record.ticks.times(now_ns),
+        realtime=record.realtime,
+    )

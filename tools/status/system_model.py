@@ -1,0 +1,114 @@
+"""What an observer knows of a running system, fed with publications and their arrival times. Pure and bounded."""
+
+from __future__ import annotations
+
+from tailor.runtime.bus.inbox import Raw
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import DriverState, ExecStatus, Provenance, TickReport
+from tailor.schemas.topics import TOPICS, Topic
+from tailor.tools.status.arrivals import Arrivals
+from tailor.tools.status.drivers import DriverRecord
+from tailor.tools.status.executives import Executives
+from tailor.tools.status.foreign import ForeignCounts
+from tailor.tools.status.health import findings
+from tailor.tools.status.picture import Picture, TopicView
+from tailor.tools.status.reading import Received, read, topic_of
+
+SLOW_SHARE = 0.75  # of the topic's rate; at half of it no new action starts
+MAX_ROBOTS = 16  # with their topics; a stranger could invent any number
+
+
+class SystemModel:
+    """Collects publications; `picture` is what they show at a moment.
+
+    Attributes:
+      foreign: Counters of what is no message of ours.
+    """
+
+    def __init__(self, now_ns: int) -> None:
+        """`now_ns`: monotonic time, as in all other calls."""
+        self.foreign = ForeignCounts()
+        self._began_ns = now_ns
+        self._arrivals: dict[str, Arrivals] = {}  # by key
+        self._newest: dict[str, tuple[str, int]] = {}  # (sender, sequence), by key
+        self._robots: set[str] = set()
+        self._drivers: dict[str, DriverRecord] = {}
+        self._executives = Executives()
+
+    def take(self, raw: Raw, now_ns: int) -> None:
+        """Take a publication that arrived at `now_ns`."""
+        received = read(raw)
+        if received is None:
+            self.foreign.unknown(raw.key)
+        elif isinstance(received, Rejected):
+            self.foreign.refused(raw.key, received.reason)
+        elif received.origin.sequence and self._newest.get(raw.key) == _number(received):
+            self.foreign.refused(raw.key, "repeated")  # of a frozen sender: it must not look fresh
+        elif received.robot and not self._know(received.robot):
+            self.foreign.unknown(raw.key)
+        else:
+            self._newest[raw.key] = _number(received)
+            self._arrivals.setdefault(raw.key, Arrivals()).add(now_ns, received.origin.sender)
+            self._update(received, now_ns)
+
+    def picture(self, now_ns: int) -> Picture:
+        """State of the system at `now_ns`."""
+        executives = self._executives.views(now_ns)
+        senders = {executive.sender for executive in executives if not executive.silent}
+        drivers = tuple(record.view(robot, now_ns, senders) for robot, record in sorted(self._drivers.items()))
+        topics = tuple(_topic_view(key, arrivals, now_ns) for key, arrivals in sorted(self._arrivals.items()))
+        foreign = self.foreign.view()
+        problems = findings(executives, drivers, topics, foreign)
+        return Picture(
+            healthy=not problems,
+            problems=problems,
+            observed_s=round((now_ns - self._began_ns) / 1e9, 3),
+            executives=executives,
+            restarts=self._executives.restarts,
+            drivers=drivers,
+            topics=topics,
+            foreign=foreign,
+        )
+
+    def _know(self, robot: str) -> bool:
+        if robot not in self._robots and len(self._robots) < MAX_ROBOTS:
+            self._robots.add(robot)
+        return robot in self._robots
+
+    def _update(self, received: Received, now_ns: int) -> None:
+        message, sender = received.message, received.origin.sender
+        if isinstance(message, DriverState):
+            self._drivers.setdefault(received.robot, DriverRecord()).update(message, now_ns)
+        elif isinstance(message, ExecStatus):
+            self._executives.status(sender, message, now_ns)
+        elif isinstance(message, TickReport):
+            self._executives.tick(sender, message, now_ns)
+        elif isinstance(message, Provenance):
+            self._executives.provenance(sender, message)
+
+
+def _number(received: Received) -> tuple[str, int]:
+    return received.origin.sender, received.origin.sequence
+
+
+def _topic_view(key: str, arrivals: Arrivals, now_ns: int) -> TopicView:
+    topic = _topic(key)
+    needed = topic.fresh_s is not None  # commands rest while nobody is armed, and a ball may be out of sight
+    age_s, rate_hz = arrivals.age_s(now_ns), arrivals.rate_hz(now_ns)
+    return TopicView(
+        key=key,
+        received=arrivals.count,
+        age_s=round(age_s, 3),
+        rate_hz=None if rate_hz is None else round(rate_hz, 2),
+        nominal_hz=topic.rate_hz,
+        stale_after_s=topic.fresh_s,
+        stale=topic.fresh_s is not None and age_s > topic.fresh_s,
+        slow=needed and rate_hz is not None and rate_hz < SLOW_SHARE * topic.rate_hz,
+        senders=arrivals.senders(now_ns),
+    )
+
+
+def _topic(key: str) -> Topic:
+    match = topic_of(key)
+    assert match is not None, "only such keys are recorded"
+    return TOPICS[match[0]]
