@@ -5,15 +5,21 @@ A sim node and a hardware driver both use it; it imports no body, no clock and n
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec
-from tailor.simnodes.guard import Guard, Reason
+from tailor.simnodes.guard import Guard
+from tailor.simnodes.hold import HeldSwitches
+from tailor.simnodes.reasons import ArmRefusal, Mode, Reason
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
 SELF_ARM = "self_arm"  # requests of the executive; those of people come on another topic, which it may not write
 TOPICS = ("arm_request", SELF_ARM, "estop")  # inputs of every driver besides its command
+SHOWN_DIGITS = 8  # of a sender id
+HELD_BY = "held by "  # in the detail of a driver's state: the dead man's switches that it hears
+ARM_REFUSED = "arm: "  # before the reason of a refused arming request, in a driver's state
 
 
 class Driver:
@@ -21,6 +27,7 @@ class Driver:
 
     Attributes:
       guard: The guard; `guard.output(now_ns)` gives the set-points for the motors.
+      held: The dead man's switches; when one falls silent, the driver stops and latches.
     """
 
     def __init__(self, spec: DriverSpec, epoch: int, leave: str = "") -> None:
@@ -32,31 +39,37 @@ class Driver:
           leave: Sender id of the executive that may arm the driver by itself, once; empty: only people may.
         """
         self.guard = Guard(spec.limits, epoch, spec.timeout_ns, leave)
+        self.held = HeldSwitches()
+        self._arm_refused: Counter[ArmRefusal] = Counter()
         self._axes = spec.axes
         self._published: tuple[str, str, str] | None = None
         self._due_ns = 0
         self._rejected: Mapping[str, int] = {}
 
-    def take(self, samples: Iterable[Sample], rejected: Mapping[str, int], now_ns: int) -> None:
-        """Process received messages; an e-stop wins over every arming request of the same call, earlier or later.
+    def take(self, samples: Iterable[Sample], rejected: Mapping[str, int], now_ns: int, guard_lag_ns: int = 0) -> None:
+        """Process received messages; call it in every period, also without any: silence is a message of its own.
+
+        An e-stop wins over every arming request of the same call, earlier or later.
 
         Args:
           samples: Commands, arming requests and e-stops.
           rejected: Undecodable messages on these topics since start, by reason; only reported in the driver state.
           now_ns: Monotonic time, not before any arrival.
+          guard_lag_ns: The guard's clock is this much behind, e.g. since a simulator was paused; a dead man's switch
+            is always held in real time.
         """
         ordered = sorted(samples, key=lambda sample: sample.arrival_ns)
-        stopped = any(isinstance(sample.message, EStop) and sample.message.stop for sample in ordered)
-        if stopped:
-            self.guard.estop()
+        stopped = self._estop(ordered, now_ns)
         for sample in ordered:
             message = sample.message
             if isinstance(message, ArmRequest):
-                if not (stopped and message.arm):
-                    self._arm(message, sample, now_ns)
+                refusal = self._arm(message, sample, now_ns - guard_lag_ns, stopped)
+                if refusal is not None:
+                    self._arm_refused[refusal] += 1
             elif not isinstance(message, EStop):
                 values, stamp_ns = command_values(message, self._axes), getattr(message, "stamp_ns", 0)
-                self.guard.command(sample.arrival_ns, sample.sender, sample.sequence, values, stamp_ns)
+                arrival_ns = sample.arrival_ns - guard_lag_ns
+                self.guard.command(arrival_ns, sample.sender, sample.sequence, values, stamp_ns)
         self._rejected = rejected
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
@@ -66,19 +79,19 @@ class Driver:
           now_ns: Monotonic time.
           stamp_ns: Wall time for the message.
         """
-        guard = self.guard
-        current = (guard.mode, guard.reason, guard.detail)
+        guard, detail = self.guard, self._detail()
+        current = (guard.mode, guard.reason, detail)
         if current == self._published and now_ns < self._due_ns:
             return None
         self._published = current
         next_ns = self._due_ns + STATE_PERIOD_NS  # counted from due time to due time: the node's periods add no delay
         self._due_ns = next_ns if next_ns > now_ns else now_ns + STATE_PERIOD_NS
-        refused = {refusal.value: count for refusal, count in guard.refused.items()} | dict(self._rejected)
+        refused = self._refused()
         return DriverState(
             stamp_ns=stamp_ns,
             mode=guard.mode.value,
             reason=guard.reason.value,
-            detail=guard.detail,
+            detail=detail,
             epoch=guard.epoch,
             armed_sender=guard.sender,
             accepted=guard.accepted,
@@ -86,13 +99,52 @@ class Driver:
             refused_counts=tuple(refused.values()),
         )
 
-    def _arm(self, request: ArmRequest, sample: Sample, now_ns: int) -> None:
+    def _detail(self) -> str:
+        held = ", ".join(shown(sender) for sender in self.held.senders)
+        return "; ".join(text for text in (self.guard.detail, f"{HELD_BY}{held}" if held else "") if text)
+
+    def _refused(self) -> dict[str, int]:
+        """Number of refused messages since start, by reason; arming requests and switches with a prefix."""
+        commands = {refusal.value: count for refusal, count in self.guard.refused.items()}
+        arming = {f"{ARM_REFUSED}{refusal.value}": count for refusal, count in self._arm_refused.items()}
+        switches = {f"hold: {refusal.value}": count for refusal, count in self.held.refused.items()}
+        return commands | arming | switches | dict(self._rejected)
+
+    def _estop(self, samples: Sequence[Sample], now_ns: int) -> bool:
+        """Stop and latch if an e-stop asks for it or a dead man's switch was released; whether one of them did."""
+        requested = False
+        for sample in samples:
+            if isinstance(sample.message, EStop):
+                requested = requested or sample.message.stop
+                if not sample.message.stop:
+                    self.held.hold(sample.sender, sample.sequence, sample.arrival_ns)
+        released = self.held.released(now_ns)
+        if requested:
+            self.guard.estop()
+        elif released and self.guard.mode is not Mode.ESTOPPED:  # keep the first reason
+            self.guard.estop(Reason.HOLD_RELEASED, ", ".join(map(shown, released)))
+        return requested or bool(released)
+
+    def _arm(self, request: ArmRequest, sample: Sample, now_ns: int, stopped: bool) -> ArmRefusal | None:
+        if not request.arm:
+            if request.epoch not in (0, self.guard.epoch):
+                return ArmRefusal.OTHER_EPOCH
+            self.guard.disarm(Reason.DISARM_REQUEST, f"by {shown(sample.sender)}")
+            return None
+        if stopped:
+            return ArmRefusal.ESTOP_LATCHED
         by_people = not sample.key.endswith(f"/{SELF_ARM}")
-        if request.arm:
-            sender = (request.sender if by_people else "") or sample.sender
-            self.guard.arm(now_ns, sender, request.epoch, request.reset, by_people)
-        elif request.epoch in (0, self.guard.epoch):
-            self.guard.disarm(Reason.DISARM_REQUEST, f"by {(sample.sender or 'unknown')[:8]}")
+        sender = (request.sender if by_people else "") or sample.sender
+        latched = self.guard.mode is Mode.ESTOPPED
+        refusal = self.guard.arm(now_ns, sender, request.epoch, request.reset, by_people)
+        if latched and refusal is None:
+            self.held.forget()  # people have taken over; who still holds a switch is heard again within 0.1 s
+        return refusal
+
+
+def shown(sender: str) -> str:
+    """Short form of a sender id in a detail."""
+    return sender[:SHOWN_DIGITS] or "unknown"
 
 
 def command_values(message: Message, axes: Sequence[str]) -> tuple[float, ...]:

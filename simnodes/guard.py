@@ -10,58 +10,15 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
 from tailor.simnodes.arming import Arming, Cause, next_arming
+from tailor.simnodes.reasons import ArmRefusal, CommandRefusal, Mode, Reason
+
+__all__ = ["ArmRefusal", "CommandRefusal", "Guard", "Limit", "Mode", "Reason"]
 
 TIMEOUT_NS = 300_000_000  # three ticks of the executive: one may be lost, two are an outage
 MAX_DELAY_NS = 300_000_000  # beyond the fastest command since arming
 MAX_JUMP = 100  # sequence numbers from one command to the next; the timeout lets no sender below 300 Hz miss as many
-
-
-class Mode(StrEnum):
-    """Mode of the guard."""
-
-    DISARMED = "disarmed"  # since start or by request
-    ARMED = "armed"  # passes the commands of one sender
-    STOPPED = "stopped"  # by itself, see its reason
-    ESTOPPED = "estopped"  # latched; only a reset leaves it
-
-
-class Reason(StrEnum):
-    """Reason for the guard's mode."""
-
-    NONE = ""  # armed
-    STARTED = "just started"
-    DISARM_REQUEST = "disarm request"  # detail: the sender
-    WORLD_RESET = "the world was reset"  # simulators only
-    SHUTDOWN = "the driver ends"
-    COMMAND_TIMEOUT = "no valid command in time"
-    DRIVER_FAULT = "driver fault"  # detail: the fault
-    ESTOP = "e-stop"
-
-
-class CommandRefusal(StrEnum):
-    """Reason for refusing a command."""
-
-    NOT_ARMED = "not armed"
-    OTHER_SENDER = "other sender"
-    OLD_SEQUENCE = "old sequence"
-    SEQUENCE_JUMP = "sequence jump"
-    LATE = "late"
-    WRONG_COUNT = "wrong count"  # of axes
-    NOT_FINITE = "not finite"
-    BEYOND_LIMIT = "beyond limit"
-
-
-class ArmRefusal(StrEnum):
-    """Reason for refusing to arm."""
-
-    OTHER_EPOCH = "other epoch"
-    NO_SENDER = "no sender"
-    ESTOP_LATCHED = "e-stop is latched"
-    PEOPLE_ONLY = "only people may arm"
-    OTHER_SENDER_ARMED = "another sender is armed"
 
 
 MODES = {
@@ -152,9 +109,9 @@ class Guard:
         """Set the output to zero at once; a latched e-stop stays latched."""
         self._halt(Cause.DISARM, reason, detail)
 
-    def estop(self) -> None:
+    def estop(self, reason: Reason = Reason.ESTOP, detail: str = "") -> None:
         """Set the output to zero at once and latch."""
-        self._halt(Cause.ESTOP, Reason.ESTOP)
+        self._halt(Cause.ESTOP, reason, detail)
 
     def stop(self, fault: str) -> None:
         """Set the output to zero at once for a fault of the driver, e.g. of a motor; a latched e-stop stays latched."""

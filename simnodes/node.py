@@ -80,7 +80,7 @@ class Node:
     def _run_period(self, period: Period) -> None:
         self._services.answer()
         guard_ns = period.now_ns - self._frozen_ns
-        self._receive(period.now_ns, guard_ns)
+        self._receive(period.now_ns)
         elapsed, steps = 1 + period.skipped, min(1 + period.skipped, MAX_AT_ONCE)
         if self._services.paused:
             steps, self._services.steps_due = self._services.steps_due, 0
@@ -92,10 +92,9 @@ class Node:
                 guard_ns += self._loop.period_ns
         self._publish_state(period.now_ns)
 
-    def _receive(self, now_ns: int, guard_ns: int) -> None:
-        samples = (replace(s, arrival_ns=s.arrival_ns - self._frozen_ns) for s in self._inbox.drain(now_ns))
+    def _receive(self, now_ns: int) -> None:
         accepted = self.driver.guard.accepted
-        self.driver.take(samples, self._rejected(), guard_ns)
+        self.driver.take(self._inbox.drain(now_ns), self._rejected(), now_ns, self._frozen_ns)
         if self.driver.guard.accepted > accepted:
             self._world.begin()
 

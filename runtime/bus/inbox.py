@@ -15,7 +15,7 @@ from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import Sample
+from tailor.schemas.messages import EStop, Sample
 from tailor.schemas.topics import Topic
 
 EVENT_DEPTH = 16  # events and commands may come several in a tick, e.g. two arming requests
@@ -36,8 +36,8 @@ class Raw:
 class Source(Protocol):
     """One subscription; session.py implements it with a zenoh ring buffer."""
 
-    def receive(self) -> Raw | None:
-        """Oldest waiting sample, None if there is none; never blocks."""
+    def receive(self) -> Raw | Rejected | None:
+        """Oldest waiting sample, or why one was dropped; None if there is none; never blocks."""
         ...
 
 
@@ -71,7 +71,7 @@ class Inbox:
             newest_only = self._newest_only and is_state(topic)
             waiting = _received(source)
             for raw in reversed(waiting) if newest_only else waiting:
-                sample = self._read(topic, key, encoding, raw, now)
+                sample = raw if isinstance(raw, Rejected) else self._read(topic, key, encoding, raw, now)
                 if isinstance(sample, Rejected):
                     self.rejected[key, sample.reason] += 1
                     continue
@@ -91,7 +91,8 @@ class Inbox:
         origin = unpack(raw.attachment)
         if isinstance(origin, Rejected):
             return origin
-        if origin.sequence and self._last.get(key) == (origin.sender, origin.sequence):
+        repeated = origin.sequence and self._last.get(key) == (origin.sender, origin.sequence)
+        if repeated and topic.type is not EStop:  # a forged repetition must not take the place of an e-stop
             return Rejected("repeated")  # repeats of a frozen sender are ignored, so its topic becomes stale
         message = decode(topic, raw.payload)
         if isinstance(message, Rejected):
@@ -101,9 +102,9 @@ class Inbox:
         return Sample(key, message, arrived, origin.sequence, origin.sender)
 
 
-def _received(source: Source) -> list[Raw]:
+def _received(source: Source) -> list[Raw | Rejected]:
     """Waiting samples, oldest first; at most EVENT_DEPTH, also during a flood."""
-    waiting: list[Raw] = []
+    waiting: list[Raw | Rejected] = []
     while len(waiting) < EVENT_DEPTH and (raw := source.receive()) is not None:
         waiting.append(raw)
     return waiting

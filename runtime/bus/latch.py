@@ -1,11 +1,19 @@
-"""Keeps the first valid e-stop between two polls, whatever floods the key: decided on arrival, not in a ring."""
+"""Keeps e-stops between two polls, whatever floods their key: decided on arrival, not in a ring.
+
+Of the requests to stop it keeps the first, of the held dead man's switches the newest message of each sender.
+"""
 
 from __future__ import annotations
 
+from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import EStop
 from tailor.schemas.topics import Topic
+from tailor.schemas.typesystem import ros_type
+
+MAX_SENDERS = 32  # of held switches between two polls
 
 
 class EStopLatch:
@@ -14,18 +22,41 @@ class EStopLatch:
     def __init__(self, topic: Topic, key: str) -> None:
         """Empty."""
         self._topic, self._key = topic, key
+        self._encoding = f"application/cdr;{ros_type(topic.type)}"
         self._latched: Raw | None = None
+        self._held: dict[str, Raw] = {}  # by sender; filled by the bus's thread, which never waits for the loop's
+        self._waiting: list[Raw] = []  # taken out of it by the loop's thread
+        self._overflowed = False
 
     def offer(self, raw: Raw) -> None:
-        """Keep a request to stop; releases, other keys and malformed bytes leave no trace."""
-        if self._latched is None and raw.is_put and raw.key == self._key:
-            message = decode(self._topic, raw.payload)
-            if isinstance(message, EStop) and message.stop:
-                self._latched = raw
+        """Keep a message if it is the first request to stop or the newest of a held switch.
 
-    def receive(self) -> Raw | None:
-        """The request to stop since the last call, if there was one."""
+        Only a message that the inbox accepts is kept, or junk would keep the place of a request to stop.
+        """
+        if not raw.is_put or raw.key != self._key:
+            return
+        if raw.encoding.startswith("application/cdr;") and raw.encoding != self._encoding:
+            return
+        origin, message = unpack(raw.attachment), decode(self._topic, raw.payload)
+        if isinstance(origin, Rejected) or not isinstance(message, EStop):
+            return
+        if message.stop:
+            self._latched = self._latched or raw
+        elif origin.sender in self._held or len(self._held) < MAX_SENDERS:
+            self._held[origin.sender] = raw
+        else:
+            self._overflowed = True
+
+    def receive(self) -> Raw | Rejected | None:
+        """The request to stop since the last call, else the next message of a held switch."""
         raw = self._latched
         if raw is not None:  # else a stop that is offered at this moment would be erased unread
             self._latched = None
-        return raw
+            return raw
+        if self._overflowed:
+            self._overflowed = False
+            return Rejected("too many senders")
+        if not self._waiting and self._held:
+            held, self._held = self._held, {}
+            self._waiting = list(held.values())  # one that is offered at this moment may be lost; it is repeated
+        return self._waiting.pop(0) if self._waiting else None

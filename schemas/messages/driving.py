@@ -30,7 +30,11 @@ class JointCommand(Message):
 
 @dataclass(frozen=True, slots=True)
 class EStop(Message):
-    """True stops and latches every driver; only an ArmRequest with `reset` releases it."""
+    """True stops and latches every driver; only an ArmRequest with `reset` releases it.
+
+    False means that its sender holds a dead man's switch and repeats this message: after 0.5 s of silence every driver
+    stops and latches.
+    """
 
     ROS_TYPE: ClassVar[str] = "std_msgs/msg/Bool"
 

@@ -13,7 +13,7 @@ from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
 
 SPEC = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
-PERSON = "f" * 32
+PERSON, HOLDER = "f" * 32, "e" * 32
 MS = 1_000_000
 
 
@@ -35,6 +35,13 @@ class Robot(RuleBasedStateMachine):
         self.armed_for = ""
         self.latched = False
         self.moved = False
+        self.held_ns: int | None = None  # newest message of the dead man's switch
+
+    def wait(self, duration_ns: int) -> None:
+        self.now_ns += duration_ns
+        self.driver.take([], {}, self.now_ns)
+        if self.held_ns is not None and self.now_ns - self.held_ns > 500 * MS:
+            self.armed_for, self.leave, self.latched, self.held_ns = "", "", True, None
 
     def send(self, *messages, by="") -> None:
         by = by or self.executive
@@ -58,6 +65,7 @@ class Robot(RuleBasedStateMachine):
     def people_arm(self, reset: bool) -> None:
         self.send(ArmRequest(True, reset, self.executive, 0), by=PERSON)
         if not self.armed_for and (reset or not self.latched):
+            self.held_ns = None if self.latched else self.held_ns
             self.armed_for, self.leave, self.latched = self.executive, "", False
 
     @rule()
@@ -85,8 +93,19 @@ class Robot(RuleBasedStateMachine):
         self.armed_for, self.leave = "", ""
 
     @rule()
+    def people_hold_a_switch(self) -> None:
+        self.send(EStop(False), by=HOLDER)
+        self.held_ns = self.now_ns
+
+    @rule()
+    def time_passes(self) -> None:
+        """So little that a command holds on, but twice as much is a release of the switch."""
+        self.wait(260 * MS)
+        self.executive_drives()
+
+    @rule()
     def commands_cease(self) -> None:
-        self.now_ns += 400 * MS
+        self.wait(400 * MS)
         if self.armed_for:
             self.armed_for = ""
 
@@ -99,7 +118,7 @@ class Robot(RuleBasedStateMachine):
     def driver_restarts(self) -> None:
         """The supervisor starts it anew, without leave."""
         self.driver = Driver(SPEC, next(self.epochs))
-        self.armed_for, self.leave, self.latched = "", "", False
+        self.armed_for, self.leave, self.latched, self.held_ns = "", "", False, None
 
     @invariant()
     def nobody_moves_it_unasked(self) -> None:

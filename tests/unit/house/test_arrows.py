@@ -26,7 +26,7 @@ from tests.unit.house.draw_map import ARCHITECTURE, with_map
 
 IMPURE = {"zenoh", "time", "os", "threading", "logging", "random", "subprocess", "socket", "asyncio", "signal"}
 SHELL = "executive/shell.py"
-STANDARD_ONLY = ("simnodes/guard.py", "simnodes/arming.py")  # a driver for hardware may take these two alone
+STANDARD_ONLY = tuple(f"simnodes/{name}.py" for name in ("guard", "arming", "hold", "reasons"))  # for hardware
 MAX_FILES = 15  # beside __init__.py; a folder with more is divided into rooms
 PROJECT_FILES = sorted(MODULES)
 

@@ -5,7 +5,7 @@ import pytest
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, pack, unpack
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, is_state
-from tailor.runtime.bus.latch import EStopLatch
+from tailor.runtime.bus.latch import MAX_SENDERS, EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import encoding_of
 from tailor.schemas.codec import encode
@@ -126,20 +126,56 @@ def test_of_several_valid_states_the_newest_counts():
     assert [sample.sequence for sample in box.drain(9)] == [8]
 
 
+def held(number, sender=SENDER):
+    return numbered(EStop(False), number, "estop", sender)
+
+
+JUNK = [
+    raw(EStop(True), "**"),
+    raw(EStop(True), "estop", payload=b""),
+    raw(EStop(True), "estop", is_put=False),
+    raw(EStop(True), "estop", attachment=b"short"),
+    raw(EStop(True), "estop", encoding="application/cdr;std_msgs/msg/String"),
+]
+
+
 @pytest.mark.promise("P38")
 def test_the_estop_is_latched_on_arrival_whatever_floods_its_key():
     latch = EStopLatch(TOPICS["estop"], "estop")
+    for each in JUNK * 100:
+        latch.offer(each)
+    assert latch.receive() is None, "junk does not take the place of a stop"
+    stop, hold = raw(EStop(True), "estop"), held(1)
+    for each in (hold, stop, *JUNK * 100, *[raw(EStop(True), "estop"), hold] * 100):
+        latch.offer(each)
+    assert [latch.receive(), latch.receive(), latch.receive()] == [stop, hold, None], "the stop comes first"
+
+
+@pytest.mark.promise("P38")
+def test_the_newest_message_of_every_held_switch_is_kept():
+    latch = EStopLatch(TOPICS["estop"], "estop")
+    senders = [f"{number:032x}" for number in range(MAX_SENDERS + 5)]
+    for number in (1, 2):
+        for sender in senders:
+            latch.offer(held(number, sender))
+    assert latch.receive() == Rejected("too many senders")
+    assert [latch.receive() for _ in range(MAX_SENDERS)] == [held(2, s) for s in senders[:MAX_SENDERS]]
+    assert latch.receive() is None
+    latch.offer(held(3, senders[-1]))
+    assert latch.receive() == held(3, senders[-1]), "the place is free again"
+
+
+def test_what_a_source_drops_is_counted():
+    box = inbox(Rejected("too many senders"), held(1), topic="estop", key="estop")
+    assert [sample.message for sample in box.drain(9)] == [EStop(False)]
+    assert box.rejected == {("estop", "too many senders"): 1}
+
+
+@pytest.mark.promise("P38")
+def test_an_estop_counts_even_if_its_number_was_there_before():
     stop = raw(EStop(True), "estop")
-    for _ in range(1000):
-        latch.offer(raw(EStop(False), "estop"))
-        latch.offer(raw(EStop(True), "**"))
-        latch.offer(raw(EStop(True), "estop", payload=b""))
-    assert latch.receive() is None
-    latch.offer(stop)
-    for _ in range(1000):
-        latch.offer(raw(EStop(False), "estop"))
-    assert latch.receive() is stop
-    assert latch.receive() is None
+    box = inbox(stop, stop, topic="estop", key="estop")
+    assert len(box.drain(9)) == 2, "a recorded stop, played before it, must not hide it"
 
 
 @pytest.mark.promise("P38")

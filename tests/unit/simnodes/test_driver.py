@@ -22,6 +22,14 @@ def command(v, sequence, sender=A, at_ns=0):
     return Sample("agilo/cmd_vel", VelocityCommand(0, v, 0.0), at_ns, sequence, sender)
 
 
+def stop(at_ns, sender=B, sequence=1):
+    return Sample("estop", EStop(True), at_ns, sequence, sender)
+
+
+def hold(at_ns, sender=B, sequence=1):
+    return Sample("estop", EStop(False), at_ns, sequence, sender)
+
+
 def test_an_arming_request_without_a_sender_arms_its_own_sender():
     driver = Driver(SPEC, 7, leave=A)
     driver.take([arm(A), command(0.5, 1, A, 1)], {}, 1)
@@ -57,7 +65,7 @@ def test_an_estop_beats_everything_that_arrives_with_it():
     driver.take([command(0.5, 1), arm(A, 1), Sample("estop", EStop(True), 2, 1, B)], {}, 2)
     assert driver.guard.mode is Mode.ESTOPPED
     assert driver.guard.output(2) == (0.0, 0.0)
-    driver.take([Sample("estop", EStop(False), 3, 2, B)], {}, 3)
+    driver.take([hold(3, sequence=2)], {}, 3)
     assert driver.guard.mode is Mode.ESTOPPED, "an e-stop of false does not release"
 
 
@@ -125,11 +133,23 @@ def test_the_state_is_published_at_10_hz_and_on_change():
     assert (state.mode, state.epoch, state.armed_sender) == ("armed", 7, A)
 
 
+def counts(driver):
+    state = driver.state(10**15, 5)
+    return dict(zip(state.refused_reasons, state.refused_counts, strict=True))
+
+
 def test_the_state_counts_refusals_and_undecodable_bytes():
     driver = Driver(SPEC, 7, leave=A)
     driver.take([command(0.5, 1)], {"malformed": 3}, 0)
-    state = driver.state(0, 5)
-    assert dict(zip(state.refused_reasons, state.refused_counts, strict=True)) == {"not armed": 1, "malformed": 3}
+    assert counts(driver) == {"not armed": 1, "malformed": 3}
+
+
+def test_the_state_counts_refused_arming_requests_by_reason():
+    driver = Driver(SPEC, 7)
+    driver.take([arm(A), arm(B, sender=A, epoch=6), arm(B, arm=False, epoch=6), arm("", sender="")], {}, 0)
+    assert counts(driver) == {"arm: only people may arm": 1, "arm: other epoch": 2, "arm: no sender": 1}
+    driver.take([stop(0), arm(B, 0, sender=A, reset=True)], {}, 0)
+    assert counts(driver)["arm: e-stop is latched"] == 1
 
 
 def test_a_message_that_is_no_command_never_moves_the_robot():

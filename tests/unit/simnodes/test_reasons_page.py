@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from tailor.schemas.errors import DecodeRefusal
-from tailor.simnodes.guard import ArmRefusal, CommandRefusal, Mode, Reason
+from tailor.simnodes.reasons import ArmRefusal, CommandRefusal, HoldRefusal, Mode, Reason
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "reasons.md"
 ROW = re.compile(r"^\| `(\w+)` \| (?:`([^`]+)`|\*\(empty\)\*) \|", re.MULTILINE)
-ENUMS = (Mode, Reason, CommandRefusal, ArmRefusal, DecodeRefusal)
+ENUMS = (Mode, Reason, CommandRefusal, ArmRefusal, HoldRefusal, DecodeRefusal)
 
 
 def driver_section() -> str:
