@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.status.picture import DriverView, ExecutiveView, Finding, ForeignView, TopicView
+from tailor.tools.status.picture import DriverView, ExecutiveView, Finding, ForeignView, LauncherView, TopicView
 
 
 class Problem(StrEnum):
@@ -23,6 +23,9 @@ class Problem(StrEnum):
     EXECUTIVE_HOLDS = "executive holds"
     EXECUTIVE_FAULT = "executive fault"
     TICKS_SKIPPED = "ticks skipped"
+    LAUNCHER_SILENT = "launcher silent"
+    PROCESS_NOT_RUNNING = "process not running"
+    PROCESS_LACKS = "process lacks something"
     TOPIC_STALE = "topic stale"
     TOPIC_SLOW = "topic slow"
     SEVERAL_SENDERS = "several senders"
@@ -36,11 +39,14 @@ Found = Iterator[tuple[Problem, str]]
 def findings(
     executives: Sequence[ExecutiveView],
     drivers: Sequence[DriverView],
+    launcher: LauncherView | None,
     topics: Sequence[TopicView],
     foreign: ForeignView,
 ) -> tuple[Finding, ...]:
     """All problems; a disarmed robot and an idle or failed task are none."""
-    found = [*_of_drivers(drivers), *_of_executives(executives), *_of_topics(topics), *_of_foreign(foreign)]
+    found = [*_of_drivers(drivers), *_of_executives(executives)]
+    found += [] if launcher is None else _of_launcher(launcher)
+    found += [*_of_topics(topics), *_of_foreign(foreign)]
     return tuple(Finding(problem.value, detail) for problem, detail in found)
 
 
@@ -74,6 +80,17 @@ def _of_executives(executives: Sequence[ExecutiveView]) -> Found:
             yield Problem.EXECUTIVE_FAULT, reason
         if executive.ticks is not None and executive.ticks.skipped:
             yield Problem.TICKS_SKIPPED, f"{executive.ticks.skipped} within the last minute"
+
+
+def _of_launcher(launcher: LauncherView) -> Found:
+    if launcher.silent:
+        yield Problem.LAUNCHER_SILENT, f"for {launcher.age_s:.1f} s"
+        return
+    for process in launcher.processes:
+        if process.state != "running":
+            yield Problem.PROCESS_NOT_RUNNING, f"{process.name} is {process.state} after {process.starts} starts"
+        if process.status:
+            yield Problem.PROCESS_LACKS, f"{process.name}: {process.status}"
 
 
 def _of_topics(topics: Sequence[TopicView]) -> Found:

@@ -16,6 +16,7 @@ from tailor.tools.status.picture import (
     ExecutiveView,
     Finding,
     ForeignView,
+    LauncherView,
     Picture,
     Spread,
     TickTimes,
@@ -44,6 +45,7 @@ def panel(picture: Picture, endpoint: str) -> RenderableType:
     parts += [_executive(executive) for executive in picture.executives]
     if picture.drivers:
         parts.append(_drivers(picture.drivers))
+    parts.append(_launcher(picture.launcher))
     if picture.topics:
         parts.append(_topics(picture.topics))
     parts += _foreign(picture.foreign)
@@ -120,6 +122,22 @@ def _drivers(drivers: Sequence[DriverView]) -> RenderableType:
             str(driver.accepted),
             Text(plain(refused or "none")),
             Text(f"{driver.age_s:.2f}", BAD if driver.silent else "default"),
+        )
+    return Padding(table, (1, 0, 0, 0))
+
+
+def _launcher(launcher: LauncherView | None) -> RenderableType:
+    if launcher is None:
+        return Padding(Text("not launched by tailor up", WEAK), (1, 0, 0, 0))
+    table = _table("process", "state", "pid>", "starts>", "silent s>", "lacks")
+    for process in launcher.processes:
+        table.add_row(
+            Text(plain(process.name)),
+            Text(plain(process.state), GOOD if process.state == "running" else BAD),
+            str(process.pid),
+            str(process.starts),
+            f"{process.silent_s:.1f}",
+            Text(plain(process.status), BAD),
         )
     return Padding(table, (1, 0, 0, 0))
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+from tailor.schemas.messages import ProcessState
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,15 @@ class DriverView:
 
 
 @dataclass(frozen=True, slots=True)
+class LauncherView:
+    """The processes that `tailor up` supervises, as it published them last."""
+
+    age_s: float
+    silent: bool
+    processes: tuple[ProcessState, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class TopicView:
     """One topic under one key."""
 
@@ -106,5 +117,6 @@ class Picture:
     executives: tuple[ExecutiveView, ...]  # newest first
     restarts: int  # executives that replaced a silent one while observed
     drivers: tuple[DriverView, ...]
+    launcher: LauncherView | None  # None: not launched by `tailor up`
     topics: tuple[TopicView, ...]
-    foreign: ForeignView = field(default_factory=lambda: ForeignView({}, {}, 0))
+    foreign: ForeignView

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import DriverState, ExecStatus, Provenance, TickReport
+from tailor.schemas.messages import DriverState, ExecStatus, ProcessStates, Provenance, TickReport
 from tailor.schemas.topics import TOPICS, Topic
 from tailor.tools.status.arrivals import Arrivals
 from tailor.tools.status.drivers import DriverRecord
 from tailor.tools.status.executives import Executives
 from tailor.tools.status.foreign import ForeignCounts
 from tailor.tools.status.health import findings
-from tailor.tools.status.picture import Picture, TopicView
+from tailor.tools.status.picture import LauncherView, Picture, TopicView
 from tailor.tools.status.reading import Received, read, topic_of
 
 SLOW_SHARE = 0.75  # of the topic's rate; at half of it no new action starts
+LAUNCHER_SILENCE_S = 3.0  # it publishes once a second
 MAX_ROBOTS = 16  # with their topics; a stranger could invent any number
 
 
@@ -34,6 +35,7 @@ class SystemModel:
         self._robots: set[str] = set()
         self._drivers: dict[str, DriverRecord] = {}
         self._executives = Executives()
+        self._launched: tuple[ProcessStates, int] | None = None  # with its arrival
 
     def take(self, raw: Raw, now_ns: int) -> None:
         """Take a publication that arrived at `now_ns`."""
@@ -58,7 +60,8 @@ class SystemModel:
         drivers = tuple(record.view(robot, now_ns, senders) for robot, record in sorted(self._drivers.items()))
         topics = tuple(_topic_view(key, arrivals, now_ns) for key, arrivals in sorted(self._arrivals.items()))
         foreign = self.foreign.view()
-        problems = findings(executives, drivers, topics, foreign)
+        launcher = None if self._launched is None else _launcher_view(*self._launched, now_ns)
+        problems = findings(executives, drivers, launcher, topics, foreign)
         return Picture(
             healthy=not problems,
             problems=problems,
@@ -66,6 +69,7 @@ class SystemModel:
             executives=executives,
             restarts=self._executives.restarts,
             drivers=drivers,
+            launcher=launcher,
             topics=topics,
             foreign=foreign,
         )
@@ -85,10 +89,17 @@ class SystemModel:
             self._executives.tick(sender, message, now_ns)
         elif isinstance(message, Provenance):
             self._executives.provenance(sender, message)
+        elif isinstance(message, ProcessStates):
+            self._launched = message, now_ns
 
 
 def _number(received: Received) -> tuple[str, int]:
     return received.origin.sender, received.origin.sequence
+
+
+def _launcher_view(states: ProcessStates, at_ns: int, now_ns: int) -> LauncherView:
+    age_s = max(0, now_ns - at_ns) / 1e9
+    return LauncherView(round(age_s, 3), age_s > LAUNCHER_SILENCE_S, states.processes)
 
 
 def _topic_view(key: str, arrivals: Arrivals, now_ns: int) -> TopicView:

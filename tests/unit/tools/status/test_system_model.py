@@ -141,6 +141,34 @@ def test_several_robots_are_listed_by_name():
     assert picture.healthy
 
 
+def launched(state="running", status=""):
+    return m.ProcessStates(
+        0,
+        (
+            m.ProcessState("sim", 17, "running", 1, 0.1, "", DRIVER),
+            m.ProcessState("record", 18, state, 2, 0.1, status, OTHER),
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("states", "expected"),
+    [
+        (launched(), ()),
+        (launched("waiting"), (Finding("process not running", "record is waiting after 2 starts"),)),
+        (launched(status="disk: full"), (Finding("process lacks something", "record: disk: full"),)),
+    ],
+)
+def test_the_launchers_processes_are_judged(states, expected):
+    feed = Feed()
+    assert feed.run(2.0).launcher is None
+    feed.put("processes", states, OTHER)
+    picture = feed.run(2.0)
+    assert picture.problems == expected
+    assert [process.name for process in picture.launcher.processes] == ["sim", "record"]
+    assert feed.run(2.0).problems == (Finding("launcher silent", "for 4.0 s"),)
+
+
 def test_a_second_publisher_of_a_command_is_a_problem():
     feed = Feed()
     for sender in (EXECUTIVE, OTHER):

@@ -6,12 +6,12 @@ from io import StringIO
 from rich.console import Console
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
-from tailor.schemas.messages import EStop, Odometry
+from tailor.schemas.messages import EStop, Odometry, ProcessState, ProcessStates
 from tailor.tools.status.panel import panel
 from tailor.tools.status.stop_key import LASTING_NS, REPEAT_NS, StopKey
 from tailor.tools.status.system_model import SystemModel
 from tailor.tools.status.watcher import MAX_OF_KEY, MAX_READ, Watcher
-from tests.unit.tools.status.bus_feed import Feed, driver, raw_of, status
+from tests.unit.tools.status.bus_feed import OTHER, Feed, driver, raw_of, status
 
 ENDPOINT = "tcp/127.0.0.1:7447"
 
@@ -40,6 +40,14 @@ def test_the_verdict_comes_first_and_every_part_has_its_line():
     assert row == ["agilo", "armed", "abababab", "(executive)", "00000007", "5", "2", "other", "sender", "0.10"]
     (row,) = [line.split() for line in lines if line.startswith("agilo/odom")]
     assert row == ["agilo/odom", "50.0", "50", "0.02", "0.5", "100", "1"]
+
+
+def test_processes_are_listed_or_missing():
+    feed = Feed()
+    assert "not launched by tailor up" in drawn(feed.run(1.0))
+    feed.put("processes", ProcessStates(0, (ProcessState("sim", 17, "running", 1, 0.1, "", OTHER),)))
+    (row,) = [line.split() for line in drawn(feed.run(1.0)) if line.startswith("sim ")]
+    assert row == ["sim", "running", "17", "1", "0.1"]
 
 
 def test_problems_stand_below_the_verdict():
