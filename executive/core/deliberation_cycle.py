@@ -9,6 +9,7 @@ from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
+from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.plan_reuse import Improvement, reusable
 from tailor.executive.core.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.core.reasons import Cause, Result
@@ -101,6 +102,8 @@ def _adopted(context: Context, state: State, decision: Decision, decided: bool) 
     """The state with a decision: at once between actions, otherwise only if it is worth a change."""
     task = state.task
     new_plan = task.plan is not decision.plan
+    if task.running is not None and _starts_another(decision, task.running) and slow_inputs(context, state) is not None:
+        return state
     if task.running is None:
         return replace(state, task=_with_decision(task, decision, new_plan))
     if task.decision is not None and decision.number == task.decision.number:
@@ -128,10 +131,16 @@ def _redirected(task: Task, running: Running, now_ns: int) -> Task:
     """The running action with new parameters if the decision begins with it, otherwise the decision's first action."""
     assert task.decision is not None
     following = first_action(task.decision, now_ns)
-    if following.action.name != running.action.name or following.step != running.step:
+    if _starts_another(task.decision, running):
         return replace(task, running=following, finished=task.finished + 1)
     predicted_s = running.elapsed_s(now_ns) + following.predicted_s
     return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
+
+
+def _starts_another(decision: Decision, running: Running) -> bool:
+    """Whether a decision begins with another action than the running one."""
+    first = decision.sequence.actions[0]
+    return first.action.name != running.action.name or first.step != running.step
 
 
 def _bindings_violated(state: State) -> bool:

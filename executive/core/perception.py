@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive.core.context import Context
-from tailor.executive.core.freshness import newest_arrivals, stale_topics
+from tailor.executive.core.freshness import newest_arrivals, slow_topics, stale_topics, with_samples
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Arming, Inputs, State, Task
@@ -29,6 +29,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
         now_ns=now_ns,
         belief=belief,
         arrivals=newest_arrivals(state.arrivals, inputs.samples),
+        streams=with_samples(state.streams, tuple(s for s in inputs.samples if s.key in sensors), now_ns),
         overruns_ns=overruns,
         arming=_driver_of(context, state.arming, inputs),
     )
@@ -49,6 +50,12 @@ def disarmed(context: Context, state: State) -> Cause | None:
     if driver.armed_sender != context.sender:
         return Cause(Reason.DRIVER_OBEYS_ANOTHER, driver.armed_sender[:8])
     return None
+
+
+def slow_inputs(context: Context, state: State) -> Cause | None:
+    """Cause for which no new action starts; None if all required sensors come at their rates."""
+    slow = slow_topics(context.domain.required, context.domain.robot, state.streams, state.now_ns)
+    return Cause(Reason.INPUT_SLOW, ", ".join(slow)) if slow else None
 
 
 def _driver_of(context: Context, arming: Arming, inputs: Inputs) -> Arming:
@@ -86,6 +93,8 @@ def _hold(context: Context, state: State) -> Cause | None:
         return Cause(Reason.INPUT_STALE, ", ".join(stale))
     if not context.domain.ready(state.belief):
         return Cause(Reason.BELIEF_NOT_READY)
+    if state.task.running is None and (slow := slow_inputs(context, state)) is not None:
+        return slow
     if len(state.overruns_ns) >= context.settings.overruns_to_hold:
         return Cause(Reason.OVERRUNS, f"{len(state.overruns_ns)} in a second")
     return None

@@ -20,6 +20,7 @@ class Reason(StrEnum):
     DRIVER_OBEYS_ANOTHER = "driver obeys another"
     CLOCK_BACKWARD = "clock backward"
     INPUT_STALE = "input stale"
+    INPUT_SLOW = "input slow"
     BELIEF_NOT_READY = "belief not ready"
     OVERRUNS = "overruns"
     REPEATED_FAILURE = "repeated failure"
@@ -58,6 +59,7 @@ REASONS: dict[Reason, Row] = {
     Reason.DRIVER_OBEYS_ANOTHER: Row(DISARMED, "the driver obeys another executive", "sender id, first 8 digits"),
     Reason.CLOCK_BACKWARD: Row(HOLDING, "the time of this tick lies before the last one", ""),
     Reason.INPUT_STALE: Row(HOLDING, "a required sensor is stale or has never been received", "topics"),
+    Reason.INPUT_SLOW: Row(HOLDING, "a required sensor is below 60 % of its rate: no action starts", "topics, rates"),
     Reason.BELIEF_NOT_READY: Row(HOLDING, "the belief does not yet suffice to act", ""),
     Reason.OVERRUNS: Row(HOLDING, "too many ticks of the last second lost whole periods", "number of overruns"),
     Reason.REPEATED_FAILURE: Row(FAULT, "an action has failed repeatedly for one cause", "action and cause"),

@@ -9,6 +9,7 @@ from tailor.executive.core.command_guard import at_rest
 from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
+from tailor.executive.core.freshness import Stream
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.plan_reuse import Improvement
 from tailor.executive.core.reasons import Cause, Result
@@ -84,6 +85,7 @@ class State:
     cause: Cause | None = None  # of the mode
     fault: Cause | None = None
     arrivals: Mapping[str, int] = field(default_factory=dict)
+    streams: Mapping[str, Stream] = field(default_factory=dict)  # of the sensors, to know their rates
     overruns_ns: tuple[int, ...] = ()  # ticks of the last second before which whole periods were lost
     arming: Arming = field(default_factory=Arming)
     task: Task = field(default_factory=Task)

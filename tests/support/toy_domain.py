@@ -121,8 +121,9 @@ def line_context(settings: Settings | None = None, places=None, problem: str = P
     return make_context(LineDomain(), scenario, models, settings or Settings(), SENDER)
 
 
-def odometry(now_ns: int, x: float, number: int, shift: float = 0.0) -> Sample:
-    return Sample("agilo/odom", Odometry(now_ns, x, shift, 0.0, 0.0, 0.0), now_ns, number, "cd" * 16)
+def odometry(now_ns: int, x: float, tick: int, shift: float = 0.0) -> Sample:
+    """The newest of a tick's five samples."""
+    return Sample("agilo/odom", Odometry(now_ns, x, shift, 0.0, 0.0, 0.0), now_ns, 5 * tick, "cd" * 16)
 
 
 def driver(now_ns: int, mode: str = "armed", epoch: int = 7, sender: str = SENDER, accepted: int = 1) -> Sample:

@@ -129,6 +129,7 @@ class _Link:
         newest: dict[str, Reading] = {}
         for reading in self._world.advance(PERIOD_NS):
             newest[reading.topic] = reading
+            self._sequences[reading.topic] += 1
         for topic in [topic for topic in newest if TOPICS[topic].source == "simulator"]:
             truth = newest.pop(topic).message
             run.truth.append(truth)
@@ -137,12 +138,12 @@ class _Link:
         after_ns = now_ns + PERIOD_NS
         driver = self._driver.state(after_ns, after_ns)
         if driver is not None:
+            self._sequences["driver"] += 1
             samples.append(self._sample("driver", driver, after_ns))
         return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
 
     def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
         received = message if self._transport is None else self._transport(message)
-        self._sequences[topic] += 1
         return Sample(key_of(topic, self._robot), received, arrival_ns, self._sequences[topic], DRIVER)
 
 

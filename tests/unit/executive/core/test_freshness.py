@@ -1,0 +1,109 @@
+"""A required sensor below 60 % of its rate: the running action goes on, no other one starts."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from tailor.executive.core.freshness import slow_topics, with_samples
+from tailor.executive.core.modes import Mode
+from tailor.executive.core.reasons import Reason
+from tailor.executive.core.state import Inputs
+from tailor.executive.core.step import step
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.schemas.messages import ActionFinished, Sample
+from tests.support.toy_domain import driver, line_context, odometry
+from tests.unit.executive.core.test_core import GOAL, TICK, drive, messages
+
+FAR = {"home": {"x": 0.0}, "a": {"x": 1.5}, "b": {"x": 2.0}}  # the first action takes three seconds
+
+
+def numbered(number, **changes):
+    """A world in which tick n brings the sample of this number."""
+
+    def world(n, given, x):
+        sample = dataclasses.replace(odometry(n * TICK, x, n), sequence=number(n), **changes)
+        return Inputs((sample, driver(n * TICK)), given.goal)
+
+    return world
+
+
+def half_rate_between(first, last):
+    """50 Hz, but 25 Hz from tick `first` to `last`."""
+    return lambda n: 10 * n - 5 * max(0, min(n, last) - first)
+
+
+@pytest.mark.promise("P21")
+def test_at_half_the_rate_the_running_action_ends_and_no_other_one_starts_until_the_rate_is_back():
+    half = numbered(lambda n: half_rate_between(3, 60)(n) // 2)
+    run = list(drive(line_context(places=FAR), world=half, ticks=120))
+    states = [state for state, _, _ in run]
+    assert [(f.action, f.outcome) for f in messages(run[:60], ActionFinished)] == [("slide", "done")]
+    first_end = next(state.tick for state in states if state.task.finished == 1)
+    assert first_end > 30, "slow since tick 13 at the latest"
+    assert {state.mode for state in states[:first_end]} == {Mode.EXECUTING}
+    assert {state.mode for state in states[first_end:60]} == {Mode.HOLDING}
+    assert all(state.command == (0.0,) for state in states[first_end:60])
+    assert (states[40].cause.reason, states[40].cause.detail) == (Reason.INPUT_SLOW, "odom at 25 of 50 Hz")
+    assert states[-1].task.result == "achieved"
+
+
+def test_no_action_starts_for_a_goal_that_is_set_while_a_sensor_is_slow():
+    def world(n, given, x):
+        given = numbered(lambda n: 2 * n)(n, given, x)
+        return dataclasses.replace(given, goal=GOAL if n == 20 else "")
+
+    run = list(drive(line_context(), world=world, ticks=40))
+    assert run[-1][0].mode is Mode.HOLDING
+    assert all(state.task.running is None for state, _, _ in run)
+
+
+def test_a_decision_that_begins_with_another_action_waits_for_the_rate():
+    """As in test_action_that_is_superseded_is_reported_as_aborted, with a slow sensor."""
+    context = line_context(places=FAR)
+    for numbers, expected in ((lambda n: 5 * n, True), (lambda n: 2 * n, False)):
+        *_, (state, _, _) = drive(context, world=numbered(numbers), ticks=12)
+        other = dataclasses.replace(state.task.running, step=99)
+        state = dataclasses.replace(state, task=dataclasses.replace(state.task, running=other))
+        moved = dataclasses.replace(odometry(13 * TICK, 0.4, 13, 0.4), sequence=numbers(13))
+        following, _ = step(context, state, 13 * TICK, Inputs((moved, driver(13 * TICK))), CheckBudget(2000))
+        assert (following.task.running.step != 99) is expected
+
+
+@pytest.mark.parametrize(
+    ("numbers", "expected"),
+    [
+        (range(0, 60, 5), ()),
+        (range(0, 36, 3), ()),  # 30 Hz: the limit itself
+        ((*range(0, 33, 3), 32), ("odom at 29 of 50 Hz",)),
+        ([0] * 12, ()),  # unsigned: not judged
+        ((0, 1, *range(2, 12)), ("odom at 10 of 50 Hz",)),
+        ((90, 91, 92, 93, *range(0, 16, 2)), ()),  # a new start of the sensor, less than a second ago
+    ],
+)
+def test_the_rate_is_judged_by_the_numbers_over_a_second(numbers, expected):
+    streams = {}
+    for n, number in enumerate(numbers):
+        sample = Sample("agilo/odom", None, n * TICK, number, "cd" * 16)
+        streams = with_samples(streams, (sample,), n * TICK)
+    assert len(streams["agilo/odom"].samples) <= 11
+    assert slow_topics(("odom",), "agilo", streams, 11 * TICK) == expected
+
+
+def test_another_sender_is_judged_anew():
+    streams = {}
+    for n in range(12):
+        sample = Sample("agilo/odom", None, n * TICK, n, ("cd" if n < 4 else "ef") * 16)
+        streams = with_samples(streams, (sample,), n * TICK)
+    assert slow_topics(("odom",), "agilo", streams, 11 * TICK) == ()
+
+
+def test_a_sensor_that_ceased_is_judged_by_its_age_alone():
+    streams = {}
+    for n in range(12):
+        streams = with_samples(streams, (Sample("agilo/odom", None, n * TICK, 5 * n, "cd" * 16),), n * TICK)
+    assert [slow_topics(("odom",), "agilo", with_samples(streams, (), n * TICK), n * TICK) for n in (12, 40)] == [
+        (),
+        (),
+    ]
