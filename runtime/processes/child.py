@@ -15,6 +15,7 @@ from typing import IO
 
 from tailor.runtime.processes.notify import SOCKET_VARIABLE
 from tailor.runtime.processes.notify_socket import NotifySocket, Report
+from tailor.runtime.processes.orphans import kill_if_orphaned
 
 STOP_S = 3.0  # enough to close files and stop the robot; then SIGKILL
 KILL_S = 5.0  # after SIGKILL; a process that hangs in the kernel is left to end when it can
@@ -22,9 +23,9 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # idle BLAS 
 _PARENT_DEATH_SIGNAL = str(Path(__file__).with_name("parent_death_signal.py"))
 
 
-def bound_to_parent(argv: Sequence[str]) -> list[str]:
-    """Command that runs `argv` and terminates it when this process dies."""
-    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), *argv]
+def bound_to_parent(argv: Sequence[str], number: signal.Signals = signal.SIGTERM) -> list[str]:
+    """Command that runs `argv`, which receives signal `number` when this process dies."""
+    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), str(int(number)), *argv]
 
 
 class Child:
@@ -37,7 +38,7 @@ class Child:
         output: IO[str] | int | None = None,
         notify_folder: Path | None = None,
     ) -> None:
-        """Start `argv`; the kernel terminates it when this process dies.
+        """Start `argv`; when this process dies, the child receives SIGTERM, and SIGKILL 3 s later.
 
         Args:
           name: Name of the process in messages.
@@ -61,6 +62,7 @@ class Child:
             stdin=subprocess.DEVNULL,
             start_new_session=True,
         )
+        kill_if_orphaned(self.pid)
 
     @property
     def pid(self) -> int:

@@ -1,12 +1,12 @@
-"""Script that requests SIGTERM at the death of its parent, then executes a program.
+"""Script that requests a signal at the death of its parent, then executes a program.
 
-Usage: `python parent_death_signal.py PARENT_PID PROGRAM ARGUMENTS…`. The kernel sends the signal even after kill -9 of
-the parent. It is a script of its own, because only exec is safe between fork and exec in a process with threads.
+Usage: `python parent_death_signal.py PARENT_PID SIGNAL PROGRAM ARGUMENTS…`. The kernel sends the signal even after
+kill -9 of the parent. It is a script of its own, because only exec is safe between fork and exec in a process with
+threads.
 """
 
 import ctypes
 import os
-import signal
 import sys
 
 PR_SET_PDEATHSIG = 1  # <sys/prctl.h>; survives exec
@@ -14,8 +14,8 @@ PR_SET_PDEATHSIG = 1  # <sys/prctl.h>; survives exec
 
 def main() -> None:
     """Set the signal and exec; end silently if the parent has died meanwhile."""
-    parent, program = int(sys.argv[1]), sys.argv[2:]
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    parent, number, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
     if os.getppid() == parent:
         os.execvp(program[0], program)
 

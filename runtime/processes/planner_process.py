@@ -84,7 +84,7 @@ class PlannerProcess:
         try:
             words = split_command(command)
             child = subprocess.Popen(
-                bound_to_parent([*words, *map(str, paths)]),
+                bound_to_parent([*words, *map(str, paths)], signal.SIGKILL),  # it has nothing to tidy up
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
