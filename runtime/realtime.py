@@ -6,19 +6,18 @@ then are excluded from garbage collection and locked into memory.
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import os
 import re
-import resource
 from pathlib import Path
 from typing import Any
+
+from tailor.runtime.memory_lock import lock_memory
 
 PRIORITY = 50  # of SCHED_FIFO: above ordinary work, below the kernel's own threads
 BUS_PRIORITY = 40  # below the loop: a flood on the bus must not delay a tick
 DRIVER_PRIORITY = 45
 _BUS_THREAD = re.compile(r"(app|net|acc|tx|rx)-\d+")  # zenoh's runtimes
-_MCL_CURRENT, _MCL_FUTURE = 1, 2  # <sys/mman.h>
 
 
 def prepare(priority: int = PRIORITY) -> dict[str, Any]:
@@ -37,7 +36,7 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
     gc.disable()  # the loop calls collect_young() in its slack time instead
     return {
         "gc": "frozen",
-        "memory": _lock_memory(),
+        "memory": lock_memory(),
         "scheduler": take_fifo(priority),
         "bus": elevate_bus_threads(),
         "threads": os.environ.get("OMP_NUM_THREADS", "unset"),
@@ -47,16 +46,6 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
 def collect_young() -> None:
     """Collect young garbage. Call it after the work of a tick, so that no collection interrupts a tick."""
     gc.collect(1)
-
-
-def _lock_memory() -> str:
-    soft, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
-    if os.geteuid() != 0 and soft != resource.RLIM_INFINITY:
-        return f"not locked: limited to {soft} bytes"  # locking later pages would then fail in the middle of a run
-    libc = ctypes.CDLL(None, use_errno=True)
-    if libc.mlockall(_MCL_CURRENT | _MCL_FUTURE) != 0:
-        return f"not locked: {os.strerror(ctypes.get_errno())}"
-    return "locked"
 
 
 def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:

@@ -50,13 +50,14 @@ def _drive(recording: Path, seconds: float, burners: int) -> None:
     endpoint = free_endpoint()
     up = tailor("up", "soccer", "--connect", endpoint, "--record", str(recording))
     with tempfile.TemporaryFile("w") as log, stopped_in_order([Child("up", up, log)]) as children:
-        _wait_for_router(endpoint)
+        wait_for_router(endpoint)
         children += [Child("burner", [sys.executable, "-c", BURN]) for _ in range(burners)]
-        with open_client(endpoint) as session:
-            _play(session, time.monotonic() + seconds)
+        with open_client(endpoint, role="people") as session:
+            play(session, time.monotonic() + seconds)
 
 
-def _wait_for_router(endpoint: str) -> None:
+def wait_for_router(endpoint: str) -> None:
+    """Wait until something listens there; raises NoMeasurement after START_S."""
     host, port = endpoint.removeprefix("tcp/").split(":")
     deadline = time.monotonic() + START_S
     while time.monotonic() < deadline:
@@ -67,7 +68,7 @@ def _wait_for_router(endpoint: str) -> None:
     raise NoMeasurement(f"no router at {endpoint} after {START_S} s")
 
 
-def _play(session: Session, until_s: float) -> None:
+def play(session: Session, until_s: float) -> None:
     """Reset the world and set the goal again after each episode."""
     inbox, arm = session.inbox(("status",), ""), session.publisher("arm_request", "agilo")
     seed = 0

@@ -17,6 +17,7 @@ BENCHMARKS = {
     "refine": "gap to the best known value over CPU time for each solver; time of proofs",
     "models": "time of a prediction and of a fit",
     "gather": "simulated seconds for each wall second",
+    "memory": "resident memory of each process, page faults of the loop",
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 

@@ -1,0 +1,34 @@
+"""Memory of a running system: what mlockall makes resident counts."""
+
+import time
+
+import pytest
+
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.processes.child import Child, stopped_in_order, tailor
+from tailor.tools.benchmarks.memory import Usage, processes_of
+from tailor.tools.benchmarks.ticks import wait_for_router
+from tailor.tools.launch.system import free_endpoint
+from tests.support.patience import wait_until
+
+EXECUTIVE_MB = 150
+OTHERS_MB = 150  # of the launcher, the simulator and the recorder each
+
+
+@pytest.mark.xdist_group("live")
+@pytest.mark.parametrize("domain", ["soccer", pytest.param("arm", marks=pytest.mark.slow)])
+def test_an_executive_in_motion_takes_150_mb_with_all_that_is_locked(tmp_path, domain):
+    endpoint = free_endpoint()
+    up = tailor("up", domain, "--connect", endpoint, "--record", str(tmp_path / "run.mcap"))
+    with (tmp_path / "log").open("w") as log, stopped_in_order([Child("up", up, log)]) as (launcher,):
+        wait_for_router(endpoint)
+        with open_client(endpoint) as session:
+            ticks = session.inbox(("tick",), "")
+            wait_until(ticks.drain, "ticks")
+            time.sleep(3.0)  # a deliberation, models called, an action running
+            assert ticks.drain()
+        pids = processes_of(launcher.pid)
+        usage = {name: Usage.of(pid) for name, pid in pids.items()} | {"up": Usage.of(launcher.pid)}
+    print({name: round(each.peak_mb) for name, each in usage.items()})
+    assert usage.pop("executive").peak_mb <= EXECUTIVE_MB
+    assert max(each.peak_mb for each in usage.values()) <= OTHERS_MB
