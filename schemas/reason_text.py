@@ -5,7 +5,7 @@ from __future__ import annotations
 
 def reason_text(reason: str, detail: str) -> str:
     """The reason for people, e.g. `reason_text("driver fault", "motor 2") == "driver fault: motor 2"`."""
-    return f"{reason}: {detail}" if detail else reason
+    return ": ".join(text for text in (reason, detail) if text)
 
 
 def result_text(result: str, reason: str, detail: str) -> str:

@@ -1,14 +1,13 @@
 """The ROS 2 types of our messages: names, definition texts, hashes, and the bytes of one value.
 
-Only this module uses rosbags, except for its error type in codec.py. standard.py and own.py convert the fields.
+Only this module uses rosbags, except for its error type in codec.py; both load it when it is first needed.
+standard.py and own.py convert the fields.
 """
 
 from __future__ import annotations
 
 from functools import cache
 from typing import Any
-
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from tailor.schemas.messages import Message
 from tailor.schemas.msg_definitions import PACKAGE, declarations, with_parts
@@ -23,6 +22,8 @@ MAX_ELEMENTS = 65536  # in one sequence; the longest legal message has fewer
 @cache
 def typestore() -> Any:
     """rosbags' store of ROS 2 types with our own registered; made once, takes about 0.1 s."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
     store = get_typestore(Stores.ROS2_JAZZY)
     store.max_sequence_length = MAX_ELEMENTS
     own: dict[str, Any] = {}
@@ -73,7 +74,7 @@ def from_bytes(data: bytes, name: str) -> tuple[Any, int]:
     `deserialize_cdr` refuses the padding that real ROS 2 serializers append; so the caller judges the rest.
 
     Raises:
-      ValueError: No CDR header. Other damage raises one of codec.DAMAGE.
+      ValueError: No CDR header. Other damage raises one of codec's damages.
     """
     if len(data) < 4 or data[0] != 0 or data[1] > 1:
         raise ValueError("not a CDR header")

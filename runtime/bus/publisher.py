@@ -35,8 +35,12 @@ class Publisher:
 
     def publish(self, message: Message) -> int:
         """Publish a message under the next sequence number, from 1; returns the number."""
+        return self.publish_encoded(encode(message))
+
+    def publish_encoded(self, payload: bytes) -> int:
+        """Publish the CDR bytes of a message of ours under the next sequence number; returns the number."""
         self.sequence += 1
-        self.put_raw(encode(message), Origin(self.sequence, self._wall(), self._sender))
+        self.put_raw(payload, Origin(self.sequence, self._wall(), self._sender))
         return self.sequence
 
     def put_raw(self, payload: bytes, origin: Origin) -> None:

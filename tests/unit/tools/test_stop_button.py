@@ -1,0 +1,125 @@
+"""The e-stop of the command line, the page and the dead man's switch, with a bus that only counts."""
+
+import pytest
+
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import DriverState, EStop
+from tailor.tools.cli import stop_button
+from tailor.tools.cli.dead_mans_switch import HELD, DeadMansSwitch, driver_lines
+from tailor.tools.cli.stop_button import STOP, StopButton, all_stopped, summary
+
+SENDER = "ab12cd34" + "0" * 24
+
+
+def state(mode="armed", reason="", detail="", epoch=1):
+    return DriverState(0, mode, reason, detail, epoch, "", 0)
+
+
+class Bus:
+    """A session whose drivers, by robot, answer every e-stop with `reaction(number of e-stops)`."""
+
+    sender = SENDER
+
+    def __init__(self, **drivers):
+        self.drivers, self.sent, self.connected = drivers, [], True
+        self.queue = None
+
+    def publisher(self, name, robot):
+        assert (name, robot) == ("estop", "")
+        return self
+
+    def publish_encoded(self, payload):
+        self.sent.append(payload)
+        for robot, reaction in self.drivers.items():
+            heard = reaction(len(self.sent))
+            if heard is not None and self.queue is not None:
+                self.queue.put(Raw(f"{robot}/driver", heard, None, "", True, None))
+
+    def subscribe_all(self, pattern):
+        assert pattern == "*/driver"
+        self.queue = IngestQueue()
+        return self.queue, self
+
+    def undeclare(self):
+        self.queue = None
+
+
+def confirms(after=1):
+    return lambda count: encode(state("estopped" if count > after else "armed"))
+
+
+def test_the_prepared_bytes_are_those_of_the_codec():
+    assert (encode(EStop(True)), encode(EStop(False))) == (STOP, HELD)
+
+
+def test_the_button_is_pressed_until_every_driver_confirms():
+    bus = Bus(agilo=confirms(3), nomad=confirms(40))
+    states = StopButton(bus).press()
+    assert len(bus.sent) > 40
+    assert set(bus.sent) == {STOP}
+    assert all_stopped(states)
+    assert summary(states) == "agilo is estopped\nnomad is estopped"
+    assert bus.queue is None, "the subscription ends with the press"
+
+
+def test_the_button_listens_long_enough_to_hear_every_driver():
+    def late(count):
+        return encode(state("armed")) if count > 10 else None
+
+    assert summary(StopButton(Bus(agilo=confirms(), nomad=late)).press(0.5)) == "agilo is estopped\nnomad is armed"
+
+
+@pytest.mark.parametrize("drivers", [{}, {"agilo": confirms(10**6)}, {"agilo": lambda count: b"junk"}])
+def test_without_a_confirmation_the_button_gives_up_in_time_and_reports_it(drivers, monkeypatch):
+    states = StopButton(Bus(**drivers)).press(0.4)
+    assert not all_stopped(states)
+    assert summary(states) == ("agilo is armed" if states else "no driver is on the bus")
+
+
+def test_a_newer_state_counts_and_junk_does_not():
+    queue = IngestQueue()
+    states = stop_button.DriverStates(queue)
+    for payload in (encode(state("estopped")), encode(state("armed")), b"junk"):
+        queue.put(Raw("agilo/driver", payload, None, "", True, None))
+    queue.put(Raw("agilo/driver", encode(state("estopped")), None, "", False, None))
+    assert states.poll()["agilo"].mode == "armed"
+    assert states.poll() == {}
+    assert states.newest["agilo"].mode == "armed"
+
+
+def test_a_switch_is_held_ten_times_a_second_until_it_is_released():
+    bus = Bus()
+    DeadMansSwitch(bus, print).hold(lambda: len(bus.sent) >= 4)
+    assert bus.sent == [HELD] * 4
+
+
+def test_a_switch_without_bus_ends_and_reports_it():
+    bus, lines = Bus(), []
+    bus.connected = False
+    DeadMansSwitch(bus, lines.append).hold(lambda: len(bus.sent) > 20)
+    assert 5 <= len(bus.sent) <= 8
+    assert "drivers have stopped" in lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("driver", "expected"),
+    [
+        (state(detail="held by 11111111, ab12cd34"), "agilo is armed: hears this switch"),
+        (state(detail="held by 11111111"), "agilo is armed: DOES NOT HEAR THIS SWITCH"),
+        (state(detail="ab12cd34"), "agilo is armed (ab12cd34): DOES NOT HEAR THIS SWITCH"),
+        (
+            state("disarmed", "disarm request", "by 22222222; held by ab12cd34"),
+            "agilo is disarmed (disarm request: by 22222222): hears this switch",
+        ),
+        (state("stopped", "x\x1b[2J"), "agilo is stopped (x\\x1b[2J): DOES NOT HEAR THIS SWITCH"),
+    ],
+)
+def test_a_line_tells_whether_the_driver_hears_the_switch(driver, expected):
+    assert driver_lines({"agilo": driver}, "ab12cd34", set()) == {"agilo": expected}
+
+
+def test_a_driver_that_falls_silent_is_reported():
+    lines = driver_lines({"agilo": state(detail="held by ab12cd34")}, "ab12cd34", {"agilo"})
+    assert lines == {"agilo": "agilo is SILENT: its state is unknown"}

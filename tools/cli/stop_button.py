@@ -1,0 +1,97 @@
+"""Stops every driver on the bus, and reports what each of them confirms.
+
+Loads neither NumPy nor rosbags before the first e-stops are out: their 0.2 s would be motion.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from threading import Lock
+
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.session import Session
+from tailor.schemas.messages import DriverState
+from tailor.schemas.topics import TOPICS
+
+STOP = b"\0\1\0\0\1"  # CDR of EStop(True); the codec would have to be loaded first
+WAIT_S = 1.5  # for every driver to confirm
+HEAR_S = 0.35  # drivers publish at 10 Hz: whoever is there has been heard by then
+REPEAT_S = 0.02  # a publication may be lost, e.g. before the router knows this publisher
+FIRST_S = 0.05  # nothing else is done until then
+MAX_READ = 500  # messages of one poll: a flood must not delay the next e-stop
+ALL_DRIVERS = TOPICS["driver"].key.format(robot="*")
+
+
+class DriverStates:
+    """Newest state of every driver on the bus."""
+
+    def __init__(self, queue: IngestQueue) -> None:
+        """`queue`: publications on `*/driver`."""
+        self.newest: dict[str, DriverState] = {}  # by robot
+        self._queue = queue
+
+    def poll(self) -> Mapping[str, DriverState]:
+        """Take what has been received since the last call; of each robot only the newest valid state is read."""
+        from tailor.schemas.codec import decode
+
+        fresh: dict[str, DriverState] = {}
+        for raw in reversed(self._queue.drain()[-MAX_READ:]):
+            robot = raw.key.rpartition("/")[0]
+            if robot not in fresh and raw.is_put:
+                state = decode(DriverState, raw.payload)
+                if isinstance(state, DriverState):
+                    fresh[robot] = state
+        self.newest |= fresh
+        return fresh
+
+
+@contextmanager
+def driver_states(session: Session) -> Iterator[DriverStates]:
+    """Subscribes to the states of all drivers."""
+    queue, subscription = session.subscribe_all(ALL_DRIVERS)
+    try:
+        yield DriverStates(queue)
+    finally:
+        subscription.undeclare()
+
+
+class StopButton:
+    """Emergency stop of all drivers; may be pressed again, and from several threads."""
+
+    def __init__(self, session: Session) -> None:
+        """`session`: of a role that may publish the e-stop."""
+        self._session = session
+        self._publisher = session.publisher("estop", "")
+        self._lock = Lock()
+
+    def press(self, wait_s: float = WAIT_S) -> dict[str, DriverState]:
+        """Publish the e-stop until every driver that is heard confirms it, for `wait_s` at most.
+
+        Returns:
+          The newest state of each driver, by robot.
+        """
+        with self._lock:
+            began_s = time.monotonic()
+            self._publisher.publish_encoded(STOP)
+            with driver_states(self._session) as states:
+                while (elapsed_s := time.monotonic() - began_s) < wait_s:
+                    time.sleep(REPEAT_S)
+                    self._publisher.publish_encoded(STOP)
+                    if elapsed_s >= FIRST_S:
+                        states.poll()
+                    if elapsed_s >= HEAR_S and all_stopped(states.newest):
+                        break
+                return states.newest
+
+
+def all_stopped(states: Mapping[str, DriverState]) -> bool:
+    """Whether there is a driver and every one has latched the e-stop."""
+    return bool(states) and all(state.mode == "estopped" for state in states.values())
+
+
+def summary(states: Mapping[str, DriverState]) -> str:
+    """One line a driver: its mode."""
+    lines = [f"{robot} is {state.mode}" for robot, state in sorted(states.items())]
+    return "\n".join(lines) or "no driver is on the bus"
