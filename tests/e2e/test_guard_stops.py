@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 
 from tailor.schemas.messages import DriverState
-from tests.support.bus_system import driving, guarded_robot, moving, outputs
+from tests.support.bus_system import driving, guarded_robot, moving, outputs, zero_at
 from tests.support.patience import wait_until
 from tests.support.stalls import repeat_on_stall
 
@@ -22,13 +22,9 @@ def system(tmp_path):
         yield robot
 
 
-def stopped_at(trace, after_s):
-    return next((at for at, v in outputs(trace) if at > after_s and v == 0.0), None)
-
-
 def rest_after(trace, since_s):
     """When the robot came to rest, monotonic s."""
-    return wait_until(lambda: stopped_at(trace, since_s), "robot at rest")
+    return wait_until(lambda: zero_at(trace, since_s), "robot at rest")
 
 
 def killed_in_motion(start, endpoint, trace, after_s):
@@ -66,7 +62,7 @@ def test_a_pause_of_a_tick_does_not_stop_the_robot(system):
         time.sleep(0.12)
         os.kill(executive.pid, signal.SIGCONT)
         time.sleep(0.5)
-        stopped_s = stopped_at(trace, began_s)
+        stopped_s = zero_at(trace, began_s)
         executive.kill()
         rest_after(trace, began_s)
         assert stopped_s is None

@@ -56,6 +56,11 @@ def outputs(trace):
     return [(int(at) / 1e9, float(v)) for at, v in rows]
 
 
+def zero_at(trace, since_s):
+    """When the guard's output became zero after `since_s`, monotonic s; None if it did not."""
+    return next((at for at, v in outputs(trace) if at > since_s and v == 0.0), None)
+
+
 def moving(trace, speed):
     """Whether the guard's output is that speed, as a function."""
     return lambda: trace.exists() and outputs(trace) and outputs(trace)[-1][1] == speed

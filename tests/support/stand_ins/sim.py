@@ -29,8 +29,12 @@ class Traced(FakeBody):
     def command(self, values):
         super().command(values)
         if values != self.last:
-            self.trace.write(f"{time.monotonic_ns()} {values[0]!r}\n")
+            self.trace.write(f"{time.monotonic_ns()} {self.traced(values)!r}\n")
             self.last = values
+
+    def traced(self, values):
+        """The number that stands for the set-points in the trace."""
+        return values[0]
 
 
 def main(endpoint, path):
