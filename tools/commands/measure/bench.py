@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import importlib
 import sys
+from pathlib import Path
 
 from rich.console import Console
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.terminal import table_console
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and beside CPU burners; delay from percept to command",
@@ -21,30 +24,50 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
+SOAK = "soak"
+SOAK_TEXT = "whole systems under one random fault a minute: invariants, memory; only if named"
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor bench`."""
-    rows = "; ".join(f"{name}: {text}" for name, text in BENCHMARKS.items())
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all). {rows}")
+    rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, SOAK: SOAK_TEXT}.items())
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but soak). {rows}")
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
+    parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")
+    parser.add_argument("--seed", type=at_least(0, "--seed"), default=0, help="soak: random seed (default 0)")
+    parser.add_argument(
+        "--every", type=at_least(10, "--every"), default=60, metavar="S", help="soak: time between faults (default 60)"
+    )
+    parser.add_argument("--output", type=Path, default=Path("out/soak.json"), help="soak: file (default %(default)s)")
+    parser.add_argument("--json", action="store_true", help="soak: print the results as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run each benchmark; 0 if all have measured something, otherwise 1.
+    """Run each benchmark; 0 if all have measured something and no invariant of a soak was violated, otherwise 1.
 
     Raises:
       UsageError: An unknown name.
     """
-    unknown = sorted(set(arguments.names) - BENCHMARKS.keys())
+    unknown = sorted(set(arguments.names) - BENCHMARKS.keys() - {SOAK})
     if unknown:
-        raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join(BENCHMARKS)}")
-    console, code = Console(), 0
+        raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join((*BENCHMARKS, SOAK))}")
+    console, code = table_console(), 0
     for name in arguments.names or BENCHMARKS:
-        console.rule(name)
-        module = importlib.import_module(f"tailor.tools.benchmarks.{name}")
+        if not arguments.json:
+            console.rule(name)
         try:
-            module.run(console, arguments.quick)
+            passed = _run_one(name, console, arguments)
         except NoMeasurement as failure:
             print(f"tailor bench {name}: nothing measured: {failure}", file=sys.stderr)
-            code = 1
+            passed = False
+        code = code if passed else 1
     return code
+
+
+def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
+    module = importlib.import_module(f"tailor.tools.benchmarks.{name}")
+    if name == SOAK:
+        options = (arguments.minutes, arguments.seed, arguments.every, arguments.output, arguments.json)
+        return bool(module.run(console, module.Options(*options)))
+    module.run(console, arguments.quick)
+    return True

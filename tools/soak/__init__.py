@@ -1,0 +1,1 @@
+"""Hours of random faults on whole systems: schedule, faults, invariants, memory."""

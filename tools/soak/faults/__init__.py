@@ -1,0 +1,1 @@
+"""Faults, and what they do to a system."""

@@ -1,0 +1,1 @@
+"""Judges of motion and memory, and what they report. Pure."""

@@ -1,0 +1,53 @@
+"""Growth of a process's memory: a robust slope with its uncertainty. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from scipy import stats
+
+SETTLING_S = 600.0  # caches fill, chunks and pools reach their size
+LEAST_S = 600.0  # of what follows; a slope over less is noise
+FLAT_MB_PER_H = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """Resident memory of one process from its start to its end."""
+
+    first_mb: float
+    last_mb: float
+    minutes: float
+    slope: float | None  # MB/h after the settling time; None: it did not live long enough
+    low: float = 0.0  # 95 % confidence interval
+    high: float = 0.0
+
+    @property
+    def flat(self) -> bool:
+        """Whether it grows by less than the limit; an unmeasured slope is none."""
+        return self.slope is None or self.slope < FLAT_MB_PER_H
+
+
+def growth(samples: Sequence[tuple[float, float]]) -> Growth:
+    """Growth from samples (seconds, MB), at least one, in order of time.
+
+    The slope is Theil and Sen's, over the medians of each minute: short peaks and single steps weigh little.
+    """
+    begin_s, last_s = samples[0][0], samples[-1][0]
+    settled = [sample for sample in samples if sample[0] >= begin_s + SETTLING_S]
+    measured: tuple[float | None, float, float] = (None, 0.0, 0.0)
+    if settled and last_s - settled[0][0] >= LEAST_S:
+        measured = _theil_sen(settled)
+    return Growth(samples[0][1], samples[-1][1], (last_s - begin_s) / 60, *measured)
+
+
+def _theil_sen(samples: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
+    """Slope in MB/h, and the bounds of its 95 % confidence interval."""
+    minutes = [list(rows) for _, rows in groupby(samples, key=lambda sample: sample[0] // 60)]
+    hours = [float(np.median([at for at, _ in rows])) / 3600 for rows in minutes]
+    sizes = [float(np.median([mb for _, mb in rows])) for rows in minutes]
+    result = stats.theilslopes(sizes, hours)
+    return float(result[0]), float(result[2]), float(result[3])

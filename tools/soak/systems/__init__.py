@@ -1,0 +1,1 @@
+"""Launched systems, seen from a session on their bus, and people who look after them."""

@@ -1,0 +1,80 @@
+"""People who look after a system: they arm it after a stop, once nothing has moved for a while, and set new tasks."""
+
+from __future__ import annotations
+
+import time
+
+from tailor.schemas.messages import ArmRequest, EStop
+from tailor.tools.soak.systems.system import System
+from tailor.tools.soak.systems.tasks import Tasks
+
+QUIET_NS = 2_000_000_000  # after a stop, before people arm: whatever moves then moves unasked
+AGAIN_NS = 2_500_000_000  # between two attempts to arm
+RESULT_NS = 300_000_000  # after a new goal: what is older belongs to the last one
+
+
+class People:
+    """Look after one system; call `attend` many times a second.
+
+    Attributes:
+      armed_ns: Time of their last request to arm; 0: none.
+      prepared_ns: Time at which they last prepared a task, which may disarm; 0: never.
+      count: Number of tasks that they set.
+      hurry: Somebody waits for motion.
+    """
+
+    def __init__(self, system: System, tasks: Tasks) -> None:
+        """`tasks` are those of the present start."""
+        self.armed_ns = self.prepared_ns = self.count = 0
+        self.hurry = False
+        self._system, self._tasks = system, tasks
+        self._executive = ""  # sender id
+        self._goal_ns = 0  # a goal is due then; 0: none
+        self._set_ns = 0  # time of the last goal
+
+    def arm(self, now_ns: int) -> None:
+        """Arm for the executive that runs, with a reset if the e-stop is latched."""
+        link = self._system.link
+        if link is None or link.view.driver is None or not link.view.sender:
+            return
+        self.armed_ns = now_ns
+        self._system.judge.people_arm(now_ns)
+        link.arming.publish(ArmRequest(True, link.view.driver.mode == "estopped", link.view.sender, 0))
+
+    def disarm(self, now_ns: int, zero_within_s: float) -> None:
+        """Disarm."""
+        self._system.judge.revoke(now_ns, zero_within_s)
+        if self._system.link is not None:
+            self._system.link.arming.publish(ArmRequest(False, False, "", 0))
+
+    def estop(self, now_ns: int, zero_within_s: float) -> None:
+        """Stop every driver."""
+        self._system.judge.revoke(now_ns, zero_within_s)
+        if self._system.link is not None:
+            self._system.link.estop.publish(EStop(True))
+
+    def attend(self, now_ns: int) -> None:
+        """Do what is due."""
+        system, link = self._system, self._system.link
+        if link is None or not system.heard(now_ns):
+            return
+        view = link.view
+        if view.driver is None or view.status is None:
+            return
+        if view.sender != self._executive:
+            self._executive, self._goal_ns = view.sender, self._tasks.begin(now_ns)
+        elif view.status.result and not self._goal_ns and view.status_ns > self._set_ns + RESULT_NS:
+            self._goal_ns = self._tasks.prepare(now_ns, self.hurry)
+            self.prepared_ns = now_ns if self._goal_ns else self.prepared_ns
+        if not system.judge.permitted:
+            long_ago = now_ns - self.armed_ns > AGAIN_NS
+            if long_ago and view.driver.mode != "armed" and system.judge.at_rest_since(now_ns, QUIET_NS):
+                self.arm(now_ns)
+        elif self._goal_ns and now_ns > self._goal_ns and view.driver.mode == "armed":
+            self._set_goal()
+
+    def _set_goal(self) -> None:
+        accepted, _ = self._system.call("exec/goal", self._tasks.goal())
+        if accepted:
+            self._goal_ns, self._set_ns = 0, time.monotonic_ns()
+            self.count += 1

@@ -1,0 +1,58 @@
+"""What /proc tells of the processes of a launched system."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+_PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 1e6
+_MODULE = b"tailor.tools.main"
+
+
+def children(pid: int) -> dict[str, list[int]]:
+    """Process ids of the running children of a launcher, by the tailor command that each runs, e.g. "sim"."""
+    found: dict[str, list[int]] = {}
+    try:
+        pids = [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:
+        return found
+    for child in pids:
+        name = _command(child)
+        if name and is_alive(child):
+            found.setdefault(name, []).append(child)
+    return found
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process runs; a zombie does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def rss_mb(pid: int) -> float | None:
+    """Resident memory; None if the process has ended."""
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE_MB
+    except (OSError, IndexError):
+        return None
+
+
+def naming(text: str) -> list[int]:
+    """Processes whose command line contains `text`, except this one."""
+    pids = [int(entry.name) for entry in Path("/proc").iterdir() if entry.name.isdigit()]
+    return [pid for pid in pids if pid != os.getpid() and is_alive(pid) and text.encode() in _command_line(pid)]
+
+
+def _command(pid: int) -> str:
+    words = _command_line(pid).split(b"\0")
+    at = words.index(_MODULE) + 1 if _MODULE in words else len(words)
+    return words[at].decode(errors="replace") if at < len(words) else ""
+
+
+def _command_line(pid: int) -> bytes:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return b""
