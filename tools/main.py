@@ -24,6 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "arm": ("tailor.tools.commands.run.arm", "arm a driver for the running executive"),
     "estop": ("tailor.tools.commands.run.estop", "emergency stop of all drivers"),
     "status": ("tailor.tools.commands.look.status", "state and health of a running system, with an e-stop key"),
+    "units": ("tailor.tools.commands.run.units", "write systemd units for a robot"),
     "record": ("tailor.tools.commands.run.record", "record the bus into an MCAP file"),
     "replay": ("tailor.tools.commands.look.replay", "play a recording on the bus"),
     "info": ("tailor.tools.commands.look.info", "summarise a recording"),

@@ -1,0 +1,116 @@
+"""Write unit files of systemd for one robot: bus, driver, executive, recorder, and a target that groups them.
+
+After every start of a service a person arms the robot and sends a goal. docs/deployment.md describes the installation.
+"""
+
+from __future__ import annotations
+
+import argparse
+import getpass
+import os
+import re
+import shlex
+from pathlib import Path
+
+from tailor.executive.composition import build_context
+from tailor.runtime.bus.zenoh_config import check_endpoint
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.deployment import executive_config
+from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.system_flags import deployment_from
+from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.units import PARTS, UnitsConfig, unit_files
+
+USER = re.compile(r"[a-z_][a-z0-9_-]{0,30}\$?")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor units`."""
+    add = parser.add_argument
+    add("folder", metavar="DIR", type=Path, help="folder for the files, e.g. /etc/systemd/system; made if missing")
+    add("--domain", default="soccer", help="domain to run (default soccer)")
+    add("--scenario", help="scenario of the domain (default: its first)")
+    add("--user", default="", help="user of the services (default: you)")
+    add("--parts", metavar="LIST", default="", help=f"parts on this machine (default: {','.join(PARTS)})")
+    add("--record", metavar="DIR", help="folder of the recordings; without it there is no recorder")
+    add("--driver-command", metavar="COMMAND", default="", help="driver of the hardware, instead of the simulator")
+    add("--driver", metavar="FILE", help="specification of that driver (default: that of the simulated robot)")
+    add("--force", action="store_true", help="overwrite existing files")
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check everything, then write all files, and print their names."""
+    files = unit_files(_config(arguments))
+    folder: Path = arguments.folder
+    existing = [name for name in files if (folder / name).exists()]
+    if existing and not arguments.force:
+        raise UsageError(f"{folder}: has {', '.join(existing)} already, expected --force to overwrite")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+            print(folder / name)
+    except OSError as error:
+        raise UsageError(f"{error.filename or folder}: {error.strerror}, expected a writable folder") from error
+    return 0
+
+
+def _config(arguments: argparse.Namespace) -> UnitsConfig:
+    deployment = deployment_from(arguments)
+    domain = build_context(executive_config(arguments.domain, deployment), sender="").domain
+    check_driver(domain, driver_of(domain.robot, arguments.driver))
+    flags: tuple[str, ...] = ("--config", _absolute(arguments.config)) if arguments.config else ()
+    if arguments.connect or not arguments.config:
+        flags += ("--connect", deployment.bus.endpoint)
+    return UnitsConfig(
+        domain=arguments.domain,
+        robot=domain.robot,
+        user=_user(arguments.user),
+        endpoint=check_endpoint(deployment.bus.endpoint),
+        bus_flags=flags,
+        parts=_parts(arguments.parts, bool(arguments.record)),
+        scenario=arguments.scenario or "",
+        record=_folder(arguments.record) if arguments.record else "",
+        driver_command=_driver_command(arguments.driver_command),
+        driver_file=_absolute(arguments.driver) if arguments.driver else "",
+    )
+
+
+def _absolute(path: str) -> str:
+    return str(Path(path).resolve())
+
+
+def _folder(path: str) -> str:
+    if not Path(path).is_dir():
+        raise UsageError(f"--record {path!r}: expected a folder that exists and that the services' user may write")
+    return _absolute(path)
+
+
+def _user(name: str) -> str:
+    user = name or getpass.getuser()
+    if user == "root" and not name:
+        raise UsageError("--user is missing, expected the user of the services; they need no root")
+    if not USER.fullmatch(user):
+        raise UsageError(f"--user {user}: expected a user name")
+    return user
+
+
+def _parts(text: str, record: bool) -> tuple[str, ...]:
+    named = tuple(part for part in text.split(",") if part)
+    unknown = [part for part in named if part not in PARTS]
+    if unknown:
+        raise UsageError(f"--parts {text}: unknown {', '.join(unknown)}, expected some of: {', '.join(PARTS)}")
+    if "recorder" in named and not record:
+        raise UsageError("--parts with recorder, expected --record DIR as well")
+    return named or tuple(part for part in PARTS if part != "recorder" or record)
+
+
+def _driver_command(text: str) -> tuple[str, ...]:
+    try:
+        command = tuple(shlex.split(text))
+    except ValueError as error:
+        raise UsageError(f"--driver-command {text}: {error}") from error
+    if command and not (os.path.isabs(command[0]) and os.access(command[0], os.X_OK)):
+        raise UsageError(f"--driver-command {command[0]}: expected the absolute path of a program")
+    return command
