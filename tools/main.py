@@ -18,6 +18,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo": ("tailor.tools.commands.run.demo", "run the same plan greedy and refined, and compare"),
     "letters": ("tailor.tools.commands.run.letters", "write letters with the arm, with and without refined velocities"),
     "bus": ("tailor.tools.commands.run.bus", "run only the bus router"),
+    "gateway": ("tailor.tools.commands.run.gateway", "let other users and machines onto the bus, by role"),
+    "keys": ("tailor.tools.commands.run.keys", "make keys for a bus on several machines"),
     "sim": ("tailor.tools.commands.run.sim", "run a simulated robot on the bus"),
     "executive": ("tailor.tools.commands.run.executive", "run the executive on the bus"),
     "goal": ("tailor.tools.commands.run.goal", "send a PDDL goal to a running executive"),

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from tailor.schemas.errors import UsageError
+
+AUTHORITY, CERTIFICATE, PRIVATE_KEY = "authority.pem", "certificate.pem", "key.pem"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +39,18 @@ class Identity:
         """zenoh's `transport/link/tls` of a client: it checks the name of the router."""
         return self._files("connect") | {"verify_name_on_connect": True}
 
+    def embedded(self) -> dict[str, Any]:
+        """As `connecting`, with the files' contents instead of their names."""
+        names = {
+            "root_ca_certificate": AUTHORITY,
+            "connect_private_key": PRIVATE_KEY,
+            "connect_certificate": CERTIFICATE,
+        }
+        contents = {
+            f"{key}_base64": b64encode((self.folder / name).read_bytes()).decode() for key, name in names.items()
+        }
+        return contents | {"enable_mtls": True, "verify_name_on_connect": True}
+
     def _files(self, side: str) -> dict[str, Any]:
         return {
             "root_ca_certificate": str(self.folder / AUTHORITY),
@@ -43,4 +60,13 @@ class Identity:
         }
 
 
-AUTHORITY, CERTIFICATE, PRIVATE_KEY = "authority.pem", "certificate.pem", "key.pem"
+def identity_in(folder: str) -> Identity:
+    """Identity whose files are in a folder.
+
+    Raises:
+      UsageError: One is missing.
+    """
+    for name in (AUTHORITY, CERTIFICATE, PRIVATE_KEY):
+        if not (Path(folder) / name).is_file():
+            raise UsageError(f"{folder}: no {name}, expected a folder that `tailor keys new NAME` made")
+    return Identity(Path(folder).resolve())

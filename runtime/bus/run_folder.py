@@ -14,14 +14,15 @@ import socket
 import stat
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 
 VARIABLE = "TAILOR_RUN_DIR"  # replaces the folder of all runs, e.g. with a service's /run/tailor
-SOCKET, USERS, LOCK = "bus.sock", "users", "lock"
+SOCKET, USERS, LOCK, CERTIFICATE_USERS = "bus.sock", "users", "lock", "certificate-users"
+CERTIFICATE_USER = "certificate:none"
 MAX_SOCKET_BYTES = 100  # Linux: 107, less zenoh's own suffix ".lock"
 
 
@@ -44,6 +45,11 @@ class RunFolder:
     def users_file(self) -> Path:
         """zenoh's dictionary of users and passwords; missing on an open bus."""
         return self.path / USERS
+
+    @property
+    def certificate_users_file(self) -> Path:
+        """zenoh's dictionary where a certificate decides; its password is no secret."""
+        return self.path / CERTIFICATE_USERS
 
     def running(self) -> bool:
         """Whether a router of this bus listens on this machine."""
@@ -88,18 +94,33 @@ def hosted(endpoint: str, users: Sequence[str]) -> Iterator[RunFolder]:
     _make_private(folder.path)
     if len(str(folder.path / SOCKET)) > MAX_SOCKET_BYTES:
         raise UsageError(f"{folder.path}: too long for a socket, expected a shorter {VARIABLE}")
-    with (folder.path / LOCK).open("w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise UsageError(f"bus endpoint {endpoint}: it runs already; expected a free one, see --connect") from error
+    with _locked(folder.path / LOCK, endpoint):
         try:
             _empty(folder.path)
             if users:
-                _write_passwords(folder.users_file, users)
+                _write_secret(folder.users_file, [f"{user}:{secrets.token_hex(16)}" for user in users])
+                _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])
             yield folder
         finally:
             _empty(folder.path)
+    with suppress(OSError):  # the next bus at this endpoint has made it again
+        folder.path.rmdir()
+
+
+@contextmanager
+def _locked(path: Path, endpoint: str) -> Iterator[None]:
+    """Hold a lock file, which is removed at the end; a lock of a process that has died is free."""
+    with path.open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not os.path.samestat(os.fstat(lock.fileno()), path.stat()):
+                raise BlockingIOError  # removed by its last owner a moment ago
+        except OSError as error:
+            raise UsageError(f"bus endpoint {endpoint}: it runs already; expected a free one, see --connect") from error
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
 
 
 def _base() -> Path:
@@ -121,11 +142,10 @@ def _make_private(path: Path) -> None:
         raise UsageError(f"{path}: {error.strerror}, expected a place for a private folder, see {VARIABLE}") from error
 
 
-def _write_passwords(path: Path, users: Sequence[str]) -> None:
-    text = "".join(f"{user}:{secrets.token_hex(16)}\n" for user in users)
+def _write_secret(path: Path, lines: Sequence[str]) -> None:
     mode = 0o640 if VARIABLE in os.environ else 0o600
     with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "w") as file:
-        file.write(text)
+        file.write("\n".join(lines) + "\n")
 
 
 def _empty(folder: Path) -> None:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from tailor.runtime.bus import access
 from tailor.runtime.bus.credentials import Identity, Password
-from tailor.runtime.bus.run_folder import RunFolder
+from tailor.runtime.bus.run_folder import CERTIFICATE_USER, RunFolder
 from tailor.schemas.errors import UsageError
 from tailor.schemas.roles import ROLES
 
@@ -23,6 +24,8 @@ CONNECT_MS = 3000
 RETRY_MS = 200  # zenoh's back-off reaches 4 s; data must be back within a second
 MAX_PENDING = 2000  # connections that have sent nothing yet; zenoh's 100 let a port scan lock everyone out
 ACCEPT_MS = 1000  # such a connection is closed then
+# zenoh demands a password of every session of a router that has one for its own link; here the certificate decides.
+BY_CERTIFICATE = Password(*CERTIFICATE_USER.split(":"))
 PRIORITIES = (
     "control",
     "real_time",
@@ -91,7 +94,7 @@ def gateway(listen: str, folder: RunFolder, identity: Identity | None, names: Ma
     password = folder.password(access.GATEWAY)
     if password is not None:
         own = Password(access.GATEWAY, password)
-        config["transport"]["auth"] = own.auth(folder.users_file if identity is None else None)
+        config["transport"]["auth"] = own.auth(folder.users_file if identity is None else folder.certificate_users_file)
         config |= _secured([*_subjects(names, identity), {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}])
     if identity is not None:
         config["transport"]["link"]["tls"] = identity.listening()
@@ -117,7 +120,16 @@ def client(
         config["transport"]["auth"] = password.auth()
     if identity is not None:
         config["transport"]["link"]["tls"] = identity.connecting()
+        config["transport"]["auth"] = BY_CERTIFICATE.auth()
     return json.dumps(config)
+
+
+def foreign_client(connect: str, folder: Path) -> str:
+    """JSON for a node that is not ours, e.g. a ROS 2 bridge: the key of the folder is inside, so one file is enough."""
+    config = _base("client") | {"connect": _connecting([check_endpoint(connect)], CONNECT_MS)}
+    config["transport"]["link"]["tls"] = Identity(folder).embedded()
+    config["transport"]["auth"] = BY_CERTIFICATE.auth()
+    return json.dumps(config | {"listen": {"endpoints": []}}, indent=2)
 
 
 def _listening(endpoint: str) -> dict[str, Any]:

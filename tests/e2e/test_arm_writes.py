@@ -6,15 +6,16 @@ from tailor.runtime.stopping import Stop
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.commands.run.letters import recorded_track
+from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
-from tailor.tools.launch.system import free_endpoint, run_system
+from tailor.tools.launch.system import run_system
 from tailor.tools.writing.measures import waypoint_errors_rad
 
 
 @pytest.mark.slow
 def test_a_letter_written_live_passes_its_waypoints(tmp_path):
     recording = tmp_path / "letter.mcap"
-    config = LaunchConfig(executive_config("arm", Deployment(scenario="word-I")), free_endpoint(), recording, once=True)
+    config = LaunchConfig(executive_config("arm", Deployment(scenario="word-I")), private_bus(), recording, once=True)
     with screen() as shown:
         assert run_system(config, shown, Stop()) == "achieved"
     track = recorded_track("live", "I", recording)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import tailor
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
 
 LINKS = ("executive", "models", "runtime", "schemas", "simnodes", "tools")

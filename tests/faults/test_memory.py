@@ -8,7 +8,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.tools.benchmarks.memory import Usage, processes_of
 from tailor.tools.benchmarks.ticks import wait_for_router
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 from tests.support.patience import wait_until
 
 EXECUTIVE_MB = 150

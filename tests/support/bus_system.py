@@ -7,7 +7,7 @@ from pathlib import Path
 from tailor.runtime.bus.opening import open_client, open_router
 from tailor.runtime.processes.child import Child
 from tailor.schemas.errors import UsageError
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 from tests.support.patience import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,7 +14,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.ticks import play, wait_for_router
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 
 SETTLE_S = 10.0  # until every process has started and the loop runs
 PROCESSES = ("sim", "record", "executive")

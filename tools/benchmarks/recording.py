@@ -21,7 +21,7 @@ from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.traffic import traffic
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 
 RATE_HZ = 400.0
 START_S = 15.0

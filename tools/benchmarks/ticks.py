@@ -20,7 +20,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ArmRequest, ExecStatus, TickReport, VelocityCommand
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 
 BURNERS = 4
 BURN = "while True: pass"

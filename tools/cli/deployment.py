@@ -8,24 +8,17 @@ from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.core.context import PlannerCommand, Settings
-from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
-
-
-@dataclass(frozen=True, slots=True)
-class Bus:
-    """Endpoint that the router listens at and all other processes connect to."""
-
-    endpoint: str = DEFAULT_ENDPOINT
+from tailor.tools.cli.bus_settings import BusSettings
 
 
 @dataclass(frozen=True, slots=True)
 class Deployment:
     """Content of a deployment file; its tables and keys are the fields."""
 
-    bus: Bus = field(default_factory=Bus)
+    bus: BusSettings = field(default_factory=BusSettings)
     executive: Settings = field(default_factory=Settings)
     planner: PlannerCommand = field(default_factory=PlannerCommand)
     scenario: str = ""

@@ -1,4 +1,4 @@
-"""Flags that select the bus, and the endpoint that they give.
+"""Flags that select the bus, and the session that they open.
 
 Loads no executive unless a deployment file is named: `tailor estop` must not wait for one.
 """
@@ -6,26 +6,52 @@ Loads no executive unless a deployment file is named: `tailor estop` must not wa
 from __future__ import annotations
 
 import argparse
+from contextlib import AbstractContextManager
+from dataclasses import replace
 
+from tailor.runtime.bus.credentials import identity_in
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
+from tailor.schemas.roles import Role
+from tailor.tools.cli.bus_settings import BusSettings
 
 
 def configure_bus(parser: argparse.ArgumentParser) -> None:
     """Flags of every command that connects to the bus."""
     parser.add_argument("--connect", metavar="ENDPOINT", help=f"bus endpoint (default {DEFAULT_ENDPOINT})")
+    parser.add_argument("--key", metavar="DIR", help="key for a bus on another machine, made by `tailor keys new`")
     parser.add_argument("--config", metavar="FILE", default="", help="deployment file (TOML)")
 
 
-def endpoint_of(arguments: argparse.Namespace) -> str:
-    """Endpoint of the bus. The whole deployment file is checked, so that no mistake in it goes unnoticed.
+def bus_settings(arguments: argparse.Namespace) -> BusSettings:
+    """The bus that the flags select. The whole deployment file is checked, so that no mistake in it goes unnoticed.
 
     Raises:
       UsageError: See `tailor.tools.cli.deployment.read_deployment`.
     """
-    endpoint: str = arguments.connect
-    if not arguments.config:
-        return endpoint or DEFAULT_ENDPOINT
-    from tailor.tools.cli.deployment import read_deployment
+    settings = BusSettings()
+    if arguments.config:
+        from tailor.tools.cli.deployment import read_deployment
 
-    deployment = read_deployment(arguments.config)
-    return endpoint or deployment.bus.endpoint
+        settings = read_deployment(arguments.config).bus
+    return replace(settings, endpoint=arguments.connect or settings.endpoint, key=arguments.key or settings.key)
+
+
+def open_bus(
+    arguments: argparse.Namespace, role: Role, timeout_s: float = 3.0, sender: str = ""
+) -> AbstractContextManager[Session]:
+    """Session with the bus that the flags select.
+
+    Args:
+      arguments: Parsed flags.
+      role: Decides what the session may do on a secured bus; with --key, the key's name decides.
+      timeout_s: Time limit for the connection.
+      sender: Id of the session on the bus, 32 hex digits; empty: random.
+
+    Raises:
+      UsageError: Wrong flags, no router, or no access.
+    """
+    settings = bus_settings(arguments)
+    identity = identity_in(settings.key) if settings.key else None
+    return open_client(settings.endpoint, timeout_s, sender, role, identity)

@@ -8,6 +8,7 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
+from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.launch.senders import Senders
 
 EXECUTIVE_SILENCE_NS = 1_000_000_000  # ten ticks
@@ -20,7 +21,7 @@ class LaunchConfig:
     """Configuration of one system."""
 
     executive: ExecutiveConfig
-    endpoint: str
+    bus: BusSettings
     record: Path | None = None  # MCAP file to write
     once: bool = False  # end when the goal is achieved or has failed
     deployment_file: str = ""  # passed on to the executive
@@ -29,7 +30,7 @@ class LaunchConfig:
 
 def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The recorder. It is never started again: its file exists."""
-    argv = tailor("record", "--output", str(config.record), "--connect", config.endpoint)
+    argv = tailor("record", "--output", str(config.record), "--connect", config.bus.endpoint)
     return ProcessSpec(
         "record",
         argv,
@@ -48,14 +49,14 @@ def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSp
         leave = ("--leave", senders.leave) if start == 1 else ()
         return (*senders.arguments("sim", start), *leave)
 
-    argv = tailor("sim", robot, *scene, "--connect", config.endpoint)
+    argv = tailor("sim", robot, *scene, "--connect", config.bus.endpoint)
     return ProcessSpec("sim", argv, silence_ns=SIM_SILENCE_NS, arguments=arguments)
 
 
 def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The executive."""
     executive = config.executive
-    flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.endpoint]
+    flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.bus.endpoint]
     flags += ["--horizon", str(executive.settings.refinement.horizon)]
     flags += ["--planner", executive.settings.external.command]
     flags += ["--config", config.deployment_file] if config.deployment_file else []

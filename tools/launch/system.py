@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import socket
 import tempfile
 import time
 from pathlib import Path
 
 from tailor.executive.composition import build_context
-from tailor.runtime.bus.opening import open_router
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
@@ -20,6 +18,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
+from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
 from tailor.tools.launch.recording_watch import RecordingWatch
@@ -42,7 +41,7 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
         raise UsageError(f"{config.record}: exists already, expected the name of a new file")
     robot = build_context(config.executive, sender="").domain.robot
     with (
-        open_router(config.endpoint) as session,
+        hosted_bus(config.bus, screen.report) as session,
         tempfile.TemporaryFile("w+") as log,
         tempfile.TemporaryDirectory(prefix="tailor-") as folder,  # of this user alone
     ):
@@ -54,13 +53,6 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
             log.seek(0)
             for line in log.read().splitlines():
                 screen.report(line)
-
-
-def free_endpoint() -> str:
-    """Unused loopback endpoint, for a system that must not meet another one."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 class _System:
@@ -80,6 +72,8 @@ class _System:
     def run(self) -> str:
         """Start process after process, each once the one before is ready; then supervise them."""
         config, senders = self._config, self._senders
+        for gateway in gateways(config.bus):
+            self._supervisor.start(gateway, time.monotonic_ns())
         if config.record is not None and not self._start(record_process(config, senders)):
             return "failed: the recorder did not start"
         if not self._start(sim_process(config, senders, self._robot)):

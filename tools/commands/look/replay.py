@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, PlaybackClock
@@ -26,7 +25,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Clock
 from tailor.schemas.topics import TOPICS
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
@@ -91,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
     stop = stop_on_signals()
-    with open_client(endpoint_of(arguments)) as session:
+    with open_bus(arguments, "player") as session:
         codec.prime()
         changes: dict[str, Any] = {}
         if arguments.substitute:

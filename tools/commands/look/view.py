@@ -8,12 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.explainer import Explainer
@@ -68,11 +67,12 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
 
 
 def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
-    endpoint = endpoint_of(arguments)
+    endpoint = bus_settings(arguments).endpoint
     os.nice(NICENESS)
     stop = stop_on_signals()
     broadcast = EventBroadcast()
-    with open_client(endpoint) as session, serving(page("live", (), live=True), broadcast, arguments.port) as port:
+    document = page("live", (), live=True)
+    with open_bus(arguments, "observer") as session, serving(document, broadcast, arguments.port) as port:
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
         listener = BusListener(intake, RunTimeline(explainer, arguments.robot), broadcast, arguments.sender)

@@ -6,12 +6,11 @@ import argparse
 import re
 import time
 
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 
 WAIT_S = 2.0  # for the executive's status, and for the driver's state
 
@@ -33,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"robot {arguments.robot!r}: expected a name, e.g. agilo")
     if arguments.sender and not re.fullmatch("[0-9a-f]{32}", arguments.sender):
         raise UsageError(f"--sender {arguments.sender}: expected 32 hex digits")
-    with open_client(endpoint_of(arguments)) as session:
+    with open_bus(arguments, "people") as session:
         sender = arguments.sender or ("" if arguments.off else _executive_sender(session))
         if not sender and not arguments.off:
             print("no executive is running, expected one or --sender")

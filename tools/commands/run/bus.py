@@ -3,24 +3,60 @@
 from __future__ import annotations
 
 import argparse
+import tempfile
 import time
+from pathlib import Path
 
-from tailor.runtime.bus.opening import open_router
-from tailor.runtime.stopping import stop_on_signals
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.runtime.processes.child import Child
+from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.processes.supervised import State
+from tailor.runtime.processes.supervisor import Supervisor
+from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_hosting_flags
+from tailor.tools.cli.endpoint import bus_settings, configure_bus
+from tailor.tools.launch.hosting import gateways, hosted_bus
+
+PERIOD_S = 0.05
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor bus`; the router listens at the endpoint that the others connect to."""
+    configure_hosting(parser)
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Route until stopped."""
-    endpoint = endpoint_of(arguments)
+    """Route until stopped; 1 if a gateway has ended for good."""
+    notifier = Notifier.from_environment()
+    settings = with_hosting_flags(bus_settings(arguments), arguments)
     stop = stop_on_signals()
-    with open_router(endpoint):
-        print(f"routing at {endpoint}; Ctrl-C ends it", flush=True)
-        while not stop.requested:
-            time.sleep(0.1)
+    with hosted_bus(settings, _report), tempfile.TemporaryDirectory(prefix="tailor-") as folder:
+        supervisor = Supervisor(_report, lambda name, argv: Child(name, argv, notify_folder=Path(folder)))
+        try:
+            for spec in gateways(settings):
+                supervisor.start(spec, time.monotonic_ns())
+            return _route(supervisor, settings, notifier, stop)
+        finally:
+            notifier.stopping()
+            supervisor.stop()
+
+
+def _route(supervisor: Supervisor, settings: BusSettings, notifier: Notifier, stop: Stop) -> int:
+    names = [spec.name for spec in gateways(settings)]
+    ready = False
+    while not stop.requested:
+        supervisor.poll(time.monotonic_ns())
+        states = [supervisor.state(name) for name in names]
+        if State.ENDED in states:
+            return 1
+        if not ready and State.STARTING not in states:
+            ready = True
+            _report(f"routing at {settings.endpoint}; Ctrl-C ends it")
+            notifier.ready()
+        notifier.alive()
+        time.sleep(PERIOD_S)
     return 0
+
+
+def _report(line: str) -> None:
+    print(line, flush=True)

@@ -17,8 +17,9 @@ from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.report_page import write_paths_page
 from tailor.tools.figures.track import Track
+from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
-from tailor.tools.launch.system import free_endpoint, run_system
+from tailor.tools.launch.system import run_system
 
 RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 
@@ -63,7 +64,7 @@ def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording:
     config = replace(config, settings=replace(settings, seed=arguments.seed, refinement=refinement))
     with screen() as shown:
         shown.report(f"{name}: h = {horizon}, scenario {arguments.scenario}, seed {arguments.seed}")
-        result = run_system(LaunchConfig(config, free_endpoint(), recording, once=True), shown, stop)
+        result = run_system(LaunchConfig(config, private_bus(), recording, once=True), shown, stop)
         shown.report(f"{name}: {result or 'stopped'}")
 
 

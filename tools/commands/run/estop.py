@@ -7,12 +7,8 @@ it ends. Any key, Ctrl-C or closing the terminal ends it.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from contextlib import contextmanager
 
-from tailor.runtime.bus.opening import open_client
-from tailor.runtime.bus.session import Session
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.stop_button import StopButton, all_stopped, summary
 
 
@@ -24,7 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if every driver on the bus has stopped, 1 if one has not or there is none."""
-    with _people(arguments) as session:
+    with open_bus(arguments, "people") as session:
         button = StopButton(session)
         try:
             if arguments.hold:
@@ -35,9 +31,3 @@ def run(arguments: argparse.Namespace) -> int:
             states = button.press()
     print(summary(states))
     return 0 if all_stopped(states) else 1
-
-
-@contextmanager
-def _people(arguments: argparse.Namespace) -> Iterator[Session]:
-    with open_client(endpoint_of(arguments), role="people") as session:
-        yield session

@@ -10,7 +10,6 @@ from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.context import Context, check_goal
 from tailor.executive.shell import Shell
 from tailor.runtime import realtime
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock, wall_ns
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.processes.notify import Notifier
@@ -18,6 +17,7 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
+from tailor.tools.cli.endpoint import open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
-    with open_client(deployment.bus.endpoint, sender=sender_of(arguments)) as session:
+    with open_bus(arguments, "executive", sender=sender_of(arguments)) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
         codec.prime()

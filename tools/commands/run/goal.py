@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tailor.runtime.bus.opening import open_client
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Send the goal; 0 if the executive accepted it, 2 with the reason if not."""
-    with open_client(endpoint_of(arguments)) as session:
+    with open_bus(arguments, "people") as session:
         accepted, answer = session.call("exec/goal", arguments.goal)
     print(answer, file=sys.stdout if accepted else sys.stderr)
     return 0 if accepted else 2

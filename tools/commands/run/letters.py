@@ -19,8 +19,9 @@ from tailor.schemas.messages import JointState
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.figures.letters import draw_words
+from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
-from tailor.tools.launch.system import free_endpoint, run_system
+from tailor.tools.launch.system import run_system
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
 from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
 from tailor.tools.writing.writing_track import PERIOD_S, WritingTrack, writing_track
@@ -116,7 +117,7 @@ def _run_once(text: str, mode: WritingMode, seed: int, recording: Path, stop: St
     config = replace(config, settings=replace(config.settings, seed=seed, refinement=mode.refinement))
     with screen() as shown:
         shown.report(f"{mode.name}: {text}, seed {seed}")
-        run_system(LaunchConfig(config, free_endpoint(), recording, once=True), shown, stop)
+        run_system(LaunchConfig(config, private_bus(), recording, once=True), shown, stop)
 
 
 def recorded_track(title: str, text: str, path: Path) -> WritingTrack:

@@ -18,7 +18,6 @@ from rich.console import Console
 from rich.live import Live
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.service import ServiceServer
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import wall_ns
@@ -30,7 +29,7 @@ from tailor.runtime.recordings.snapshot import SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 
@@ -73,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MAX_LIMIT, f"--{name.replace('_', '-')}")
     stop, notifier = stop_on_signals(), Notifier.from_environment()
-    with open_client(endpoint_of(arguments), sender=sender_of(arguments)) as session:
+    with open_bus(arguments, "people" if arguments.write else "recorder", sender=sender_of(arguments)) as session:
         if arguments.write:
             accepted, response = session.call(SNAPSHOT_KEY, "requested")
             print(response, file=sys.stdout if accepted else sys.stderr)

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import Any
 
 from tailor.runtime import realtime
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.runtime.stopping import stop_on_signals
@@ -17,7 +16,7 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
-from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.lockstep.worlds import ROBOTS, make_world
@@ -48,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     deployment = deployment_from(arguments)
     world = make_world(arguments.robot, deployment.scenario, deployment.executive.seed)
     stop = stop_on_signals()
-    with open_client(deployment.bus.endpoint, sender=sender_of(arguments)) as session:
+    with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()

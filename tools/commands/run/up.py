@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
@@ -17,6 +18,7 @@ from tailor.tools.launch.system import run_system
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
     configure_system(parser)
+    configure_hosting(parser)
     parser.add_argument("--record", metavar="FILE", type=Path, help="record all messages into an MCAP file")
     parser.add_argument(
         "--require-recording", action="store_true", help="end (1) when the recording ends or lacks a message"
@@ -38,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     deployment = deployment_from(arguments)
     config = LaunchConfig(
         executive_config(arguments.domain, deployment),
-        deployment.bus.endpoint,
+        with_hosting_flags(deployment.bus, arguments),
         arguments.record,
         arguments.once,
         arguments.config,

@@ -31,8 +31,9 @@ from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.task_runs import dependencies, run_all
+from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
-from tailor.tools.launch.system import free_endpoint, run_system
+from tailor.tools.launch.system import run_system
 
 NOISE_STRIDE = 500_000  # between the noise seeds of two lock-step runs of a start
 MARGIN_PCT = 5.0  # fixed before the first run: half of the improvement by refinement
@@ -133,7 +134,7 @@ def run_live(config: ExecutiveConfig, stop: Stop, keep: Path | None = None) -> O
         kept.mkdir(parents=True, exist_ok=True)
         recording = kept / f"{config.scenario}-h{config.settings.refinement.horizon}-{seed}.mcap"
         recording.unlink(missing_ok=True)
-        result = run_system(LaunchConfig(config, free_endpoint(), recording, once=True), NullScreen(), stop)
+        result = run_system(LaunchConfig(config, private_bus(), recording, once=True), NullScreen(), stop)
         run = run_of(_messages(recording), result or "failed: stopped")
     return outcome_of(run, domains.load(config.domain), LIVE, seed)
 

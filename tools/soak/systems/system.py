@@ -14,7 +14,7 @@ from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.errors import UsageError
-from tailor.tools.launch.system import free_endpoint
+from tailor.tools.launch.hosting import free_endpoint
 from tailor.tools.soak.judging.motion import MotionJudge, Report
 from tailor.tools.soak.judging.robots import Robot
 from tailor.tools.soak.systems import processes

@@ -1,0 +1,49 @@
+"""The table `[bus]` of a deployment file: where the bus listens, and for whom; and the flags that override it."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
+
+REMOTE_ENDPOINT = "tls/0.0.0.0:7448"
+KEYS = "tailor-keys"
+Security = Literal["run", "local", "open"]
+
+
+@dataclass(frozen=True, slots=True)
+class BusSettings:
+    """Endpoint that names the bus, and who may use it."""
+
+    endpoint: str = DEFAULT_ENDPOINT  # the router listens there, all other processes connect to it
+    # run: whoever reads the passwords of this run; local: the same, but no port is opened; open: everybody
+    security: Security = "run"
+    remote: str = ""  # second endpoint, for other machines: mutual TLS; empty: none
+    keys: str = KEYS  # of `remote`: folder that `tailor keys` writes
+    key: str = ""  # of this process for a bus on another machine: a folder in there
+
+
+def configure_hosting(parser: argparse.ArgumentParser) -> None:
+    """Flags of the commands that host a bus."""
+    parser.add_argument(
+        "--secure",
+        metavar="ENDPOINT",
+        nargs="?",
+        const=REMOTE_ENDPOINT,
+        help=f"listen for other machines as well, with mutual TLS (default {REMOTE_ENDPOINT}); see `tailor keys`",
+    )
+    parser.add_argument("--keys", metavar="DIR", help=f"folder of the keys for --secure (default {KEYS})")
+    parser.add_argument(
+        "--security",
+        choices=get_args(Security),
+        help="who may use the bus: processes of this user, by passwords of this run (run, the default); the same "
+        "without opening a port (local); everybody (open)",
+    )
+
+
+def with_hosting_flags(settings: BusSettings, arguments: argparse.Namespace) -> BusSettings:
+    """Settings overridden by the flags of `configure_hosting`."""
+    given = {"remote": arguments.secure, "keys": arguments.keys, "security": arguments.security}
+    return replace(settings, **{name: value for name, value in given.items() if value is not None})

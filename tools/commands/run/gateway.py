@@ -1,0 +1,50 @@
+"""Let sessions of other users or machines onto the bus that runs on this machine, each with the rights of its role."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+
+from tailor.runtime.bus.credentials import identity_in
+from tailor.runtime.bus.opening import open_gateway
+from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.endpoint import bus_settings, configure_bus
+from tailor.tools.keys.registry import ROUTER, registered_roles
+
+NICENESS = 5  # whoever floods it from outside competes with the robot's processes for the CPU
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor gateway`; `tailor up` and `tailor bus` start one by themselves."""
+    parser.add_argument(
+        "--listen", metavar="ENDPOINT", help="where to listen (default: the endpoint of the bus, with its passwords)"
+    )
+    parser.add_argument("--keys", metavar="DIR", help="folder that `tailor keys` wrote, for an endpoint tls/HOST:PORT")
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Route until stopped."""
+    notifier = Notifier.from_environment()
+    endpoint = bus_settings(arguments).endpoint
+    listen = arguments.listen or endpoint
+    if listen.startswith("tls/") != bool(arguments.keys):
+        raise UsageError(f"--listen {listen}: expected --keys with tls/HOST:PORT, and with nothing else")
+    folder = run_folder(endpoint)
+    if not folder.running():
+        raise UsageError(f"bus endpoint {endpoint}: no router runs on this machine; start one with `tailor bus`")
+    identity = identity_in(f"{arguments.keys}/{ROUTER}") if arguments.keys else None
+    roles = registered_roles(arguments.keys) if arguments.keys else None
+    stop = stop_on_signals()
+    os.nice(NICENESS)
+    with open_gateway(listen, folder, identity, roles):
+        notifier.ready()
+        while not stop.requested:
+            notifier.alive()
+            time.sleep(0.1)
+        notifier.stopping()
+    return 0

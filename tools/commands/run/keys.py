@@ -1,0 +1,83 @@
+"""Make, list and revoke the keys with which processes on several machines prove who they are.
+
+The machine of the bus keeps the folder with the authority and the router's key; each other machine gets the folder of
+its own names alone: tailor-keys/NAME. `tailor up --secure` and `tailor bus --secure` read the roles at their start.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import get_args
+
+from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
+from tailor.schemas.errors import UsageError
+from tailor.schemas.roles import Role
+from tailor.tools.cli.bus_settings import KEYS
+from tailor.tools.keys.registry import ROUTER, check_name, registered_roles, write_roles
+
+DAYS = 825  # two years and a quarter, as many clients accept at most
+SESSION = "session.json5"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor keys`."""
+    parser.add_argument("action", choices=("new", "list", "revoke"), help="what to do")
+    parser.add_argument("name", nargs="?", default="", help="name of a process, e.g. agilo-driver")
+    parser.add_argument("--role", choices=get_args(Role), help="what it may do; not for the name 'router'")
+    parser.add_argument(
+        "--host", action="append", default=[], help="name or address at which others reach the router; repeatable"
+    )
+    parser.add_argument(
+        "--for",
+        dest="endpoint",
+        metavar="ENDPOINT",
+        help=f"also write {SESSION}, zenoh's configuration for a foreign node, e.g. a ROS 2 bridge",
+    )
+    parser.add_argument("--days", type=int, default=DAYS, help="days for which the key is valid (default %(default)s)")
+    parser.add_argument("--keys", metavar="DIR", default=KEYS, help="folder of the keys (default %(default)s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 if done."""
+    roles = registered_roles(arguments.keys)
+    if arguments.action == "list":
+        for name, role in sorted(roles.items()):
+            print(f"{name}: {role}")
+    elif arguments.action == "revoke":
+        _revoke(arguments, roles)
+    else:
+        _new(arguments, roles)
+    return 0
+
+
+def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
+    from tailor.tools.keys.authority import Authority, utc_now
+
+    name, keys = check_name(arguments.name), Path(arguments.keys)
+    if (name == ROUTER) == bool(arguments.role):
+        raise UsageError(f"--role: expected one for every name, but none for '{ROUTER}'")
+    if arguments.endpoint:
+        check_endpoint(arguments.endpoint)
+    if not 0 < arguments.days < 10_000:
+        raise UsageError(f"--days is {arguments.days}, expected 1 to 9999")
+    folder, now = keys / name, utc_now()
+    if folder.exists():
+        raise UsageError(f"{folder}: exists already, expected a new name")
+    try:
+        Authority.of(keys, now, arguments.days).issue(folder, name, arguments.host, now, arguments.days)
+        if arguments.role:
+            write_roles(arguments.keys, {**roles, name: arguments.role})
+        if arguments.endpoint:
+            (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder))
+            (folder / SESSION).chmod(0o600)
+    except OSError as error:
+        raise UsageError(f"{error.filename}: {error.strerror}, expected a place for keys") from error
+    print(folder)
+
+
+def _revoke(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
+    if arguments.name not in roles:
+        raise UsageError(f"name {arguments.name!r}: no such key, expected one of: {', '.join(sorted(roles)) or 'none'}")
+    write_roles(arguments.keys, {name: role for name, role in roles.items() if name != arguments.name})
+    print(f"{arguments.name} may do nothing from the next start of the bus on")

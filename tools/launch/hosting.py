@@ -1,0 +1,76 @@
+"""Hosts a bus: the router of this machine's processes in this process, and a child for each endpoint of others."""
+
+from __future__ import annotations
+
+import errno
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from tailor.runtime.bus.opening import open_local_router
+from tailor.runtime.bus.session import Session
+from tailor.runtime.bus.zenoh_config import check_endpoint
+from tailor.runtime.processes.child import tailor
+from tailor.runtime.processes.supervised import ProcessSpec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_settings import BusSettings
+
+GATEWAY_SILENCE_NS = 5_000_000_000  # of its main loop; floods keep only zenoh's threads busy
+
+
+@contextmanager
+def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator[Session]:
+    """The router's own session; start `gateways` beside it.
+
+    Raises:
+      UsageError: The bus runs already, or an endpoint is in use or malformed.
+    """
+    for endpoint in (settings.remote if settings.security == "local" else settings.endpoint, settings.remote):
+        if endpoint:
+            _check_free(endpoint)
+    if settings.remote and not settings.remote.startswith("tls/"):
+        raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
+    if settings.security == "open":
+        report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
+    with open_local_router(settings.endpoint, settings.security != "open") as (session, _):
+        yield session
+
+
+def gateways(settings: BusSettings) -> list[ProcessSpec]:
+    """Processes that let others in; apart from the router, so that floods and port scans end there."""
+    name = ("--connect", settings.endpoint)
+    specs = []
+    if settings.security != "local":
+        specs.append(ProcessSpec("gateway", tailor("gateway", *name), silence_ns=GATEWAY_SILENCE_NS))
+    if settings.remote:
+        remote = ("--listen", settings.remote, "--keys", settings.keys)
+        specs.append(ProcessSpec("remote gateway", tailor("gateway", *name, *remote), silence_ns=GATEWAY_SILENCE_NS))
+    return specs
+
+
+def free_endpoint() -> str:
+    """Unused loopback endpoint, for a system that must not meet another one."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def private_bus() -> BusSettings:
+    """A bus for one system alone, without an open port."""
+    return BusSettings(free_endpoint(), security="local")
+
+
+def _check_free(endpoint: str) -> None:
+    """Refuse a port that cannot be listened at, before any process starts."""
+    protocol, _, address = check_endpoint(endpoint).partition("/")
+    host, _, port = address.rpartition(":")
+    family = socket.AF_INET6 if host.startswith("[") else socket.AF_INET
+    with socket.socket(family, socket.SOCK_DGRAM if protocol in ("udp", "quic") else socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host.strip("[]"), int(port)))
+        except OSError as error:
+            reason = (
+                "the port is in use" if error.errno == errno.EADDRINUSE else f"cannot listen there ({error.strerror})"
+            )
+            raise UsageError(f"bus endpoint {endpoint}: {reason}; expected a free one, see --connect") from error
