@@ -136,11 +136,11 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
     flags = ("--seed", "1", "--record", str(path), "--connect", endpoint)
     up = subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT)
     wait_until(lambda: answers(endpoint), "router")
-    with open_client(endpoint) as session:
+    with open_client(endpoint, role="people") as session:
         truth = session.inbox(("truth",), "agilo")
         wait_until(lambda: any(s.message.v > 0.2 for s in truth.drain()), "robot moves")
     processes = children_of(up.pid)
-    assert len(processes) == 4  # recorder, simulator, executive, and the one that kills orphans
+    assert len(processes) == 5  # gateway, recorder, simulator, executive, and the one that kills orphans
     up.send_signal(signal.SIGINT)
     assert up.wait(PATIENCE_S) == 0
     assert not [pid for pid in processes if os.path.exists(f"/proc/{pid}")]

@@ -69,7 +69,7 @@ def launched():
     up = Child("up", words, subprocess.DEVNULL)
     try:
         wait_until(lambda: answers(endpoint), "router")
-        with open_client(endpoint) as session:
+        with open_client(endpoint, role="people") as session:
             system = Launched(up, session)
             wait_until(system.moves, "the launched robot moves: its executive has leave")
             yield system

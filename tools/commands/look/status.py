@@ -16,12 +16,11 @@ from dataclasses import asdict
 from rich.console import Console, Group
 from rich.live import Live
 
-from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, endpoint_of
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import finite
 from tailor.tools.cli.terminal import table_console
@@ -57,9 +56,9 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = OBSERVE_S if arguments.seconds is None else arguments.seconds
     if not MIN_S <= seconds <= MAX_S:
         raise UsageError(f"--seconds is {seconds:g}, expected {MIN_S:g} to {MAX_S:g}")
-    endpoint = endpoint_of(arguments)
+    endpoint = bus_settings(arguments).endpoint
     stop = stop_on_signals()
-    with open_client(endpoint, role="people" if live else "observer") as session:
+    with open_bus(arguments, "people" if live else "observer") as session:
         os.nice(NICENESS)
         codec.prime()
         queue, subscription = session.subscribe_all("**")
