@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 from tailor.simnodes.arming import Arming, Cause, next_arming
 from tailor.simnodes.reasons import ArmRefusal, CommandRefusal, Mode, Reason
+from tailor.simnodes.stamps import Stamps
 
 __all__ = ["ArmRefusal", "CommandRefusal", "Guard", "Limit", "Mode", "Reason"]
 
 TIMEOUT_NS = 300_000_000  # three ticks of the executive: one may be lost, two are an outage
-MAX_DELAY_NS = 300_000_000  # beyond the fastest command since arming
 MAX_JUMP = 100  # sequence numbers from one command to the next; the timeout lets no sender below 300 Hz miss as many
 
 
@@ -74,7 +74,7 @@ class Guard:
         self._values = self._zero
         self._valid_ns = 0  # time of the last valid command, or of arming
         self._sequences: dict[str, int] = {}  # highest passed, by sender: kept when disarmed, against replays
-        self._fastest_ns: int | None = None  # least distance from stamp to arrival since arming; None: no command yet
+        self._stamps: Stamps | None = None  # of the armed sender; None: no command since arming
 
     @property
     def mode(self) -> Mode:
@@ -127,14 +127,14 @@ class Guard:
           sender: Its sender, 32 hex digits.
           sequence: Its number, counted by the sender.
           values: Set-points in the order and units of the limits.
-          stamp_ns: Time of its creation by the sender's clock; 0: unknown, its delay is not checked.
+          stamp_ns: Time of its creation by the sender's clock; 0: unknown, it is not judged, see stamps.py.
 
         Returns:
           The reason for a refusal, which changes nothing but a count; None if the command is accepted.
         """
         self._expire(now_ns)
-        distance_ns = now_ns - stamp_ns
-        refusal = self._refusal(sender, sequence, values) or self._lateness(distance_ns, stamp_ns)
+        stamps = self._stamps or Stamps()
+        refusal = self._refusal(sender, sequence, values) or stamps.refusal(now_ns, stamp_ns)
         if refusal is not None:
             self.refused[refusal] += 1
             return refusal
@@ -142,7 +142,8 @@ class Guard:
         self._sequences[sender] = sequence
         self._values = tuple(float(value) for value in values)
         self._valid_ns = max(self._valid_ns, now_ns)
-        self._fastest_ns = distance_ns if self._fastest_ns is None else min(self._fastest_ns, distance_ns)
+        self._stamps = stamps
+        stamps.accept(now_ns, stamp_ns)
         return None
 
     def output(self, now_ns: int) -> tuple[float, ...]:
@@ -158,7 +159,7 @@ class Guard:
         if following is None:
             return ArmRefusal.ESTOP_LATCHED if self.mode is Mode.ESTOPPED else ArmRefusal.PEOPLE_ONLY
         self.arming, self.reason, self.detail = following, Reason.NONE, ""
-        self.sender, self._valid_ns, self._fastest_ns = sender, now_ns, None
+        self.sender, self._valid_ns, self._stamps = sender, now_ns, None
         return None
 
     def _refusal(self, sender: str, sequence: int, values: Sequence[float]) -> CommandRefusal | None:
@@ -168,7 +169,7 @@ class Guard:
             return CommandRefusal.OTHER_SENDER
         if sequence <= self._sequences.get(sender, -1):
             return CommandRefusal.OLD_SEQUENCE
-        if self._fastest_ns is not None and sequence > self._sequences[sender] + MAX_JUMP:
+        if self._stamps is not None and sequence > self._sequences[sender] + MAX_JUMP:
             return CommandRefusal.SEQUENCE_JUMP  # one forged number must not lock the true sender out
         if len(values) != len(self._limits):
             return CommandRefusal.WRONG_COUNT
@@ -176,12 +177,6 @@ class Guard:
             return CommandRefusal.NOT_FINITE
         if not all(limit.lower <= value <= limit.upper for limit, value in zip(self._limits, values, strict=True)):
             return CommandRefusal.BEYOND_LIMIT
-        return None
-
-    def _lateness(self, distance_ns: int, stamp_ns: int) -> CommandRefusal | None:
-        """Refusal of a delayed command; the clocks need not agree, only the change of their distance counts."""
-        if stamp_ns and self._fastest_ns is not None and distance_ns > self._fastest_ns + MAX_DELAY_NS:
-            return CommandRefusal.LATE
         return None
 
     def _expire(self, now_ns: int) -> None:

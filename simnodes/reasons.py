@@ -36,6 +36,7 @@ class CommandRefusal(StrEnum):
     OLD_SEQUENCE = "old sequence"
     SEQUENCE_JUMP = "sequence jump"
     LATE = "late"
+    FROM_THE_FUTURE = "from the future"
     WRONG_COUNT = "wrong count"  # of axes
     NOT_FINITE = "not finite"
     BEYOND_LIMIT = "beyond limit"

@@ -26,7 +26,9 @@ from tests.unit.house.draw_map import ARCHITECTURE, with_map
 
 IMPURE = {"zenoh", "time", "os", "threading", "logging", "random", "subprocess", "socket", "asyncio", "signal"}
 SHELL = "executive/shell.py"
-STANDARD_ONLY = tuple(f"simnodes/{name}.py" for name in ("guard", "arming", "hold", "reasons"))  # for hardware
+STANDARD_ONLY = tuple(
+    f"simnodes/{name}.py" for name in ("guard", "arming", "hold", "reasons", "stamps")
+)  # for hardware
 MAX_FILES = 15  # beside __init__.py; a folder with more is divided into rooms
 PROJECT_FILES = sorted(MODULES)
 
