@@ -5,7 +5,6 @@ import random
 import signal
 import subprocess
 import time
-from pathlib import Path
 
 import pytest
 
@@ -14,6 +13,7 @@ from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tests.support.bus_system import answers, free_endpoint
+from tests.support.children import child_pid
 from tests.support.patience import wait_until
 
 MOVING_MPS = 0.2
@@ -49,14 +49,7 @@ class Launched:
 
     def kill(self, *names):
         for name in names:
-            os.kill(self.pid(name), signal.SIGKILL)
-
-    def pid(self, name):
-        """Process id of a child, by the command that it runs."""
-        for line in Path(f"/proc/{self.up.pid}/task/{self.up.pid}/children").read_text().split():
-            if f"tailor.tools.main\0{name}\0" in Path(f"/proc/{line}/cmdline").read_text():
-                return int(line)
-        raise LookupError(name)
+            os.kill(child_pid(self.up.pid, name), signal.SIGKILL)
 
     def changed(self, kind, field, before):
         return lambda: getattr(self.poll().get(kind), field, before) != before

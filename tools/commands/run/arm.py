@@ -1,4 +1,8 @@
-"""Arm a driver: it obeys the commands of one sender, by default of the running executive."""
+"""Arm a driver: it obeys the commands of one sender, by default of the running executive.
+
+The request is repeated until the driver's state confirms it. A request to arm is not repeated once anything else has
+changed, such as an e-stop that somebody pressed meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +12,21 @@ import time
 
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
+from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
+from tailor.tools.cli.arming_exchange import WAIT_S, Exchange, Outcome
 from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.plain_text import plain
 
-WAIT_S = 2.0  # for the executive's status, and for the driver's state
+POLL_S = 0.01
+TEXTS = {
+    Outcome.CONFIRMED: "{state}",
+    Outcome.REFUSED: "refused: {refusal}; {state}",
+    Outcome.CHANGED: "changed meanwhile, so the request was not repeated; {state}",
+    Outcome.NO_CONFIRMATION: "sent, but not confirmed; {state}",
+    Outcome.NOT_SENT: "not sent, since nobody takes requests for {robot}; {state}",
+    Outcome.NO_DRIVER: "not sent; {state}",
+}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -27,9 +41,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if the driver's state shows the request, 1 if not."""
-    if not re.fullmatch(r"[\w-]+(/[\w-]+)*", arguments.robot, re.ASCII):
-        raise UsageError(f"robot {arguments.robot!r}: expected a name, e.g. agilo")
+    """0 if the driver's state confirms the request, 1 if not."""
+    robot: str = arguments.robot
+    if not re.fullmatch(r"[\w-]+(/[\w-]+)*", robot, re.ASCII):
+        raise UsageError(f"robot {robot!r}: expected a name, e.g. agilo")
     if arguments.sender and not re.fullmatch("[0-9a-f]{32}", arguments.sender):
         raise UsageError(f"--sender {arguments.sender}: expected 32 hex digits")
     with open_bus(arguments, "people") as session:
@@ -37,14 +52,11 @@ def run(arguments: argparse.Namespace) -> int:
         if not sender and not arguments.off:
             print("no executive is running, expected one or --sender")
             return 1
-        request = ArmRequest(not arguments.off, arguments.reset, sender, 0)
-        state = _send(session, arguments.robot, request)
-    if state is None:
-        print(f"the driver of {arguments.robot} does not respond")
-        return 1
-    cause = reason_text(state.reason, state.detail)
-    print(f"{arguments.robot} is {state.mode}" + (f": {cause}" if cause else ""))
-    return 0 if _done(state, request) else 1
+        request = ArmRequest(not arguments.off, arguments.reset and not arguments.off, sender, 0)
+        outcome, exchange = _exchange(session, robot, request)
+    state = _text(robot, exchange.state)
+    print(plain(TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot)))
+    return 0 if outcome is Outcome.CONFIRMED else 1
 
 
 def _executive_sender(session: Session) -> str:
@@ -55,27 +67,31 @@ def _executive_sender(session: Session) -> str:
         for sample in inbox.drain():
             if isinstance(sample.message, ExecStatus):
                 return sample.sender
-        time.sleep(0.02)
+        time.sleep(POLL_S)
     return ""
 
 
-def _send(session: Session, robot: str, request: ArmRequest) -> DriverState | None:
-    """Send a request and return the driver's last state, at the latest after WAIT_S."""
-    inbox, publisher = session.inbox(["driver"], robot), session.publisher("arm_request", robot)
-    state: DriverState | None = None
-    ends, sent = time.monotonic() + WAIT_S, False
-    while time.monotonic() < ends and not (sent and state is not None and _done(state, request)):
-        if not sent and state is not None and publisher.matched():
-            publisher.publish(request)
-            sent, state = True, None
+def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcome, Exchange]:
+    """Repeat a request until its outcome is known."""
+    publisher = session.publisher("arm_request", robot)
+    inbox = session.inbox(["driver", "estop"], robot, newest_only=False)  # a change in between must be seen
+    exchange = Exchange(request, time.monotonic())
+    while (outcome := exchange.outcome(time.monotonic())) is None:
         for sample in inbox.drain():
             if isinstance(sample.message, DriverState):
-                state = sample.message
-        time.sleep(0.02)
-    return state
+                exchange.hear(sample.message, sample.arrival_ns / 1e9)
+            elif isinstance(sample.message, EStop) and sample.message.stop:
+                exchange.halt(time.monotonic())
+        due = exchange.due(time.monotonic())
+        if due is not None:
+            publisher.publish(due)
+        exchange.matched = exchange.matched or publisher.matched()
+        time.sleep(POLL_S)
+    return outcome, exchange
 
 
-def _done(state: DriverState, request: ArmRequest) -> bool:
-    if request.arm:
-        return state.mode == "armed" and state.armed_sender == request.sender
-    return state.mode in ("disarmed", "estopped")
+def _text(robot: str, state: DriverState | None) -> str:
+    if state is None:
+        return f"the driver of {robot} does not respond"
+    cause = reason_text(state.reason, state.detail)
+    return f"{robot} is {state.mode}" + (f": {cause}" if cause else "")

@@ -1,0 +1,76 @@
+"""`tailor arm` and `tailor arm --off` on busy machines: confirmed by the driver, or reported as not."""
+
+import os
+import random
+import signal
+import subprocess
+import time
+from functools import partial
+
+import pytest
+
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.processes.child import Child, tailor
+from tailor.schemas.messages import DriverState
+from tests.support.bus_system import answers, free_endpoint, guarded_robot
+from tests.support.children import child_pid
+from tests.support.driven import Driven, burners
+from tests.support.patience import PATIENCE_S, wait_until
+
+pytestmark = pytest.mark.xdist_group("live")
+
+
+def arm(endpoint, *flags):
+    words = tailor("arm", "agilo", *flags, "--connect", endpoint)
+    return subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE_S)
+
+
+def disarmed(robot):
+    """Disarm a robot that moves: the command confirms it, and it is true."""
+    wait_until(robot.moves, "robot moves")
+    began_s = time.monotonic()
+    done = arm(robot.endpoint, "--off")
+    assert (done.returncode, done.stdout[:33]) == (0, "agilo is disarmed: disarm request"), (done.stdout, done.stderr)
+    assert robot.zero_after_s(began_s)
+    assert robot.modes()[-1] == "disarmed"
+
+
+@pytest.mark.promise("P52")
+@pytest.mark.parametrize("tries", [2, pytest.param(20, marks=pytest.mark.slow)])
+def test_disarming_is_confirmed_on_a_busy_machine(tmp_path, tries):
+    with guarded_robot(tmp_path) as (session, endpoint, start, trace):
+        robot = Driven(session, endpoint, start, trace)
+        with burners():
+            for _ in range(tries):
+                disarmed(robot)
+
+
+@pytest.mark.promise("P52")
+@pytest.mark.parametrize("tries", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_disarming_is_confirmed_while_the_executive_restarts(tmp_path, tries):
+    phases = random.Random(1)
+    endpoint = free_endpoint()
+    up = Child("up", tailor("up", "soccer", "--scenario", "waypoints", "--connect", endpoint), subprocess.DEVNULL)
+    try:
+        wait_until(partial(answers, endpoint), "router")
+        with open_client(endpoint) as session:
+            states = session.inbox(["driver"], "agilo")
+            newest = partial(newest_state, states)
+            wait_until(lambda: newest().mode == "armed", "armed by its executive")
+            for _ in range(tries):
+                os.kill(child_pid(up.pid, "executive"), signal.SIGKILL)
+                time.sleep(phases.uniform(0.0, 1.0))
+                done = arm(endpoint, "--off")
+                assert done.returncode == 0, (done.stdout, done.stderr)
+                assert newest().mode == "disarmed"
+                done = arm(endpoint)
+                assert (done.returncode, done.stdout.split(":")[0]) == (0, "agilo is armed\n"), (
+                    done.stdout,
+                    done.stderr,
+                )
+    finally:
+        up.stop()
+
+
+def newest_state(states):
+    return wait_until(lambda: [s.message for s in states.drain() if isinstance(s.message, DriverState)], "state")[-1]

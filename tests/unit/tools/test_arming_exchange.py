@@ -1,0 +1,193 @@
+"""What is repeated and what counts as confirmed when people arm or disarm; times in seconds."""
+
+import re
+
+import pytest
+
+from tailor.schemas.messages import ArmRequest, DriverState
+from tailor.tools.cli.arming_exchange import Exchange, Outcome
+from tests.support.bus_system import ROOT
+
+A, B = "a" * 32, "b" * 32
+OFF = ArmRequest(False, False, "", 0)
+ARM, RESET = ArmRequest(True, False, A, 0), ArmRequest(True, True, A, 0)
+
+
+def state(mode="disarmed", epoch=7, sender="", refused=(), **reason):
+    fields = {"reason": "", "detail": "", **reason}
+    names, counts = zip(*refused, strict=True) if refused else ((), ())
+    return DriverState(0, mode, fields["reason"], fields["detail"], epoch, sender, 0, names, counts)
+
+
+ARMED, ESTOPPED = state("armed", sender=A), state("estopped", reason="e-stop")
+
+
+def exchange(request, before=None):
+    """An exchange that has heard a state at 0.9 s and has sent its first request at 1 s, if it could."""
+    made = Exchange(request, 0.0)
+    if before is not None:
+        made.hear(before, 0.9)
+    made.due(1.0)
+    return made
+
+
+def repeats(made, *times_s):
+    return [made.due(at_s) is not None for at_s in times_s]
+
+
+@pytest.mark.promise("P52")
+def test_a_request_to_disarm_is_repeated_from_the_first_moment_until_it_is_confirmed():
+    made = Exchange(OFF, 0.0)
+    assert repeats(made, 0.0, 0.05, 0.11, 0.15, 0.22) == [True, False, True, False, True]
+    made.hear(ARMED, 0.25)
+    assert made.outcome(0.25) is None
+    assert made.due(0.33) == OFF
+    made.hear(state(), 0.35)
+    assert made.outcome(0.35) is Outcome.CONFIRMED
+
+
+def test_the_first_state_of_all_confirms_nothing_since_it_may_be_stale():
+    made = exchange(OFF)
+    made.hear(state(), 1.05)
+    assert made.outcome(1.05) is None
+    made.hear(state(), 1.15)
+    assert made.outcome(1.15) is Outcome.CONFIRMED
+
+
+@pytest.mark.promise("P52")
+def test_a_state_that_arrived_before_the_request_confirms_nothing():
+    made = exchange(OFF, state())
+    assert made.outcome(1.0) is None
+    made.hear(state(), 1.0)
+    assert made.outcome(1.01) is None
+    made.hear(state(), 1.05)
+    assert made.outcome(1.05) is None, "it may have been under way"
+    made.hear(state(), 1.15)
+    assert made.outcome(1.15) is Outcome.CONFIRMED
+
+
+@pytest.mark.parametrize("mode", ["disarmed", "estopped"])
+def test_a_change_after_the_request_confirms_at_once(mode):
+    made = exchange(OFF, ARMED)
+    made.hear(state(mode), 1.02)
+    assert made.outcome(1.02) is Outcome.CONFIRMED
+
+
+def test_a_request_to_arm_waits_for_the_driver_and_means_its_present_start():
+    made = Exchange(ARM, 0.0)
+    assert made.due(0.0) is None
+    made.hear(state(), 0.5)
+    assert made.due(0.5) == ArmRequest(True, False, A, 7)
+    made.hear(ARMED, 0.52)
+    assert made.outcome(0.52) is Outcome.CONFIRMED
+
+
+@pytest.mark.parametrize("other", [state("armed", sender=B), state("armed", epoch=8, sender=A), state("stopped")])
+def test_another_state_does_not_confirm_a_request_to_arm(other):
+    made = exchange(ARM, state())
+    made.hear(other, 1.1)
+    made.hear(other, 1.2)
+    assert made.outcome(1.3) is None
+    assert made.outcome(1.41) is Outcome.CHANGED
+
+
+def test_a_request_to_arm_is_repeated_while_nothing_changes():
+    made = exchange(RESET, ESTOPPED)
+    for at_s in (1.11, 1.22, 1.33):
+        made.hear(ESTOPPED, at_s - 0.05)
+        assert made.due(at_s) == ArmRequest(True, True, A, 7)
+        assert made.outcome(at_s) is None
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        state("estopped", reason="the dead man's switch was released"),
+        state("estopped", reason="e-stop", detail="held by 11111111"),
+        state("estopped", reason="e-stop", epoch=8),
+        state("stopped"),
+        state("armed", sender=B),
+    ],
+)
+@pytest.mark.promise("P52")
+def test_a_request_to_arm_is_never_repeated_after_any_change(change):
+    made = exchange(RESET, ESTOPPED)
+    made.hear(change, 1.05)
+    made.hear(ESTOPPED, 1.15)
+    assert repeats(made, 1.2, 1.5, 4.0) == [False, False, False]
+    assert made.outcome(1.2) is None, "the first request may still be under way"
+    assert made.outcome(1.36) is Outcome.CHANGED
+
+
+@pytest.mark.promise("P52")
+def test_an_estop_that_changes_no_state_ends_the_repetitions_too():
+    made = exchange(RESET, ESTOPPED)
+    made.halt(1.02)
+    made.hear(ESTOPPED, 1.05)
+    assert repeats(made, 1.1, 1.2) == [False, False]
+    assert made.outcome(1.33) is Outcome.CHANGED
+
+
+def test_a_request_to_arm_is_not_repeated_blindly():
+    made = exchange(ARM, state())
+    assert repeats(made, 1.1, 1.15, 1.21, 2.0) == [True, False, False, False]
+    made.hear(state(), 2.0)
+    assert made.due(2.1) is not None
+
+
+@pytest.mark.parametrize("mode", ["estopped", "stopped", "disarmed"])
+def test_a_request_to_disarm_is_repeated_whatever_changes(mode):
+    made = exchange(OFF, ARMED)
+    made.halt(1.0)
+    made.hear(state("armed", epoch=8, sender=B), 1.05)
+    assert repeats(made, 1.11, 1.22, 3.0) == [True, True, True]
+
+
+def test_a_refusal_is_reported_with_the_drivers_reason():
+    before = state("estopped", refused=[("arm: only people may arm", 3), ("late", 1)])
+    made = exchange(ARM, before)
+    now = state("estopped", refused=[("arm: only people may arm", 3), ("arm: e-stop is latched", 1), ("late", 2)])
+    made.hear(now, 1.1)
+    assert made.due(1.15) is None
+    assert made.outcome(1.41) is Outcome.REFUSED
+    assert made.refusal == "e-stop is latched"
+
+
+def test_a_refusal_of_anothers_request_does_not_hide_a_confirmation():
+    made = exchange(ARM, state())
+    made.hear(state(refused=[("arm: only people may arm", 1)]), 1.1)
+    made.hear(ARMED, 1.2)
+    assert made.outcome(1.5) is Outcome.CONFIRMED
+
+
+def test_arming_for_the_armed_sender_again_needs_a_later_state():
+    made = exchange(ARM, ARMED)
+    made.hear(ARMED, 1.05)
+    assert made.outcome(1.1) is None
+    made.hear(ARMED, 1.15)
+    assert made.outcome(1.15) is Outcome.CONFIRMED
+
+
+@pytest.mark.parametrize(
+    ("request_", "before", "matched", "expected"),
+    [
+        (ARM, None, True, Outcome.NO_DRIVER),
+        (OFF, None, False, Outcome.NOT_SENT),
+        (OFF, None, True, Outcome.NO_CONFIRMATION),
+        (OFF, ARMED, True, Outcome.NO_CONFIRMATION),
+        (ARM, state(), False, Outcome.NOT_SENT),
+        (ARM, state(), True, Outcome.NO_CONFIRMATION),
+    ],
+)
+@pytest.mark.promise("P52")
+def test_after_five_seconds_the_outcome_tells_what_is_missing(request_, before, matched, expected):
+    made = exchange(request_, before)
+    made.matched = matched
+    assert made.outcome(4.9) is None
+    assert made.outcome(6.0) is expected
+
+
+def test_the_page_of_reasons_lists_every_outcome():
+    page = (ROOT / "docs" / "reasons.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\| `Outcome` \| `([^`]+)` \|", page, re.MULTILINE)
+    assert listed == [outcome.value for outcome in Outcome]

@@ -1,0 +1,126 @@
+"""One request to arm or disarm a driver: when it is repeated, and what counts as its confirmation. Pure.
+
+A request may be lost, so it is repeated until the driver's state confirms it. A request to disarm is repeated whatever
+happens. A request to arm could undo what another person does meanwhile, e.g. release a fresh e-stop with its reset: it
+is repeated only while the driver is heard, is the same start, and its state is the one that was seen before the first
+request; and never after an e-stop was heard on the bus. What remains is the time that a request is under way.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from enum import StrEnum
+
+from tailor.schemas.messages import ArmRequest, DriverState
+from tailor.simnodes.driver import ARM_REFUSED
+
+REPEAT_S = 0.1
+FRESH_S = 0.3  # age of the newest state up to which a request to arm is repeated
+SETTLE_S = 0.3  # after a refusal or a change: another request may still be under way
+WAIT_S = 5.0  # for the driver's first state, and for the confirmation
+
+
+class Outcome(StrEnum):
+    """Outcome of a request to arm or disarm."""
+
+    CONFIRMED = "confirmed"
+    REFUSED = "refused"  # detail: the driver's reason
+    CHANGED = "changed meanwhile"
+    NO_CONFIRMATION = "no confirmation"
+    NOT_SENT = "not sent"
+    NO_DRIVER = "no driver"
+
+
+class Exchange:
+    """A request and the driver's states; times are monotonic seconds.
+
+    Attributes:
+      state: The newest state of the driver, if any was heard.
+      refusal: The driver's reason for refusing the request; empty if it was not refused.
+      matched: Set by the caller: somebody has subscribed to the request's topic.
+    """
+
+    def __init__(self, request: ArmRequest, now_s: float) -> None:
+        """`request`: with epoch 0; a request to arm is sent for the start of the driver that is heard first."""
+        self.state: DriverState | None = None
+        self.refusal = ""
+        self.matched = False
+        self._request = request
+        self._before: DriverState | None = None  # newest state before the first request
+        self._heard = 0  # states since the first request
+        self._heard_s = now_s
+        self._first_s: float | None = None  # of the first request
+        self._sent_s = -math.inf  # of the last one
+        self._deadline_s = now_s + WAIT_S
+        self._halted_s: float | None = None  # since then a request to arm is not repeated
+
+    def hear(self, state: DriverState, at_s: float) -> None:
+        """Take a state of the driver that arrived at `at_s`."""
+        self.state, self._heard_s = state, at_s
+        before = self._first_s is None or at_s <= self._first_s
+        if self._before is None or self._first_s is None:
+            self._before = state if before else self._before
+        elif self._request.arm:
+            self.refusal = self.refusal or _refused(self._before, state)
+            if self.refusal or _situation(state) != _situation(self._before):
+                self.halt(at_s)
+        self._heard += not before
+
+    def halt(self, now_s: float) -> None:
+        """Repeat a request to arm no more, e.g. since an e-stop was heard."""
+        self._halted_s = now_s if self._halted_s is None else self._halted_s
+
+    def due(self, now_s: float) -> ArmRequest | None:
+        """The request if it is to be published now."""
+        if now_s - self._sent_s < REPEAT_S:
+            return None
+        request = self._request
+        if request.arm:
+            if self._before is None or self._halted_s is not None or now_s - self._heard_s > FRESH_S:
+                return None
+            request = replace(request, epoch=self._before.epoch)
+        if self._first_s is None:
+            self._first_s, self._deadline_s = now_s, now_s + WAIT_S
+        self._sent_s = now_s
+        return request
+
+    def outcome(self, now_s: float) -> Outcome | None:
+        """The outcome as soon as there is one."""
+        if self._confirmed():
+            return Outcome.CONFIRMED
+        if self._request.arm and self._halted_s is not None and now_s - self._halted_s > SETTLE_S:
+            return Outcome.REFUSED if self.refusal else Outcome.CHANGED
+        if now_s < self._deadline_s:
+            return None
+        if self._first_s is None:
+            return Outcome.NO_DRIVER
+        return Outcome.NO_CONFIRMATION if self.matched else Outcome.NOT_SENT
+
+    def _confirmed(self) -> bool:
+        """Whether the state is as requested, and newer than the request.
+
+        The first state after the request may have been under way before it. Then it shows what was there before.
+        """
+        if self.state is None or self._heard == 0 or not self._is_wanted(self.state):
+            return False
+        return self._heard > 1 or (self._before is not None and not self._is_wanted(self._before))
+
+    def _is_wanted(self, state: DriverState) -> bool:
+        if not self._request.arm:
+            return state.mode in ("disarmed", "estopped")
+        same_start = self._before is None or state.epoch == self._before.epoch
+        return same_start and state.mode == "armed" and state.armed_sender == self._request.sender
+
+
+def _situation(state: DriverState) -> tuple[object, ...]:
+    return state.epoch, state.mode, state.reason, state.detail, state.armed_sender
+
+
+def _refused(before: DriverState, now: DriverState) -> str:
+    """The reason for which the driver has refused more requests to arm than before."""
+    counts = dict(zip(before.refused_reasons, before.refused_counts, strict=False))
+    for reason, count in zip(now.refused_reasons, now.refused_counts, strict=False):
+        if now.epoch == before.epoch and reason.startswith(ARM_REFUSED) and count > counts.get(reason, 0):
+            return reason.removeprefix(ARM_REFUSED)
+    return ""
