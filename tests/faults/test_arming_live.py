@@ -12,8 +12,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
 from tailor.schemas.messages.soccer import SoccerGroundTruth
-from tests.support.bus_system import answers, free_endpoint
-from tests.support.children import child_pid
+from tests.support.bus_system import answers, child_pid, free_endpoint
 from tests.support.patience import wait_until
 
 MOVING_MPS = 0.2

@@ -12,8 +12,7 @@ import pytest
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import DriverState
-from tests.support.bus_system import answers, free_endpoint, guarded_robot
-from tests.support.children import child_pid
+from tests.support.bus_system import answers, child_pid, free_endpoint, guarded_robot
 from tests.support.driven import Driven, burners
 from tests.support.patience import PATIENCE_S, wait_until
 

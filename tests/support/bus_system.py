@@ -71,3 +71,11 @@ def driving(start, endpoint, trace, speed=0.5):
     executive = start("tests.support.stand_ins.executive", endpoint, speed)
     wait_until(moving(trace, speed), "robot moves")
     return executive
+
+
+def child_pid(parent, name):
+    """Process id of the child of the launcher `parent` that runs `tailor NAME`."""
+    for line in Path(f"/proc/{parent}/task/{parent}/children").read_text().split():
+        if f"tailor.tools.main\0{name}\0" in Path(f"/proc/{line}/cmdline").read_text():
+            return int(line)
+    raise LookupError(name)
