@@ -35,7 +35,7 @@ class _Lines:
         self._last = ""
 
     def report(self, line: str) -> None:
-        self._console.print(line, highlight=False)
+        self._console.print(line, highlight=False, markup=False, soft_wrap=True)  # a line stays one for its reader
 
     def show(self, message: Message) -> None:
         line = _summary(message)
@@ -54,7 +54,7 @@ class _Panel:
         self._processes: ProcessStates | None = None
 
     def report(self, line: str) -> None:
-        self._live.console.print(line, highlight=False)
+        self._live.console.print(line, highlight=False, markup=False)
 
     def show(self, message: Message) -> None:
         if isinstance(message, ExecStatus):
