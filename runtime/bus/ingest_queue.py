@@ -7,7 +7,20 @@ from threading import Lock
 
 from tailor.runtime.bus.inbox import Raw
 
-MAX_BYTES = 32_000_000  # about a minute of one robot's messages while the disk is stuck
+MAX_BYTES = 32_000_000  # about five minutes of one robot's messages while the disk is stuck
+OVERHEAD_BYTES = 500  # of a message in memory beside its payload: a flood of empty messages must not be free
+MAX_COUNTED_KEYS = 1000  # a robot has about 30
+OTHER_KEYS = "(other keys)"
+
+
+def memory_of(raw: Raw) -> int:
+    """Memory that a message takes, in bytes, about."""
+    return len(raw.payload) + len(raw.key) + len(raw.encoding) + OVERHEAD_BYTES
+
+
+def count_key(counts: Counter[str], key: str) -> None:
+    """Count one message by its key; keys beyond the first MAX_COUNTED_KEYS are counted together."""
+    counts[key if key in counts or len(counts) < MAX_COUNTED_KEYS else OTHER_KEYS] += 1
 
 
 class IngestQueue:
@@ -25,10 +38,11 @@ class IngestQueue:
         """Append a message, or drop and count it if the queue is full."""
         with self._lock:
             self.received += 1
-            if self._bytes + len(raw.payload) > self._max_bytes:
-                self.drops[raw.key] += 1
+            size = memory_of(raw)
+            if self._bytes + size > self._max_bytes:
+                count_key(self.drops, raw.key)
                 return
-            self._bytes += len(raw.payload)
+            self._bytes += size
             self._waiting.append(raw)
 
     def drain(self) -> list[Raw]:

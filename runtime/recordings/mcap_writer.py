@@ -6,6 +6,7 @@ Foxglove, PlotJuggler, rerun and rosbags read it. log_time is the wall time of r
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,16 +15,16 @@ from mcap.writer import CompressionType, IndexType, Writer
 
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, unpack
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.channel_table import ChannelTable
+from tailor.runtime.recordings.chunk_index_spool import ChunkIndexSpool
 from tailor.runtime.recordings.sink import Sink
 from tailor.schemas.errors import Rejected
 from tailor.schemas.topics import TOPICS
-from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 
 CHUNK_BYTES = 131_072  # small enough that a damaged chunk loses little, large enough to compress well
 # For small files that are read from front to back: one chunk, no index, no repeated records. Half the size.
 COMPACT = {"chunk_size": 8_000_000, "index_types": IndexType.NONE, "repeat_channels": False, "repeat_schemas": False}
 STUCK_BYTES = 16_000_000  # of data waiting for the disk; then messages are dropped
-ENCODING = "application/cdr;"
 
 
 class McapWriter:
@@ -50,8 +51,9 @@ class McapWriter:
         layout: dict[str, Any] = COMPACT if compact else {"chunk_size": CHUNK_BYTES}
         self._writer: Any = Writer(target, compression=CompressionType.ZSTD, **layout)
         self._writer.start(profile="ros2", library="tailor")
-        self._schemas: dict[str, int] = {}
-        self._channels: dict[tuple[str, str, str], int] = {}
+        self._index = ChunkIndexSpool(path.parent)
+        self._index.install(self._writer)
+        self._channels = ChannelTable(self._writer)
         for name, entries in {"topics": _topics_table(), **metadata}.items():
             self.add_metadata(name, entries)
 
@@ -65,12 +67,24 @@ class McapWriter:
         """Size of the file in bytes, including data that waits for the disk."""
         return self._sink.tell()
 
-    def write(self, raw: Raw, wall_ns: int) -> None:
-        """Add a message received at `wall_ns`; one with a malformed attachment counts as unsigned."""
+    @property
+    def mixed(self) -> Counter[str]:
+        """Number of messages whose sender is not recorded, by key: it has too many of them."""
+        return self._channels.mixed
+
+    def write(self, raw: Raw, wall_ns: int) -> bool:
+        """Add a message received at `wall_ns`; one with a malformed attachment counts as unsigned.
+
+        Returns:
+          False if the file has too many keys for this one; the message is then not recorded.
+        """
         unpacked = unpack(raw.attachment)
         origin: Origin = UNSIGNED if isinstance(unpacked, Rejected) else unpacked
+        channel = self._channels.channel(raw, origin.sender)
+        if channel is None:
+            return False
         self._writer.add_message(
-            channel_id=self._channel(raw, origin.sender),
+            channel_id=channel,
             log_time=wall_ns,
             publish_time=origin.source_ns if origin.source_ns > 0 else wall_ns,
             sequence=origin.sequence & 0xFFFFFFFF,  # MCAP has 32 bits: 13 years at 10 Hz
@@ -78,6 +92,7 @@ class McapWriter:
         )
         self.messages += 1
         self.first_ns = wall_ns if self.first_ns is None else self.first_ns
+        return True
 
     def add_metadata(self, name: str, entries: Mapping[str, str]) -> None:
         """Add a metadata record; the last one of a name is valid."""
@@ -97,33 +112,9 @@ class McapWriter:
         """Write index and footer; False if writing fails, the file is then readable without them."""
         self._writer.finish()
         done = self.flush()
+        self._index.close()
         self._sink.close()
         return done
-
-    def _channel(self, raw: Raw, sender: str) -> int:
-        ros_name = raw.encoding.removeprefix(ENCODING) if raw.encoding.startswith(ENCODING) else _type_by_key(raw.key)
-        identity = (raw.key, sender, ros_name)
-        if identity not in self._channels:
-            kind: type | None = type_of(ros_name)
-            entries = {"key": raw.key, "sender": sender} | ({"type_hash": type_hash(kind)} if kind else {})
-            schema = self._schema(ros_name)
-            self._channels[identity] = self._writer.register_channel(f"/{raw.key}", "cdr", schema, entries)
-        return self._channels[identity]
-
-    def _schema(self, ros_name: str) -> int:
-        """Id of the schema of a type; 0 (none) for a type of another project."""
-        kind: type | None = type_of(ros_name)
-        if kind is None:
-            return 0
-        if ros_name not in self._schemas:
-            self._schemas[ros_name] = self._writer.register_schema(ros_name, "ros2msg", definition(kind).encode())
-        return self._schemas[ros_name]
-
-
-def _type_by_key(key: str) -> str:
-    """ROS type of a key according to the table of topics, for senders that do not name it."""
-    robot, _, _ = key.partition("/")
-    return next((ros_type(t.type) for t in TOPICS.values() if t.key.format(robot=robot) == key), "")
 
 
 def _topics_table() -> dict[str, str]:

@@ -10,14 +10,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.ingest_queue import IngestQueue, count_key
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.recordings.mcap_writer import ENCODING, McapWriter
+from tailor.runtime.recordings.channel_table import ENCODING
+from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
 
 FLUSH_NS = 600_000_000  # with one period and the time of the disk, kill -9 loses less than a second
-MAX_KINDS = 10_000  # limit of the cache by key and encoding; a bus has about 30
+NOTE_NS = 10_000_000_000  # between two records of counts, which stay in memory until the file is closed
+MAX_KINDS = 1000  # limit of the cache by key and encoding; a bus has about 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +43,7 @@ class Health:
     bytes: int = 0
     files: list[Path] = field(default_factory=list)
     drops: Counter[str] = field(default_factory=Counter)
+    mixed: Counter[str] = field(default_factory=Counter)  # messages recorded without their sender, by key
     disk_error: str = ""  # last error of the disk, empty if none
 
 
@@ -72,9 +75,10 @@ class Recorder:
         self._path, self._queue, self._selection = path, queue, selection
         self._limits, self._metadata = limits, metadata
         self._wanted: dict[tuple[str, str], bool] = {}  # by key and encoding
-        self._dropped: Counter[str] = Counter()  # because the disk was full
+        self._dropped: Counter[str] = Counter()  # because the disk was full, or the file had too many keys
         self._closed_messages = self._closed_bytes = 0
-        self._flush_at_ns = 0
+        self._closed_mixed: Counter[str] = Counter()
+        self._flush_at_ns = self._note_at_ns = 0
         self._writer = self._next_writer()
 
     def step(self, now_ns: int) -> None:
@@ -83,7 +87,9 @@ class Recorder:
             self._keep(raw)
         if now_ns >= self._flush_at_ns:
             self._flush_at_ns = now_ns + FLUSH_NS
-            self._note_drops()
+            self._count_losses()
+            if now_ns >= self._note_at_ns:
+                self._note_at_ns = now_ns + (NOTE_NS if self._note_losses() else 0)
             self._writer.flush()
             self._split_when_full()
         self._report()
@@ -92,7 +98,8 @@ class Recorder:
         """Write the remaining messages and the footer."""
         for raw in self._queue.drain():
             self._keep(raw)
-        self._note_drops()
+        self._count_losses()
+        self._note_losses()
         self._writer.close()
         self._report()
         return self.health
@@ -100,10 +107,9 @@ class Recorder:
     def _keep(self, raw: Raw) -> None:
         if not raw.is_put or not self._wants(raw.key, raw.encoding):
             return
-        if self._writer.is_full:
-            self._dropped[raw.key] += 1
+        if self._writer.is_full or not self._writer.write(raw, raw.received_wall_ns or wall_ns()):
+            count_key(self._dropped, raw.key)
             return
-        self._writer.write(raw, raw.received_wall_ns or wall_ns())
         if self._metadata.observe(raw):
             self._writer.add_metadata("provenance", self._metadata.entries["provenance"])
 
@@ -116,19 +122,28 @@ class Recorder:
             wanted = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
         return wanted
 
-    def _note_drops(self) -> None:
-        drops = self._queue.drops + self._dropped
-        if drops != self.health.drops:
-            self.health.drops = drops
-            self._metadata.put("drops", {key: str(count) for key, count in sorted(drops.items())})
-            self._writer.add_metadata("drops", self._metadata.entries["drops"])
+    def _count_losses(self) -> None:
+        self.health.drops = self._queue.drops + self._dropped
+        self.health.mixed = self._closed_mixed + self._writer.mixed
+
+    def _note_losses(self) -> bool:
+        """Write the counts that have changed into the file; False if none has."""
+        changed = False
+        for name, counts in (("drops", self.health.drops), ("mixed", self.health.mixed)):
+            entries = {key: str(count) for key, count in sorted(counts.items())}
+            if entries and self._metadata.put(name, entries):
+                self._writer.add_metadata(name, entries)
+                changed = True
+        return changed
 
     def _split_when_full(self) -> None:
         first_ns = self._writer.first_ns
         too_long = self._limits.max_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.max_ns
         too_big = self._limits.max_bytes and self._writer.bytes >= self._limits.max_bytes
         if (too_long or too_big) and not self._writer.disk_error:
+            self._note_losses()
             self._writer.close()
+            self._closed_mixed += self._writer.mixed
             self._closed_messages += self._writer.messages
             self._closed_bytes += self._writer.bytes
             self._writer = self._next_writer()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Mapping
 from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import count_key, memory_of
+from tailor.runtime.recordings.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import DriverState, ExecStatus
@@ -28,9 +30,9 @@ class SnapshotBuffer:
     def add(self, raw: Raw, wall_ns: int) -> None:
         """Append a message received at `wall_ns` and drop the oldest ones."""
         self._messages.append((raw, wall_ns))
-        self._bytes += len(raw.payload)
+        self._bytes += memory_of(raw)
         while self._messages[0][1] < wall_ns - self._span_ns or self._bytes > self._max_bytes:
-            self._bytes -= len(self._messages.popleft()[0].payload)
+            self._bytes -= memory_of(self._messages.popleft()[0])
 
     @property
     def is_empty(self) -> bool:
@@ -45,8 +47,12 @@ class SnapshotBuffer:
           OSError: Writing fails; the file is then removed.
         """
         writer = McapWriter(path, metadata)
+        drops: Counter[str] = Counter()  # messages of more keys than a file may have
         for raw, wall_ns in self._messages:
-            writer.write(raw, wall_ns)
+            if not writer.write(raw, wall_ns):
+                count_key(drops, raw.key)
+        if drops:
+            writer.add_metadata("drops", {key: str(count) for key, count in sorted(drops.items())})
         if not writer.close():
             path.unlink()
             raise OSError(0, writer.disk_error, str(path))
@@ -70,7 +76,9 @@ class FailureDetector:
     def _changed(self, raw: Raw, state: object, bad: tuple[str, ...]) -> str:
         if not isinstance(state, ExecStatus | DriverState):
             return ""
-        before, self._modes[raw.key] = self._modes.get(raw.key), state.mode
+        before = self._modes.get(raw.key)
+        if before is not None or len(self._modes) < MAX_KEYS:
+            self._modes[raw.key] = state.mode
         if before is None or state.mode == before or state.mode not in bad:
             return ""
         cause = reason_text(state.reason, state.detail)

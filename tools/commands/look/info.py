@@ -46,7 +46,8 @@ def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
         "duration_s": round((end_ns - start_ns) / 1e9, 3),
         "messages": sum(stream.count for stream in counted.streams.values()),
         "damage": recording.damage.text(),
-        "drops": {key: int(count) if count.isdecimal() else count for key, count in metadata.get("drops", {}).items()},
+        "drops": _counts(metadata.get("drops", {})),
+        "mixed": _counts(metadata.get("mixed", {})),
         "topics": [_stream(s) for s in sorted(counted.streams.values(), key=lambda s: (s.key, s.first_ns))],
         "episodes": [{"goal": goal, "result": result} for goal, result in counted.results],
         "actions": [
@@ -64,6 +65,10 @@ def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
         "provenance": _parsed(metadata.get("provenance", {}).get("json", "{}")),
         "recorder": metadata.get("recorder", {}),
     }
+
+
+def _counts(entries: dict[str, str]) -> dict[str, int | str]:
+    return {key: int(count) if count.isdecimal() else count for key, count in entries.items()}
 
 
 def _stream(stream: Stream) -> dict[str, Any]:
@@ -98,6 +103,8 @@ def _show(summary: dict[str, Any]) -> None:
         console.print(f"damaged: {summary['damage']}", style="red")
     for key, count in summary["drops"].items():
         console.print(f"dropped: {count} of {plain(key)}", style="red")
+    for key, count in summary["mixed"].items():
+        console.print(f"without their sender, of too many: {count} of {plain(key)}", style="red")
     console.print(_topics(summary["topics"][:MAX_ROWS]))
     if len(summary["topics"]) > MAX_ROWS:
         console.print(f"and {len(summary['topics']) - MAX_ROWS} topics more; --json prints all")

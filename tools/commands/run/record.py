@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         notifier.stopping()
         subscription.undeclare()
         health = recorder.close()
-    if not arguments.quiet or health.drops or health.disk_error:
+    if not arguments.quiet or health.drops or health.mixed or health.disk_error:
         print(_line(health), file=sys.stderr)
     return 1 if health.drops or health.disk_error else 0
 
@@ -139,7 +139,9 @@ def _losses(health: Health, connected: bool) -> str:
         return f"disk: {health.disk_error}"
     if not connected:
         return DISCONNECTED
-    return f"{health.drops.total()} messages dropped" if health.drops else ""
+    if health.drops:
+        return f"{health.drops.total()} messages dropped"
+    return "too many senders: some messages are recorded without theirs" if health.mixed else ""
 
 
 def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:
@@ -157,4 +159,6 @@ def _line(health: Health) -> str:
     text = f"{place}: {health.messages} messages, {health.bytes / 1e6:.1f} MB"
     if health.drops:
         text += f", {health.drops.total()} dropped"
+    if health.mixed:
+        text += f", {health.mixed.total()} without their sender"
     return text + (f", disk: {health.disk_error}" if health.disk_error else "")
