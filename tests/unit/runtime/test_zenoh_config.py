@@ -1,12 +1,28 @@
 """What protects a router and its clients, value by value: a configuration that is merely accepted protects nothing."""
 
 import json
+from pathlib import Path
 
-from tailor.runtime.bus import zenoh_config
+import pytest
+
+from tailor.runtime.bus import access, zenoh_config
+from tailor.runtime.bus.credentials import Identity, Password
+from tailor.runtime.bus.run_folder import RunFolder
+from tailor.schemas.roles import ROLES
 
 ENDPOINT = "tcp/127.0.0.1:7999"
 ROUTER = json.loads(zenoh_config.router(ENDPOINT))
-CLIENT = json.loads(zenoh_config.client(ENDPOINT))
+CLIENT = json.loads(zenoh_config.client([ENDPOINT]))
+IDENTITY = Identity(Path("/keys"))
+NAMES = {"tablet": "people", "arm": "driver", "phone": "people"}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Of a bus with passwords."""
+    folder = RunFolder(tmp_path)
+    folder.users_file.write_text("".join(f"{user}:{user[::-1]}\n" for user in (*ROLES, access.GATEWAY)))
+    return folder
 
 
 def test_nothing_beyond_this_machine_is_reached_by_default():
@@ -35,9 +51,10 @@ def test_a_peer_that_is_silent_for_a_second_is_gone_and_a_burst_keeps_its_tail()
         assert link["queue"]["size"] == dict.fromkeys(zenoh_config.PRIORITIES, 16)
 
 
-def test_connections_that_send_nothing_are_many_and_soon_closed():
-    assert ROUTER["transport"]["unicast"]["accept_pending"] == 2000
-    assert ROUTER["transport"]["unicast"]["accept_timeout"] == 1000
+def test_connections_that_send_nothing_are_many_and_soon_closed(folder):
+    routers = (zenoh_config.local_router(folder), zenoh_config.gateway(ENDPOINT, folder, None, {}))
+    for config in (ROUTER, *map(json.loads, routers)):
+        assert config["transport"]["unicast"] == {"accept_pending": 2000, "accept_timeout": 1000}
 
 
 def test_a_client_is_back_within_a_second_and_storms_nobody():
@@ -45,8 +62,60 @@ def test_a_client_is_back_within_a_second_and_storms_nobody():
     assert retry == {"period_init_ms": 200, "period_max_ms": 200, "period_increase_factor": 1}
 
 
-def test_requests_to_stop_and_to_arm_are_limited_in_rate_and_commands_are_not():
-    (limits,) = ROUTER["downsampling"]
-    rates = {rule["key_expr"]: rule["freq"] for rule in limits["rules"]}
-    assert rates == dict.fromkeys(["*/arm_request", "*/self_arm", "estop"], 1000.0)
-    assert (limits["flows"], sorted(limits["messages"])) == (["ingress"], ["delete", "put"])
+def test_every_router_limits_the_rate_of_requests_to_stop_and_to_arm(folder):
+    gateway = json.loads(zenoh_config.gateway(ENDPOINT, folder, None, {}))
+    local = json.loads(zenoh_config.local_router(folder))
+    assert ROUTER["downsampling"] == gateway["downsampling"] == access.rate_limits(1000.0)
+    assert local["downsampling"] == access.rate_limits(5000.0), "of all peers of the gateway together"
+
+
+def test_the_local_router_demands_passwords_and_applies_the_rules(folder):
+    config = json.loads(zenoh_config.local_router(folder))
+    subjects = [{"id": user, "usernames": [user]} for user in (*ROLES, access.GATEWAY)]
+    assert config["listen"]["endpoints"] == [f"unixsock-stream/{folder.path}/bus.sock"]
+    assert config["transport"]["auth"] == {"usrpwd": {"dictionary_file": str(folder.users_file)}}
+    assert config["access_control"] == access.access_control(subjects)
+    assert config["low_pass_filter"] == access.size_limits()
+
+
+def test_an_open_local_router_has_neither(tmp_path):
+    config = json.loads(zenoh_config.local_router(RunFolder(tmp_path)))
+    assert config.keys() & {"access_control", "low_pass_filter"} == set()
+    assert "auth" not in config["transport"]
+
+
+def test_the_gateway_demands_passwords_and_trusts_the_local_router_by_its_socket_alone(folder):
+    config = json.loads(zenoh_config.gateway(ENDPOINT, folder, None, {}))
+    subjects = [*({"id": role, "usernames": [role]} for role in ROLES)]
+    subjects += [{"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}]
+    assert config["transport"]["auth"]["usrpwd"] == {
+        "user": "gateway", "password": "yawetag", "dictionary_file": str(folder.users_file),
+    }  # fmt: skip
+    assert config["access_control"] == access.access_control(subjects)
+    assert config["low_pass_filter"] == access.size_limits()
+    assert config["connect"]["endpoints"] == [folder.socket_endpoint]
+
+
+def test_a_gateway_with_certificates_takes_roles_from_their_names_and_nobody_without_one(folder):
+    config = json.loads(zenoh_config.gateway("tls/host:7447", folder, IDENTITY, NAMES))
+    assert config["access_control"]["subjects"] == [
+        {"id": "driver", "cert_common_names": ["arm"]},
+        {"id": "people", "cert_common_names": ["phone", "tablet"]},
+        {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]},
+    ]
+    assert config["transport"]["link"]["tls"] == {
+        "root_ca_certificate": "/keys/authority.pem",
+        "enable_mtls": True,
+        "listen_private_key": "/keys/key.pem",
+        "listen_certificate": "/keys/certificate.pem",
+        "connect_private_key": "/keys/key.pem",
+        "connect_certificate": "/keys/certificate.pem",
+    }
+
+
+def test_a_client_proves_itself_and_checks_the_name_of_its_router():
+    config = json.loads(zenoh_config.client([ENDPOINT], password=Password("people", "x"), identity=IDENTITY))
+    assert config["transport"]["auth"] == {"usrpwd": {"user": "people", "password": "x"}}
+    tls = config["transport"]["link"]["tls"]
+    assert (tls["enable_mtls"], tls["verify_name_on_connect"]) == (True, True)
+    assert tls["connect_private_key"] == "/keys/key.pem"

@@ -1,0 +1,135 @@
+"""The folder of a bus: its passwords are of one run, and only the user who started it reads them."""
+
+import os
+import stat
+
+import pytest
+
+from tailor.runtime.bus import run_folder as module
+from tailor.runtime.bus.run_folder import LOCK, SOCKET, RunFolder, hosted, run_folder
+from tailor.schemas.errors import UsageError
+
+ENDPOINT = "tcp/127.0.0.1:7999"
+
+
+@pytest.fixture(autouse=True)
+def base(tmp_path, monkeypatch):
+    """Folder of all runs, as of a login session."""
+    monkeypatch.delenv("TAILOR_RUN_DIR", raising=False)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    return tmp_path / "tailor"
+
+
+def mode(path):
+    return stat.S_IMODE(path.lstat().st_mode)
+
+
+def test_folder_and_passwords_are_private():
+    with hosted(ENDPOINT, ["people", "driver"]) as folder:
+        assert (mode(folder.path), mode(folder.path.parent) & 0o022, mode(folder.users_file)) == (0o700, 0, 0o600)
+
+
+def test_the_group_of_a_service_may_read_them(tmp_path, monkeypatch):
+    (tmp_path / "service").mkdir(mode=0o750)
+    monkeypatch.setenv("TAILOR_RUN_DIR", str(tmp_path / "service"))
+    with hosted(ENDPOINT, ["people"]) as folder:
+        assert folder.path.parent == tmp_path / "service"
+        assert (mode(folder.path), mode(folder.users_file)) == (0o750, 0o640)
+
+
+def test_every_role_has_a_password_of_its_own_and_every_run_new_ones():
+    passwords = []
+    for _ in range(2):
+        with hosted(ENDPOINT, ["people", "driver"]) as folder:
+            passwords += [folder.password("people"), folder.password("driver")]
+    assert len(set(passwords)) == 4
+    assert {len(password) for password in passwords} == {32}
+
+
+def test_passwords_that_a_killed_run_left_behind_are_replaced():
+    with hosted(ENDPOINT, ["people"]) as folder:
+        left = folder.users_file.read_text()
+    folder.users_file.write_text(left)
+    with hosted(ENDPOINT, ["people"]):
+        assert folder.users_file.read_text() != left
+
+
+def test_nothing_but_the_lock_is_left_at_the_end():
+    with hosted(ENDPOINT, ["people"]) as folder:
+        (folder.path / SOCKET).touch()
+    assert [path.name for path in folder.path.iterdir()] == [LOCK]
+
+
+def test_a_bus_has_one_owner():
+    with (
+        hosted(ENDPOINT, ["people"]) as folder,
+        pytest.raises(UsageError, match="it runs already"),
+        hosted(ENDPOINT, []),
+    ):
+        pass
+    assert not folder.users_file.exists()
+
+
+def test_whoever_was_refused_leaves_the_passwords_of_the_owner_alone():
+    with hosted(ENDPOINT, ["people"]) as folder:
+        before = folder.users_file.read_text()
+        with pytest.raises(UsageError), hosted(ENDPOINT, ["people"]):
+            pass
+        assert folder.users_file.read_text() == before
+
+
+def test_a_role_without_a_password_opens_no_session():
+    with hosted(ENDPOINT, ["people"]) as folder, pytest.raises(UsageError, match="no password for the role driver"):
+        folder.password("driver")
+
+
+def test_a_bus_without_users_is_open():
+    with hosted(ENDPOINT, []) as folder:
+        assert folder.password("people") is None
+
+
+def test_passwords_that_cannot_be_read_are_an_error_and_no_open_bus(monkeypatch):
+    def refused(self):
+        raise PermissionError(13, "Permission denied")
+
+    with hosted(ENDPOINT, ["people"]) as folder:
+        monkeypatch.setattr(type(folder.path), "read_text", refused)
+        with pytest.raises(UsageError, match="Permission denied, expected a bus of the same user"):
+            folder.password("people")
+
+
+@pytest.mark.parametrize("which", ["of all runs", "of the bus"])
+@pytest.mark.parametrize("bits", [0o020, 0o002])
+def test_a_folder_that_others_may_write_is_refused(base, which, bits):
+    path = base if which == "of all runs" else run_folder(ENDPOINT).path
+    path.mkdir(parents=True)
+    base.chmod(0o700)
+    path.chmod(0o700 | bits)
+    with pytest.raises(UsageError, match="expected a folder that only this user may write"), hosted(ENDPOINT, []):
+        pass
+
+
+def test_a_folder_of_another_user_is_refused(monkeypatch):
+    with hosted(ENDPOINT, []):
+        pass
+    monkeypatch.setattr(module.os, "getuid", lambda: os.geteuid() + 1)
+    monkeypatch.setattr(RunFolder, "running", lambda self: False)
+    owner = run_folder(ENDPOINT).path.lstat().st_uid
+    if owner == 0:
+        os.chown(run_folder(ENDPOINT).path, 12345, -1)  # root's own folders are trusted
+    with pytest.raises(UsageError, match="expected a folder that only this user may write"), hosted(ENDPOINT, []):
+        pass
+
+
+def test_a_link_to_a_folder_is_refused(base, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir(mode=0o700)
+    base.mkdir(mode=0o700)
+    run_folder(ENDPOINT).path.symlink_to(elsewhere)
+    with pytest.raises(UsageError, match="expected a folder that only this user may write"), hosted(ENDPOINT, []):
+        pass
+
+
+def test_buses_of_different_endpoints_share_nothing():
+    assert run_folder("tcp/127.0.0.1:7447").path != run_folder("tcp/127.0.0.1:7448").path
+    assert run_folder("tcp/../x:1").path.parent == run_folder(ENDPOINT).path.parent
