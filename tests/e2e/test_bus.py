@@ -5,12 +5,15 @@ import time
 from contextlib import ExitStack
 
 import pytest
+import zenoh
 
+from tailor.runtime.bus.inbox import EVENT_DEPTH
 from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
+from tailor.schemas.topics import TOPICS
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
 from tests.support.stalls import repeat_on_stall
@@ -83,6 +86,33 @@ def test_an_inbox_can_keep_the_states_of_several_senders(pair):
         publisher.publish(example(ExecStatus))
         time.sleep(0.05)
     assert [s.sender for s in inbox.drain()] == [a.sender, b.sender, b.sender]
+
+
+def test_a_stop_is_not_pushed_out_by_later_messages_of_its_key(pair):
+    a, b = pair
+    publisher, inbox = a.publisher("estop", ""), b.inbox(["estop"], "")
+    witness, subscription = b.subscribe_all("estop")
+    wait_until(publisher.matched)
+    publisher.publish(EStop(True))
+    for _ in range(4 * EVENT_DEPTH):
+        time.sleep(0.002)  # the router limits their rate
+        publisher.publish(EStop(False))
+    wait_until(lambda: witness.received > 2 * EVENT_DEPTH, "more messages than a ring holds")
+    subscription.undeclare()
+    assert [sample.message for sample in inbox.drain()] == [EStop(True), EStop(False)]
+
+
+def test_no_publisher_of_a_loop_waits_for_a_slow_reader_and_stops_and_commands_go_first(pair):
+    a, _ = pair
+    for name, topic in TOPICS.items():
+        declared = a.publisher(name, "agilo")._wire._publisher
+        assert declared.congestion_control == zenoh.CongestionControl.DROP
+        assert (declared.priority == zenoh.Priority.REAL_TIME) is (topic.priority == "real_time")
+    assert {name for name, topic in TOPICS.items() if topic.priority == "real_time"} == {
+        "cmd_vel",
+        "joint_cmd",
+        "estop",
+    }
 
 
 def test_a_put_on_a_wildcard_is_not_accepted_as_a_command(pair):

@@ -126,6 +126,13 @@ def test_of_several_valid_states_the_newest_counts():
     assert [sample.sequence for sample in box.drain(9)] == [8]
 
 
+def test_of_events_and_commands_all_count_even_where_of_states_only_the_newest_does():
+    commands = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in (1, 2, 3)]
+    rows = [(TOPICS["cmd_vel"], "agilo/cmd_vel", Line(*commands))]
+    box = Inbox(rows, encoding_of, lambda: 0, lambda: 0, newest_only=True)
+    assert [sample.sequence for sample in box.drain(9)] == [1, 2, 3]
+
+
 def held(number, sender=SENDER):
     return numbered(EStop(False), number, "estop", sender)
 

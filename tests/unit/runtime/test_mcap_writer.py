@@ -241,6 +241,16 @@ def test_a_flood_is_dropped_and_counted_before_memory_runs_out():
     kept = len(queue.drain())
     assert kept == 10
     assert queue.drops == Counter({"agilo/odom": 100 - kept})
+    queue.put(odometry(100))
+    assert len(queue.drain()) == 1, "a drained queue has room again"
+    assert (queue.received, queue.drops.total()) == (101, 100 - kept)
+
+
+def test_a_recording_is_never_written_over_another_one(tmp_path):
+    (tmp_path / "r.mcap").write_bytes(b"the last run")
+    with pytest.raises(FileExistsError):
+        make_recorder(tmp_path, IngestQueue())
+    assert (tmp_path / "r.mcap").read_bytes() == b"the last run"
 
 
 def test_provenance_goes_into_every_part_of_a_recording(tmp_path):

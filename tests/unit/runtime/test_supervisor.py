@@ -63,11 +63,14 @@ class FakeChild:
 
     def stop(self):
         self.code = 0
+        FakeChild.stopped.append(self.name)
+
+    stopped: list = []
 
 
 @pytest.fixture
 def supervisor():
-    FakeChild.made, reported = [], []
+    FakeChild.made, FakeChild.stopped, reported = [], [], []
     supervisor = Supervisor(reported.append, FakeChild)
     supervisor.reported = reported
     return supervisor
@@ -96,8 +99,8 @@ def test_a_crash_loop_is_given_up(supervisor):
     assert supervisor.reported[-1] == "executive ended with 1; gave up: too many starts within a minute"
 
 
-@pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0)])
-def test_a_process_that_ended_well_or_must_not_restart_stays_ended(supervisor, restarts, code):
+@pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0), (True, 2)])
+def test_a_process_that_ended_well_or_for_bad_input_or_must_not_restart_stays_ended(supervisor, restarts, code):
     supervisor.start(ProcessSpec("sim", ["x"], restarts=restarts), 0)
     FakeChild.made[0].code = code
     supervisor.poll(1)
@@ -173,6 +176,24 @@ def test_a_killed_child_that_the_kernel_does_not_end_is_reported_once(supervisor
     assert supervisor.state("record") is State.RUNNING
 
 
+def test_a_new_child_has_the_time_of_a_start_whenever_its_predecessor_was_heard(supervisor):
+    supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)
+    FakeChild.made[0].reported = Report(ready=True)
+    supervisor.poll(0)
+    FakeChild.made[0].code = -9
+    for now_ns in range(0, STARTUP_NS, 100 * MS):
+        supervisor.poll(now_ns)
+    assert (len(FakeChild.made), FakeChild.made[1].killed) == (2, 0)
+    assert supervisor.state("executive") is State.STARTING
+
+
+def test_the_executive_is_stopped_before_the_robot_and_the_recorder_last(supervisor):
+    for name in ("record", "sim", "executive"):
+        supervisor.start(ProcessSpec(name, ["x"]), 0)
+    supervisor.stop()
+    assert FakeChild.stopped == ["executive", "sim", "record"]
+
+
 def test_each_start_gets_its_own_arguments(supervisor):
     spec = ProcessSpec("sim", ["x"], arguments=lambda start: ("--leave",) if start == 1 else (f"--start={start}",))
     supervisor.start(spec, 0)
@@ -216,8 +237,18 @@ def test_a_child_ends_when_its_parent_is_killed():
     time.sleep(0.2)
     assert is_alive(child)
     process.kill()
-    process.communicate()
+    process.wait()  # not for the end of its output, which the child holds open
     assert gone(child)
+    for pipe in (process.stdin, process.stdout):
+        pipe.close()
+
+
+def test_a_child_has_a_session_of_its_own_so_that_ctrl_c_reaches_its_parent_alone():
+    child = Child("c", ["sleep", "60"])
+    try:
+        assert os.getsid(child.pid) == child.pid != os.getsid(0)
+    finally:
+        child.kill()
 
 
 @pytest.mark.promise("P10")

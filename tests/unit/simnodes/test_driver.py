@@ -43,6 +43,15 @@ def test_a_program_that_arms_itself_is_refused_without_leave():
         assert driver.guard.output(1) == (0.0, 0.0)
 
 
+def test_a_program_cannot_use_the_leave_of_another():
+    driver = Driver(SPEC, 7, leave=A)
+    stranger = Sample("agilo/self_arm", ArmRequest(True, False, A, 0), 0, 1, "c" * 32)
+    driver.take([stranger, command(0.5, 1, A)], {}, 0)
+    assert (driver.guard.mode, driver.guard.output(0)) == (Mode.DISARMED, (0.0, 0.0))
+    driver.take([arm(A)], {}, 0)
+    assert driver.guard.sender == A, "it is not spent"
+
+
 @pytest.mark.promise("P38")
 def test_an_estop_wins_over_an_arming_request_that_was_sent_after_it():
     driver = Driver(SPEC, 7)

@@ -1,9 +1,13 @@
 """What the launcher concludes from its children: whose messages count, and what a lost recording means."""
 
+from pathlib import Path
+
+from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.launch.process_reports import ProcessReports
+from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
 from tailor.tools.launch.recording_watch import ENDED, RecordingWatch
 from tailor.tools.launch.senders import Senders
 
@@ -33,6 +37,34 @@ def test_only_the_first_executive_has_the_leave_to_arm():
     assert senders.arguments("executive", 1) == ("--sender", senders.leave)
     assert senders.leave not in senders.arguments("executive", 2)
     assert senders.leave not in senders.arguments("sim", 1)
+
+
+def config(**changes):
+    return LaunchConfig(ExecutiveConfig("soccer", "approach"), "tcp/127.0.0.1:1", record=Path("r.mcap"), **changes)
+
+
+def test_only_the_first_start_of_a_driver_knows_who_has_leave():
+    senders = Senders()
+    sim = sim_process(config(), senders, "agilo")
+    assert sim.command_line(1)[-2:] == ["--leave", senders.leave]
+    assert senders.leave not in sim.command_line(2)
+    executive = executive_process(config(), senders)
+    assert executive.command_line(1)[-2:] == ["--sender", senders.leave]
+    assert senders.leave not in executive.command_line(2)
+
+
+def test_every_child_is_missed_when_it_is_silent():
+    senders = Senders()
+    specs = (
+        executive_process(config(), senders),
+        sim_process(config(), senders, "agilo"),
+        record_process(config(), senders),
+    )
+    assert [(spec.name, spec.silence_ns / S, spec.restarts) for spec in specs] == [
+        ("executive", 1.0, True),
+        ("sim", 2.0, True),
+        ("record", 10.0, False),
+    ]
 
 
 def test_a_lost_recording_is_reported_once_and_the_run_goes_on():

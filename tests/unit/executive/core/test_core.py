@@ -149,8 +149,11 @@ def test_action_that_never_ends_fails_at_its_time_limit():
     def stuck(n, given, x):
         return inputs(n * TICK, 0.0, given.goal)
 
-    finished = messages(list(drive(line_context(), world=stuck, ticks=130)), ActionFinished)
+    run = list(drive(line_context(), world=stuck, ticks=130))
+    finished = messages(run, ActionFinished)
     assert finished[0].outcome == "failed"
+    failed = next(n for n, (state, _, _) in enumerate(run) if state.task.finished == 1)
+    assert [run[n][0].command[0] for n in (failed - 1, failed)] == [0.5, 0.0]
     assert (finished[0].reason, finished[0].detail) == (Reason.ACTION_TIMEOUT, "10.0 s")
 
 
@@ -256,6 +259,13 @@ def test_command_guard_refuses_what_is_not_finite_and_clamps_the_rest(command, e
     assert checked(command, axes)[0] == expected
 
 
+def test_limits_of_an_axis_may_differ_in_both_directions():
+    axes = (Axis("v", "m/s", -0.2, 0.9), Axis("omega", "rad/s", 0.1, 0.3))
+    assert checked((-0.5, 0.0), axes) == ((-0.2, 0.1), None)
+    assert checked((1.5, 0.4), axes) == ((0.9, 0.3), None)
+    assert checked((-0.2, 0.3), axes) == ((-0.2, 0.3), None)
+
+
 def test_settings_default_to_the_papers_horizon():
     assert Settings().refinement.horizon == 2
 
@@ -323,6 +333,39 @@ def test_arming_is_requested_again_only_while_the_same_start_of_the_driver_stays
         state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)
     ]
     assert requested == [1, 7, 13]
+
+
+@pytest.mark.parametrize("mode", ["stopped", "estopped"])
+def test_arming_is_never_requested_of_a_driver_that_was_stopped_before_this_executive_came(mode):
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, mode, accepted=0)), given.goal)
+
+    assert messages(list(drive(line_context(), world=world, ticks=20)), ArmRequest) == []
+
+
+def test_arming_is_requested_once_of_a_driver_that_has_moved():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "disarmed", accepted=1)), given.goal)
+
+    assert len(messages(list(drive(line_context(), world=world, ticks=20)), ArmRequest)) == 1
+
+
+def test_the_state_of_another_robots_driver_does_not_count():
+    def world(n, given, x):
+        other = dataclasses.replace(driver(n * TICK), key="nomad/driver")
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "disarmed"), other), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=10))
+    assert messages(run, VelocityCommand) == []
+    assert run[-1][0].mode is Mode.DISARMED
+
+
+def test_a_robot_whose_belief_is_not_ready_holds():
+    context = line_context()
+    context.domain.ready = lambda belief: belief.x > 0.0
+    run = list(drive(context, ticks=20))
+    assert (run[-1][0].mode, run[-1][0].cause) == (Mode.HOLDING, Cause(Reason.BELIEF_NOT_READY))
+    assert all(state.command == (0.0,) for state, _, _ in run)
 
 
 def test_robot_coasts_two_ticks_between_actions_and_then_stands():
