@@ -6,7 +6,7 @@ import stat
 import pytest
 
 from tailor.runtime.bus import run_folder as module
-from tailor.runtime.bus.run_folder import LOCK, SOCKET, RunFolder, hosted, run_folder
+from tailor.runtime.bus.run_folder import LOCK, SOCKET, USERS, hosted, run_folder
 from tailor.schemas.errors import UsageError
 
 ENDPOINT = "tcp/127.0.0.1:7999"
@@ -46,18 +46,32 @@ def test_every_role_has_a_password_of_its_own_and_every_run_new_ones():
     assert {len(password) for password in passwords} == {32}
 
 
+def left_behind(**files):
+    """The folder of a run that was killed."""
+    folder = run_folder(ENDPOINT)
+    folder.path.parent.mkdir(mode=0o700)
+    folder.path.mkdir(mode=0o700)
+    for name, text in files.items():
+        (folder.path / name).write_text(text)
+    return folder
+
+
 def test_passwords_that_a_killed_run_left_behind_are_replaced():
+    left_behind(**{USERS: "people:known\n", LOCK: ""})
     with hosted(ENDPOINT, ["people"]) as folder:
-        left = folder.users_file.read_text()
-    folder.users_file.write_text(left)
-    with hosted(ENDPOINT, ["people"]):
-        assert folder.users_file.read_text() != left
+        assert folder.password("people") != "known"
 
 
-def test_nothing_but_the_lock_is_left_at_the_end():
+def test_an_open_bus_has_no_passwords_of_a_killed_run():
+    left_behind(**{USERS: "people:known\n", LOCK: ""})
+    with hosted(ENDPOINT, []) as folder:
+        assert folder.password("people") is None
+
+
+def test_nothing_is_left_at_the_end():
     with hosted(ENDPOINT, ["people"]) as folder:
         (folder.path / SOCKET).touch()
-    assert [path.name for path in folder.path.iterdir()] == [LOCK]
+    assert not folder.path.exists()
 
 
 def test_a_bus_has_one_owner():
@@ -67,7 +81,7 @@ def test_a_bus_has_one_owner():
         hosted(ENDPOINT, []),
     ):
         pass
-    assert not folder.users_file.exists()
+    assert not folder.path.exists()
 
 
 def test_whoever_was_refused_leaves_the_passwords_of_the_owner_alone():
@@ -109,14 +123,14 @@ def test_a_folder_that_others_may_write_is_refused(base, which, bits):
         pass
 
 
-def test_a_folder_of_another_user_is_refused(monkeypatch):
-    with hosted(ENDPOINT, []):
-        pass
-    monkeypatch.setattr(module.os, "getuid", lambda: os.geteuid() + 1)
-    monkeypatch.setattr(RunFolder, "running", lambda self: False)
-    owner = run_folder(ENDPOINT).path.lstat().st_uid
-    if owner == 0:
-        os.chown(run_folder(ENDPOINT).path, 12345, -1)  # root's own folders are trusted
+@pytest.mark.parametrize("which", ["of all runs", "of the bus"])
+def test_a_folder_of_another_user_is_refused(base, monkeypatch, which):
+    """Only root can give a folder away: others see their own folder with another user's eyes."""
+    folder = left_behind()
+    if os.getuid() == 0:
+        os.chown(base if which == "of all runs" else folder.path, 12345, -1)
+    else:
+        monkeypatch.setattr(module.os, "getuid", lambda: os.geteuid() + 1)
     with pytest.raises(UsageError, match="expected a folder that only this user may write"), hosted(ENDPOINT, []):
         pass
 

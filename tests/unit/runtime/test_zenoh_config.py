@@ -1,6 +1,7 @@
 """What protects a router and its clients, value by value: a configuration that is merely accepted protects nothing."""
 
 import json
+from base64 import b64decode
 from pathlib import Path
 
 import pytest
@@ -103,6 +104,7 @@ def test_a_gateway_with_certificates_takes_roles_from_their_names_and_nobody_wit
         {"id": "people", "cert_common_names": ["phone", "tablet"]},
         {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]},
     ]
+    assert config["transport"]["auth"]["usrpwd"]["dictionary_file"] == str(folder.certificate_users_file)
     assert config["transport"]["link"]["tls"] == {
         "root_ca_certificate": "/keys/authority.pem",
         "enable_mtls": True,
@@ -113,9 +115,22 @@ def test_a_gateway_with_certificates_takes_roles_from_their_names_and_nobody_wit
     }
 
 
-def test_a_client_proves_itself_and_checks_the_name_of_its_router():
-    config = json.loads(zenoh_config.client([ENDPOINT], password=Password("people", "x"), identity=IDENTITY))
+def test_a_client_proves_itself_with_the_password_of_its_role():
+    config = json.loads(zenoh_config.client([ENDPOINT], password=Password("people", "x")))
     assert config["transport"]["auth"] == {"usrpwd": {"user": "people", "password": "x"}}
-    tls = config["transport"]["link"]["tls"]
+
+
+def test_a_client_with_a_certificate_checks_the_name_of_its_router():
+    tls = json.loads(zenoh_config.client([ENDPOINT], identity=IDENTITY))["transport"]["link"]["tls"]
     assert (tls["enable_mtls"], tls["verify_name_on_connect"]) == (True, True)
     assert tls["connect_private_key"] == "/keys/key.pem"
+
+
+def test_so_does_a_node_that_is_not_ours(tmp_path):
+    for name in ("authority.pem", "certificate.pem", "key.pem"):
+        (tmp_path / name).write_text(name)
+    config = json.loads(zenoh_config.foreign_client("tls/host:7447", tmp_path))
+    tls = config["transport"]["link"]["tls"]
+    assert (tls["enable_mtls"], tls["verify_name_on_connect"]) == (True, True)
+    assert b64decode(tls["connect_private_key_base64"]) == b"key.pem"
+    assert (config["listen"]["endpoints"], config["connect"]["endpoints"]) == ([], ["tls/host:7447"])
