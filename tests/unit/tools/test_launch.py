@@ -5,6 +5,7 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
+from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
@@ -40,7 +41,7 @@ def test_only_the_first_executive_has_the_leave_to_arm():
 
 
 def config(**changes):
-    return LaunchConfig(ExecutiveConfig("soccer", "approach"), "tcp/127.0.0.1:1", record=Path("r.mcap"), **changes)
+    return LaunchConfig(ExecutiveConfig("soccer", "approach"), BusSettings(), record=Path("r.mcap"), **changes)
 
 
 def test_only_the_first_start_of_a_driver_knows_who_has_leave():
