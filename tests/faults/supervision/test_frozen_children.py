@@ -9,7 +9,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.messages import DriverState
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.launch.recording_watch import ENDED
-from tests.support.launched import launched
+from tests.faults.supervision.launched import launched
 from tests.support.patience import wait_until
 
 LIMITS_S = {"executive": 1.0, "sim": 2.0, "record": 10.0}

@@ -12,8 +12,8 @@ from contextlib import contextmanager
 import pytest
 
 from tailor.runtime.processes.child import Child, tailor
+from tests.faults.supervision.launched import launched
 from tests.support.bus_system import ROOT, free_endpoint
-from tests.support.launched import launched
 from tests.support.patience import PATIENCE_S, wait_until
 
 BURNERS = 4
