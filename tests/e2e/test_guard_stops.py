@@ -51,6 +51,33 @@ def test_robot_stops_within_300_ms_after_executive_is_killed(system, kills, meas
         measured.add(repeat_on_stall(3, killed), LIMIT_S)
 
 
+def hung_in_motion(start, endpoint, trace, after_s):
+    """Hangs a driving executive; seconds to zero at the guard."""
+    executive = driving(start, endpoint, trace)
+    time.sleep(after_s)
+    assert moving(trace, 0.5)(), "the machine stalled the executive for 0.3 s"
+    hung_s = time.monotonic()
+    os.kill(executive.pid, signal.SIGUSR1)
+    stop_s = rest_after(trace, hung_s) - hung_s
+    time.sleep(0.5)
+    alive = executive.exit_code() is None
+    executive.kill()
+    assert alive, "it hangs, it is not dead"
+    assert outputs(trace)[-1][1] == 0.0
+    assert stop_s <= LIMIT_S
+    return stop_s
+
+
+@pytest.mark.promise("P1")
+@pytest.mark.parametrize("hangs", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_robot_stops_when_the_executive_hangs_and_its_bus_session_lives_on(system, hangs, measured):
+    _, endpoint, start, trace = system
+    phases = random.Random(2)
+    for _ in range(hangs):
+        hung = partial(hung_in_motion, start, endpoint, trace, phases.uniform(0.15, 0.35))
+        measured.add(repeat_on_stall(3, hung), LIMIT_S)
+
+
 @pytest.mark.promise("P1")
 def test_a_pause_of_a_tick_does_not_stop_the_robot(system):
     _session, endpoint, start, trace = system

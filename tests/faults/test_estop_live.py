@@ -7,8 +7,8 @@ from contextlib import ExitStack
 import pytest
 
 from tailor.runtime.bus.opening import open_client, open_router
-from tailor.schemas.messages import EStop
-from tests.support.bus_system import free_endpoint, guarded_robot, outputs
+from tailor.schemas.messages import ArmRequest, EStop
+from tests.support.bus_system import free_endpoint, guarded_robot, moving, outputs
 from tests.support.driven import Driven, burners
 from tests.support.patience import wait_until
 from tests.support.stalls import repeat_on_stall
@@ -49,6 +49,21 @@ def test_an_estop_stops_the_robot_within_200_ms_beside(tmp_path, load, tries, me
         with LOADS[load]():
             for _ in range(tries):
                 measured.add(repeat_on_stall(5, lambda: stopping_s(robot)), LIMIT_S, what=f"beside {load}")
+
+
+@pytest.mark.promise("P38")
+@pytest.mark.xdist_group("live")
+def test_an_estop_is_latched_until_people_reset_it(tmp_path):
+    with guarded_robot(tmp_path) as (session, endpoint, start, trace):
+        robot = Driven(session, endpoint, start, trace)
+        stopping_s(robot)
+        for request in (ArmRequest(True, False, robot.sender, 0), ArmRequest(False, True, "", 0)):
+            stopped_s = time.monotonic()
+            robot.arming.publish(request)
+            assert robot.modes()[-1] == "estopped"
+            assert [v for at, v in outputs(trace) if at > stopped_s] == []
+        robot.arming.publish(ArmRequest(True, True, robot.sender, 0))
+        wait_until(moving(trace, 0.5), "the robot moves after people have reset the e-stop")
 
 
 @pytest.mark.promise("P38")

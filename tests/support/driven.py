@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from tailor.runtime.processes.child import Child
 from tailor.schemas.messages import ArmRequest, DriverState
-from tests.support.bus_system import driving, moving, outputs
+from tests.support.bus_system import driving, moving, zero_at
 from tests.support.patience import wait_until
 
 BURN = "while True: pass"
@@ -45,4 +45,4 @@ class Driven:
 
     def zero_after_s(self, since_s):
         """When the guard's output was zero for the first time since then, monotonic s; None if it never was."""
-        return next((at for at, v in outputs(self.trace) if at > since_s and v == 0.0), None)
+        return zero_at(self.trace, since_s)

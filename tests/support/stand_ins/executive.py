@@ -1,5 +1,10 @@
-"""An executive that only drives, armed by a person; commands a speed at 10 Hz. Arguments: endpoint, speed."""
+"""An executive that only drives, armed by a person; commands a speed at 10 Hz. Arguments: endpoint, speed.
 
+SIGUSR1 hangs it with the interpreter's lock held, as a native library may; the threads of its bus session live on.
+"""
+
+import re
+import signal
 import sys
 
 from tailor.runtime.bus.opening import open_client
@@ -10,8 +15,13 @@ from tailor.schemas import codec
 from tailor.schemas.messages import ArmRequest, VelocityCommand
 
 
+def hang(*_):
+    re.match("(a+)+$", "a" * 60 + "b")  # takes years
+
+
 def main(endpoint, speed):
     stop = stop_on_signals()
+    signal.signal(signal.SIGUSR1, hang)
     codec.prime()
     with open_client(endpoint) as session, open_client(endpoint) as person:
         commands, arming = session.publisher("cmd_vel", "agilo"), person.publisher("arm_request", "agilo")
