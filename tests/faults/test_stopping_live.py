@@ -1,16 +1,20 @@
-"""How people stop a robot with `tailor estop`, from the shell to zero at the guard."""
+"""How people stop a robot, from the shell or the live page to zero at the guard."""
 
+import json
 import os
 import pty
 import random
+import re
 import signal
 import subprocess
 import time
+import urllib.request
+from contextlib import contextmanager
 from functools import partial
 
 import pytest
 
-from tailor.runtime.processes.child import tailor
+from tailor.runtime.processes.child import Child, tailor
 from tests.support.bus_system import guarded_robot, moving
 from tests.support.driven import Driven
 from tests.support.patience import PATIENCE_S, wait_until
@@ -19,6 +23,7 @@ from tests.support.stalls import repeat_on_stall
 pytestmark = pytest.mark.xdist_group("live")
 SHELL_LIMIT_S = 1.0  # SAFETY.md, P45
 RELEASE_LIMIT_S = 0.2  # a key or a signal
+PAGE_LIMIT_S = 0.3  # a press over HTTP
 SILENCE_LIMIT_S = 0.65  # half a second since its last message, which may be a period old; here the guard's and ours
 
 
@@ -129,3 +134,35 @@ def test_a_switch_without_a_hand_on_it_stops_at_once(robot):
         assert (done.stdout.splitlines()[-1], done.returncode) == ("agilo is estopped", 0), done.stderr
 
     stopped_by(robot, hold, 5.0)
+
+
+@contextmanager
+def live_page(endpoint, folder):
+    """(address, token) of the live page of a viewer of its own."""
+    log = folder / "view.log"
+    with log.open("w") as file:
+        view = Child("view", tailor("view", "--live", "--no-models", "--port", "0", "--connect", endpoint), file)
+    try:
+        wait_until(lambda: log.read_text().startswith("http"), "address")
+        address = log.read_text().split()[0]
+        with urllib.request.urlopen(address, timeout=PATIENCE_S) as response:
+            yield address, re.search(r'"stop": "([^"]+)"', response.read().decode()).group(1)
+    finally:
+        assert view.stop() == 0
+
+
+@pytest.mark.promise("P45")
+@pytest.mark.parametrize("tries", [3, pytest.param(20, marks=pytest.mark.slow)])
+def test_the_button_of_the_live_page_stops_the_robot(robot, tmp_path, tries, measured):
+    phases = random.Random(3)
+    with live_page(robot.endpoint, tmp_path) as (address, token):
+        headers = {"Origin": address.rstrip("/"), "X-Stop-Token": token}
+
+        def press():
+            request = urllib.request.Request(f"{address}stop", b"", headers, method="POST")
+            with urllib.request.urlopen(request, timeout=PATIENCE_S) as response:
+                assert json.load(response) == {"confirmed": True, "drivers": {"agilo": "estopped"}}
+
+        for _ in range(tries):
+            time.sleep(phases.uniform(0.0, 0.1))
+            measured.add(repeat_on_stall(5, lambda: stopped_by(robot, press, PAGE_LIMIT_S)), PAGE_LIMIT_S)

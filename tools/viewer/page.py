@@ -27,21 +27,24 @@ SCRIPTS = (
     "polar.js",
     "choice.js",
     "heading.js",
+    "stop.js",
     "player.js",
     "main.js",
 )
 
 
-def page(title: str, events: Iterable[Event], live: bool = False) -> str:
+def page(title: str, events: Iterable[Event], live: bool = False, stop_token: str = "") -> str:
     """The whole page.
 
     Args:
       title: Shown at the top, e.g. the recording's name.
       events: Events of the run; a live page receives its events from the server.
       live: Whether the page connects to the server.
+      stop_token: Of the server's stop button; empty: the page has no button.
     """
     embedded = json.dumps(
-        {"title": title, "live": live, "rows": [event.json_value() for event in events]}, allow_nan=False
+        {"title": title, "live": live, "stop": stop_token, "rows": [event.json_value() for event in events]},
+        allow_nan=False,
     )
     parts = {
         "TITLE": html.escape(title),

@@ -1,30 +1,45 @@
-"""Serves the live page and its events (server-sent events) on the loopback interface. It accepts no input."""
+"""Serves the live page and its events (server-sent events) on the loopback interface.
+
+The only input that it accepts is a press of the stop button.
+"""
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.broadcast import EventBroadcast
+from tailor.tools.viewer.stop_endpoint import PATH as STOP
+from tailor.tools.viewer.stop_endpoint import StopEndpoint
 
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another Host header means DNS rebinding
-MAX_PAGES = 8
+MAX_PAGES = 5  # a browser opens six connections to one server; one must be left for the stop button
 RETRY_MS = 1000  # until a page reconnects
 BEAT_S = 2.0  # between comments that reveal a closed connection
+NICENESS = 10  # of the events; the executive and the stop button have priority
 
 
 @contextmanager
-def serving(document: str, broadcast: EventBroadcast, port: int) -> Iterator[int]:
+def serving(document: str, broadcast: EventBroadcast, port: int, stop: StopEndpoint | None = None) -> Iterator[int]:
     """Serve for the duration of the context; yields the port (a free one for port 0).
+
+    Args:
+      document: The page.
+      broadcast: Its events.
+      port: Port on the loopback interface.
+      stop: The stop button; None: there is none, and every POST is refused.
 
     Raises:
       UsageError: The port is in use.
     """
-    handler = type("Handler", (_Handler,), {"document": document.encode(), "broadcast": broadcast})
+    handler = type("Handler", (_Handler,), {"document": document.encode(), "broadcast": broadcast, "stop": stop})
     try:
         server = ThreadingHTTPServer((ADDRESS, port), handler)
     except OSError as error:
@@ -43,16 +58,14 @@ def serving(document: str, broadcast: EventBroadcast, port: int) -> Iterator[int
 class _Handler(BaseHTTPRequestHandler):
     document: bytes
     broadcast: EventBroadcast
+    stop: StopEndpoint | None
     timeout = 10  # seconds, of an idle socket
 
     def do_GET(self) -> None:
-        host = self.headers.get("Host", "").rpartition(":")[0] or self.headers.get("Host", "")
-        if self.broadcast.closed:
-            self.close_connection = True  # a preconnected socket; the browser would keep an error code
-        elif host not in OWN_NAMES:
-            self.send_error(403)
-        elif self.path == "/":
-            self._send_document()
+        if self._closed_or_foreign():
+            return
+        if self.path == "/":
+            self._send_body(self.document, "text/html; charset=utf-8")
         elif self.path != "/events":
             self.send_error(404)
         elif self.broadcast.pages >= MAX_PAGES:
@@ -60,16 +73,38 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self._send_events()
 
+    def do_POST(self) -> None:
+        if self._closed_or_foreign():
+            return
+        port = self.connection.getsockname()[1]
+        origins = {f"http://{name}:{port}" for name in OWN_NAMES}
+        refusal = self.stop.refusal(self.headers, origins) if self.stop and self.path == STOP else HTTPStatus.FORBIDDEN
+        if refusal is None and self.stop is not None:
+            self._send_body(self.stop.pressed(), "application/json")
+        else:
+            self.send_error(refusal or HTTPStatus.FORBIDDEN)
+
+    def _closed_or_foreign(self) -> bool:
+        host = self.headers.get("Host", "").rpartition(":")[0] or self.headers.get("Host", "")
+        if self.broadcast.closed:
+            self.close_connection = True  # a preconnected socket; the browser would keep an error code
+        elif host not in OWN_NAMES:
+            self.send_error(HTTPStatus.FORBIDDEN)
+        else:
+            return False
+        return True
+
     def log_message(self, *_: object) -> None:
         """Log no requests."""
 
-    def _send_document(self) -> None:
+    def _send_body(self, body: bytes, kind: str) -> None:
         self.send_response(200)
-        self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.send_header("Content-Length", str(len(self.document)))
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
         self.send_header("Cache-Control", "no-store")
+        self.send_header("X-Frame-Options", "DENY")  # no other page may lay the button under something to click at
         self.end_headers()
-        self.wfile.write(self.document)
+        self.wfile.write(body)
 
     def _send_events(self) -> None:
         self.send_response(200)
@@ -77,6 +112,8 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         self.close_connection = True
+        if sys.platform == "linux":  # of this thread alone
+            os.nice(NICENESS)
         try:
             self._send(f"retry: {RETRY_MS}\nevent: reset\ndata: all\n\n")
             with self.broadcast.subscribe() as page:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
@@ -13,12 +15,15 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
+from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.stop_button import StopButton
 from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import RunTimeline
 
 PORT = 7450
@@ -68,11 +73,15 @@ def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
 
 def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
     endpoint = bus_settings(arguments).endpoint
-    os.nice(NICENESS)
     stop = stop_on_signals()
     broadcast = EventBroadcast()
-    document = page("live", (), live=True)
-    with open_bus(arguments, "observer") as session, serving(document, broadcast, arguments.port) as port:
+    with ExitStack() as stack:
+        button = _stop_endpoint(arguments, stack)
+        document = page("live", (), live=True, stop_token=button.token if button else "")
+        port = stack.enter_context(serving(document, broadcast, arguments.port, button))
+        if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
+            os.nice(NICENESS)
+        session = stack.enter_context(open_bus(arguments, "observer"))
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
         listener = BusListener(intake, RunTimeline(explainer, arguments.robot), broadcast, arguments.sender)
@@ -80,3 +89,13 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
         listener.run(MonotonicClock(), lambda: stop.requested)
         subscribe_all.undeclare()
     return 0
+
+
+def _stop_endpoint(arguments: argparse.Namespace, stack: ExitStack) -> StopEndpoint | None:
+    """The page's stop button, with a session of its own; None where this user may not stop drivers."""
+    try:
+        session = stack.enter_context(open_bus(arguments, "people"))
+    except UsageError as error:
+        print(f"the page has no stop button: {plain(str(error))}", flush=True)
+        return None
+    return StopEndpoint(StopButton(session).press)

@@ -1,0 +1,33 @@
+// The stop button of a live page: a press stops every driver; then it shows what each of them confirms.
+
+const STOP_WAIT_MS = 4000; // longer than the server waits for the drivers
+
+function stopButton(token) {
+  const outcome = html("span", { class: "outcome", role: "alert" });
+  const button = html("button", { class: "stop", type: "button", text: "STOP", title: "emergency stop of every driver" });
+  button.addEventListener("click", async () => {
+    outcome.className = "outcome";
+    outcome.textContent = "stopping …";
+    const [confirmed, words] = await pressed(token);
+    outcome.className = confirmed ? "outcome confirmed" : "outcome failed";
+    outcome.textContent = words;
+  });
+  return html("div", { class: "stopping" }, button, outcome);
+}
+
+/** Whether every driver has confirmed, and the words for it. */
+async function pressed(token) {
+  try {
+    const response = await fetch("stop", {
+      method: "POST",
+      headers: { "X-Stop-Token": token },
+      signal: AbortSignal.timeout(STOP_WAIT_MS),
+    });
+    if (!response.ok) return [false, `refused (${response.status}); use tailor estop`];
+    const { confirmed, drivers } = await response.json();
+    const modes = Object.entries(drivers).map(([robot, mode]) => `${robot} is ${mode}`);
+    return [confirmed, modes.join(", ") || "no driver is on the bus"];
+  } catch {
+    return [false, "NOT CONFIRMED: the viewer does not respond; use tailor estop"];
+  }
+}
