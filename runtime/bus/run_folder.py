@@ -23,7 +23,7 @@ from tailor.schemas.errors import UsageError
 VARIABLE = "TAILOR_RUN_DIR"  # replaces the folder of all runs, e.g. with a service's /run/tailor
 SOCKET, USERS, LOCK, CERTIFICATE_USERS = "bus.sock", "users", "lock", "certificate-users"
 CERTIFICATE_USER = "certificate:none"
-MAX_SOCKET_BYTES = 100  # Linux: 107, less zenoh's own suffix ".lock"
+MAX_SOCKET_BYTES = 107  # Linux: sun_path, without its final zero
 
 
 @dataclass(frozen=True, slots=True)

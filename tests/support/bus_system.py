@@ -1,10 +1,11 @@
 """A bus on a free loopback port, with child processes that end with the test; and a stand-in robot on it."""
 
+import socket
 import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-from tailor.runtime.bus.opening import open_client, open_router
+from tailor.runtime.bus.opening import open_client, open_local_router, open_router
 from tailor.runtime.processes.child import Child
 from tailor.schemas.errors import UsageError
 from tailor.tools.launch.hosting import free_endpoint
@@ -16,25 +17,54 @@ ROOT = Path(__file__).resolve().parents[2]
 @contextmanager
 def bus_system():
     """Yields (router session, endpoint, start), where start(module, *arguments) runs one of our modules."""
-    endpoint, children = free_endpoint(), []
+    endpoint = free_endpoint()
+    with open_router(endpoint) as session, started() as start:
+        yield session, endpoint, start
+
+
+@contextmanager
+def secured_system():
+    """As `bus_system`, with passwords of this run, and a gateway process at the endpoint."""
+    endpoint = free_endpoint()
+    with open_local_router(endpoint) as (session, _), started() as start:
+        start("tailor.tools.main", "gateway", "--connect", endpoint)
+        wait_until(lambda: accepts(endpoint), "gateway")
+        yield session, endpoint, start
+
+
+@contextmanager
+def started():
+    """Yields start(module, *arguments), whose processes end with the context."""
+    children = []
 
     def start(module, *arguments):
         isolated = ["-P"] if module.startswith("tailor.") else []  # our stand-ins are found from the current folder
         children.append(Child(module, [sys.executable, *isolated, "-m", module, *map(str, arguments)]))
         return children[-1]
 
-    with open_router(endpoint) as session:
-        try:
-            yield session, endpoint, start
-        finally:
-            for child in children:
-                child.kill()
+    try:
+        yield start
+    finally:
+        for child in children:
+            child.kill()
+
+
+def accepts(endpoint):
+    """Whether something listens there."""
+    with socket.socket() as probe:
+        return probe.connect_ex(address(endpoint)) == 0
+
+
+def address(endpoint):
+    """Host and port of a TCP endpoint."""
+    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
+    return host, int(port)
 
 
 @contextmanager
-def guarded_robot(tmp_path):
+def guarded_robot(tmp_path, system=bus_system):
     """A bus with the stand-in simulator: yields (session, endpoint, start, trace of the guard's output)."""
-    with bus_system() as (session, endpoint, start):
+    with system() as (session, endpoint, start):
         trace = tmp_path / "trace"
         start("tests.support.stand_ins.sim", endpoint, trace)
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")

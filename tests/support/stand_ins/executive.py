@@ -23,7 +23,7 @@ def main(endpoint, speed):
     stop = stop_on_signals()
     signal.signal(signal.SIGUSR1, hang)
     codec.prime()
-    with open_client(endpoint) as session, open_client(endpoint) as person:
+    with open_client(endpoint, role="executive") as session, open_client(endpoint, role="people") as person:
         commands, arming = session.publisher("cmd_vel", "agilo"), person.publisher("arm_request", "agilo")
         inbox, armed = session.inbox(["driver"], "agilo"), False
         loop = Loop(100_000_000, MonotonicClock())

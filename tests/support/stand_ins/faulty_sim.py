@@ -45,7 +45,7 @@ class Faulty(Traced):
 def main(endpoint, path, rates):
     stop = stop_on_signals()
     codec.prime()
-    with open_client(endpoint) as session:
+    with open_client(endpoint, role="driver") as session:
         world = World(Faulty(path, rates), {}, 0)
         Node(world, LIMITS, session, MonotonicClock(), epoch=time.time_ns()).run(lambda: stop.requested)
 

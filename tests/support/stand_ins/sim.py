@@ -40,7 +40,7 @@ class Traced(FakeBody):
 def main(endpoint, path):
     stop = stop_on_signals()
     codec.prime()
-    with open_client(endpoint) as session:
+    with open_client(endpoint, role="driver") as session:
         world = World(Traced(path), {}, 0)
         Node(world, LIMITS, session, MonotonicClock(), epoch=time.time_ns()).run(lambda: stop.requested)
 
