@@ -19,12 +19,13 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.soak import report
-from tailor.tools.soak.faults.kinds import DEADLY, HARMLESS
+from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS
 from tailor.tools.soak.judging.slopes import growth
 from tailor.tools.soak.recordings import recording_rows
-from tailor.tools.soak.schedule import schedule
+from tailor.tools.soak.schedule import Planned, schedule
 from tailor.tools.soak.soak import Party, Soak
 
 
@@ -35,6 +36,7 @@ class Options:
     minutes: int
     seed: int
     every_s: int  # one fault each
+    only: str  # faults whose name contains this
     output: Path  # JSON
     as_json: bool
 
@@ -43,18 +45,16 @@ def run(console: Console, options: Options) -> bool:
     """Soak, print the tables, write the JSON file.
 
     Returns:
-      Whether all invariants held and all memory is flat.
+      Whether all invariants held, all memory is flat, and all faults could be injected.
 
     Raises:
       NoMeasurement: No tick, no motion or no fault.
+      UsageError: There is no such fault.
     """
     shown = Console(stderr=True) if options.as_json else console
     with TemporaryDirectory(prefix="soak-") as folder, _progress(shown, options.minutes) as progress:
         soak = Soak(options.seed, Path(folder), progress)
-        planned = schedule(
-            options.seed, options.minutes, options.every_s, list(soak.parties), list(HARMLESS), list(DEADLY)
-        )
-        soak.run(planned, options.minutes * 60.0)
+        soak.run(_planned(options, list(soak.parties)), options.minutes * 60.0)
         content = _content(soak)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     options.output.write_text(json.dumps(content, indent=1) + "\n")
@@ -64,6 +64,13 @@ def run(console: Console, options: Options) -> bool:
     else:
         _print(console, content)
     return bool(content["passed"])
+
+
+def _planned(options: Options, robots: list[str]) -> list[Planned]:
+    harmless, deadly = ([name for name in faults if options.only in name] for faults in (HARMLESS, DEADLY))
+    if not harmless and not deadly:
+        raise UsageError(f"--only {options.only}: no such fault, expected some of: {', '.join(FAULTS)}")
+    return schedule(options.seed, options.minutes, options.every_s, robots, harmless or deadly, deadly or harmless)
 
 
 def check_measured(content: dict[str, Any]) -> None:
@@ -87,7 +94,9 @@ def _content(soak: Soak) -> dict[str, Any]:
     return {
         "seed": result.seed,
         "minutes": round(result.duration_s / 60, 2),
-        "passed": all(each["excused"] for each in violations) and all(row["flat"] for row in memory),
+        "passed": not result.failed_faults
+        and all(each["excused"] for each in violations)
+        and all(row["flat"] for row in memory),
         "violations": violations,
         "systems": {robot: _system(party) for robot, party in soak.parties.items()},
         "faults": report.fault_rows(result.records),
@@ -105,6 +114,9 @@ def _system(party: Party) -> dict[str, Any]:
 
 def _print(console: Console, content: dict[str, Any]) -> None:
     console.print(report.fault_table(content["faults"]))
+    for row in content["faults"]:
+        for note in row["notes"]:
+            console.print(f"{row['fault']}: {note}", markup=False)
     console.print(report.memory_table(content["memory"]))
     for robot, system in content["systems"].items():
         readable = sum(not row["error"] for row in system["recordings"])
@@ -113,6 +125,8 @@ def _print(console: Console, content: dict[str, Any]) -> None:
             f"{system['tasks']} tasks, {system['motion_s']:.0f} s in motion, {system['own_stops']} stops by itself; "
             f"{readable} of {len(system['recordings'])} recordings readable"
         )
+    for line in content["not_injected"]:
+        console.print(f"not injected: {line}", markup=False)
     for each in content["violations"]:
         console.print(report.violation_line(each), markup=False)
     excused = sum(each["excused"] for each in content["violations"])

@@ -11,8 +11,11 @@ from tailor.schemas.errors import UsageError
 
 
 def recording_rows(paths: Iterable[Path]) -> list[dict[str, Any]]:
-    """One row for each file: messages, seconds from the first to the last, and the error if it cannot be read."""
-    return [_row(path) for path in paths]
+    """One row for each file: messages, seconds from the first to the last, and the error if it cannot be read.
+
+    A system that was ended while it started has none.
+    """
+    return [_row(path) for path in paths if path.exists()]
 
 
 def _row(path: Path) -> dict[str, Any]:

@@ -8,6 +8,7 @@ has moved for two seconds. Everything happens in one thread, which polls both sy
 from __future__ import annotations
 
 import random
+import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -100,10 +101,10 @@ class Soak:
             self._sleep()
         return True
 
-    def restart(self, system: System) -> None:
-        """End a system as people do, and start it with another scenario."""
+    def restart(self, system: System, sign: signal.Signals) -> None:
+        """End a system with a signal for its launcher, and start it with another scenario."""
         party = self.parties[system.robot.name]
-        self._end(party)
+        self._end(party, sign)
         self._start(party)
 
     def _begin(self) -> None:
@@ -128,12 +129,13 @@ class Soak:
         party.watch.started(time.monotonic_ns())
         party.ending = False
 
-    def _end(self, party: Party) -> None:
+    def _end(self, party: Party, sign: signal.Signals = signal.SIGINT) -> None:
         party.ending = True
         party.tasks += party.people.count
-        end = party.system.end(self.wait)
+        end = party.system.end(self.wait, sign)
         robot, now_ns = party.system.robot.name, time.monotonic_ns()
-        if end.code != 0 or end.left:
+        expected = 0 if sign is signal.SIGINT else -sign
+        if end.code != expected or end.left:
             detail = f"exit code {end.code} after {end.took_s:.1f} s, left behind: {end.left or 'none'}"
             self._violated(robot, now_ns, Invariant.ORDERLY_END, detail)
 

@@ -14,7 +14,7 @@ def follow(record: FaultRecord, system: System, people: People, now_ns: int, rep
     if not record.body_ends:
         _follow_stop(record, system, people)
     moved_ns = system.judge.moved_ns
-    if record.again_s is None and record.at_ns < people.armed_ns < moved_ns:
+    if record.again_s is None and people.armed_for_task and record.at_ns < people.armed_ns < moved_ns:
         record.again_s = (moved_ns - people.armed_ns) / 1e9
     _follow_recovery(record, system, now_ns, report)
 

@@ -10,6 +10,7 @@ from tailor.tools.soak.systems.system import CHILDREN, System
 CHECK_NS = 1_000_000_000
 MEMORY_NS = 5_000_000_000
 ABSENT_NS = 8_000_000_000  # restarts come after 0.2 s, doubled for each within a minute
+STARTING_NS = 20_000_000_000  # processes start one after another
 STILL_NS = 30_000_000_000  # people need 5 s for a new task, a busy machine longer
 
 Samples = list[tuple[float, float]]  # s, MB
@@ -21,14 +22,12 @@ class Watch:
     Attributes:
       memory: Resident memory of each process, by name and process id.
       launcher_gone: The launcher has ended although nobody wanted it to.
-      expected_ns: Until then processes may be absent, and nothing needs to move.
     """
 
     def __init__(self, system: System, report: Report) -> None:
         """`report` receives violations."""
         self.memory: dict[tuple[str, int], Samples] = {}
         self.launcher_gone = False
-        self.expected_ns = 0
         self._system, self._report = system, report
         self._checked_ns = self._sampled_ns = 0
         self._present_ns: dict[str, int] = {}
@@ -37,8 +36,8 @@ class Watch:
 
     def started(self, now_ns: int) -> None:
         """The system has been started, or started again."""
-        self._present_ns = dict.fromkeys(CHILDREN, now_ns)
-        self._active_ns = now_ns
+        self._present_ns = dict.fromkeys(CHILDREN, now_ns + STARTING_NS)
+        self._active_ns = now_ns + STARTING_NS
         self._reported.clear()
         self.launcher_gone = False
 
@@ -61,16 +60,16 @@ class Watch:
         for name in CHILDREN:
             count = len(found.get(name, []))
             if count:
-                self._present_ns[name] = now_ns
+                self._present_ns[name] = max(now_ns, self._present_ns[name])
             if count > 1:
                 self._once(now_ns, name, f"{count} processes of {name}")
-            elif now_ns - max(self._present_ns.get(name, now_ns), self.expected_ns) > ABSENT_NS:
+            elif now_ns - self._present_ns[name] > ABSENT_NS:
                 self._once(now_ns, name, f"{name} is absent for {ABSENT_NS // 10**9} s")
 
     def _check_motion(self, now_ns: int) -> None:
         if self._idle():
-            self._active_ns = now_ns
-        active_ns = max(self._active_ns, self._system.judge.moved_ns, self.expected_ns)
+            self._active_ns = max(now_ns, self._active_ns)
+        active_ns = max(self._active_ns, self._system.judge.moved_ns)
         if now_ns - active_ns > STILL_NS:
             self._active_ns = now_ns
             self._report(

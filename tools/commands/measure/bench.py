@@ -38,6 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--every", type=at_least(10, "--every"), default=60, metavar="S", help="soak: time between faults (default 60)"
     )
+    parser.add_argument("--only", metavar="TEXT", default="", help="soak: only faults whose name contains this")
     parser.add_argument("--output", type=Path, default=Path("out/soak.json"), help="soak: file (default %(default)s)")
     parser.add_argument("--json", action="store_true", help="soak: print the results as JSON")
 
@@ -67,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
     module = importlib.import_module(f"tailor.tools.benchmarks.{name}")
     if name == SOAK:
-        options = (arguments.minutes, arguments.seed, arguments.every, arguments.output, arguments.json)
+        options = (arguments.minutes, arguments.seed, arguments.every, arguments.only, arguments.output, arguments.json)
         return bool(module.run(console, module.Options(*options)))
     module.run(console, arguments.quick)
     return True

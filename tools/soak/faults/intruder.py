@@ -10,7 +10,7 @@ import random
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tailor.runtime.bus.attachment import Origin, unpack
 from tailor.runtime.bus.inbox import Raw
@@ -41,8 +41,15 @@ class Intruder:
     session: Session
     robot: str
     draw: random.Random
-    heard: list[Raw]
     known: bool  # has credentials of an observer
+    heard: list[Raw] = field(default_factory=list)
+
+    def overhear(self) -> None:
+        """Listen to the executive's commands for a while."""
+        queue, subscription = self.session.subscribe_all(key_of(self.command(), self.robot))
+        time.sleep(HEAR_S)
+        self.heard = queue.drain()[-20:]
+        subscription.undeclare()
 
     def command(self) -> str:
         """Topic of the robot's command."""
@@ -233,10 +240,8 @@ def main(endpoint: str, robot: str, kind: str, seed: str, known: str) -> None:
     """Intrude, and print what came of it; `known`: "observer", or "" for a stranger."""
     try:
         with open_intruder(endpoint, stranger_id(1)) as session:
-            queue, subscription = session.subscribe_all(f"{robot}/*cmd*")
-            time.sleep(HEAR_S)
-            intruder = Intruder(session, robot, random.Random(int(seed)), queue.drain()[-20:], bool(known))
-            subscription.undeclare()
+            intruder = Intruder(session, robot, random.Random(int(seed)), bool(known))
+            intruder.overhear()
             print(json.dumps({"refused": False, "sent": KINDS[kind](intruder)}))
     except UsageError:
         print(json.dumps({"refused": True, "sent": 0}))

@@ -29,7 +29,6 @@ SILENT = 110
 SILENT_S = 2.0
 BURN_S = 10.0
 FULL_S = 5.0
-NEW_S = 10.0  # until the executive is heard again, at most, for a fault that needs it
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +42,7 @@ class Fault:
 def _kill(scene: Scene, names: tuple[str, ...]) -> None:
     """kill -9; the driver sees the executive's end by its silence, its own by nothing."""
     before = {name: scene.pid(name) for name in names}
+    heard = scene.heard_ids()
     if "sim" in names:
         scene.record.body_ends = True
         scene.system.judge.revoke(scene.now_ns())
@@ -50,7 +50,7 @@ def _kill(scene: Scene, names: tuple[str, ...]) -> None:
         scene.system.judge.revoke(scene.now_ns(), GUARD_S)
     for pid in before.values():
         send_signal(pid, signal.SIGKILL)
-    scene.expect_back(lambda: all(scene.system.pid(name) not in (None, pid) for name, pid in before.items()))
+    scene.expect_back(lambda: all(scene.heard_ids().get(name) not in (None, heard.get(name)) for name in names))
 
 
 def _kill_recorder(scene: Scene) -> None:
@@ -59,39 +59,47 @@ def _kill_recorder(scene: Scene) -> None:
     send_signal(before, signal.SIGKILL)
     back = scene.wait(lambda: scene.system.pid("record") not in (None, before), 5.0)
     if not back:
-        scene.record.notes.append("the recorder did not come back: system restarted by people")
-        scene.restart(scene.system)
+        scene.record.body_ends = True
+        scene.restart(scene.system, signal.SIGINT)
+
+
+def _kill_gateway(scene: Scene) -> None:
+    """Only sessions from elsewhere are cut off."""
+    before = scene.pid("gateway")
+    send_signal(before, signal.SIGKILL)
+    scene.expect_back(lambda: scene.system.pid("gateway") not in (None, before))
 
 
 def _freeze(scene: Scene, name: str, seconds: float) -> None:
-    pid = scene.pid(name)
-    if name == "executive" and seconds > GUARD_S:
+    pid, heard = scene.pid(name), scene.heard_ids()
+    dies = name == "executive" and seconds > GUARD_S
+    if dies:
         scene.system.judge.revoke(scene.now_ns(), GUARD_S)
     send_signal(pid, signal.SIGSTOP)
     try:
         scene.run_for(seconds)
     finally:
         send_signal(pid, signal.SIGCONT)
-    scene.expect_back(lambda: True)
+    # The launcher kills an executive that is silent for a second.
+    scene.expect_back(lambda: not dies or scene.heard_ids().get(name) not in (None, heard.get(name)))
 
 
 def _kill_launcher(scene: Scene) -> None:
     """Its children end with it; people start the system again."""
     scene.record.body_ends = True
     scene.system.judge.revoke(scene.now_ns())
-    end = scene.system.end(scene.wait, signal.SIGKILL)
-    if end.left:
-        scene.record.notes.append(f"processes outlived their launcher: {end.left}")
-    scene.restart(scene.system)
+    scene.restart(scene.system, signal.SIGKILL)
 
 
 def _estop(scene: Scene) -> None:
+    scene.begin()
     scene.people.estop(scene.now_ns(), ESTOP_S)
     scene.run_for(1.0)
 
 
 def _estop_from_new_session(scene: Scene) -> None:
     """Its time counts from before the session is opened."""
+    scene.begin()
     scene.system.judge.revoke(scene.now_ns(), ESTOP_S)
     try:
         with open_people(scene.system.endpoint) as session:
@@ -173,7 +181,7 @@ def _new_goal(scene: Scene) -> None:
 def _restart(scene: Scene) -> None:
     """Ctrl-C in motion, and another scenario."""
     scene.record.body_ends = True
-    scene.restart(scene.system)
+    scene.restart(scene.system, signal.SIGINT)
 
 
 HARMLESS: dict[str, Fault] = {
@@ -212,9 +220,11 @@ DEADLY: dict[str, Fault] = {
     "simulator killed": Fault(6, partial(_kill, names=("sim",))),
     "executive and simulator killed": Fault(41, partial(_kill, names=("executive", "sim"))),
     "recorder killed": Fault(9, _kill_recorder),
+    "gateway killed": Fault(42, _kill_gateway),
     "launcher killed": Fault(10, _kill_launcher),
     "executive frozen 2 s": Fault(3, partial(_freeze, name="executive", seconds=2.0)),
     "simulator frozen 2 s": Fault(53, partial(_freeze, name="sim", seconds=2.0)),
+    "gateway frozen 2 s": Fault(42, partial(_freeze, name="gateway", seconds=2.0)),
     "recorder frozen 2 s": Fault(53, partial(_freeze, name="record", seconds=2.0)),
     "disarmed, then executive killed": Fault(41, partial(_then_kill, first=_disarm, name="executive")),
     "e-stop, then simulator killed": Fault(41, partial(_then_kill, first=_estop, name="sim")),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -54,7 +55,7 @@ class Scene:
     record: FaultRecord
     draw: random.Random
     wait: Wait
-    restart: Callable[[System], None]
+    restart: Callable[[System, signal.Signals], None]
     startup_s: float
 
     def run_for(self, seconds: float) -> None:
@@ -64,6 +65,17 @@ class Scene:
     def expect_back(self, condition: Callable[[], bool], limit_s: float = 3.0) -> None:
         """The system is complete again, is heard, and the condition holds, within the limit and a start-up."""
         self.record.back_when, self.record.back_limit_s = condition, limit_s + self.startup_s
+
+    def begin(self) -> None:
+        """The fault itself comes now, after what was prepared for it."""
+        self.record.at_ns = self.now_ns()
+
+    def heard_ids(self) -> dict[str, str]:
+        """What tells the present executive and simulator from earlier ones; empty without a connection."""
+        link = self.system.link
+        if link is None or link.view.driver is None:
+            return {}
+        return {"executive": link.view.sender, "sim": str(link.view.driver.epoch)}
 
     def pid(self, name: str) -> int:
         """Process id of a process that runs; waits for it if it is being restarted.
@@ -86,7 +98,11 @@ class Scene:
             self._run_intruder(kind, "observer", dict(os.environ))
 
     def _run_intruder(self, kind: str, known: str, environment: dict[str, str]) -> bool:
-        """Whether its session was refused."""
+        """Whether its session was refused.
+
+        Raises:
+          ChildProcessError: It has failed, so that nothing was tried.
+        """
         words = (self.system.endpoint, self.system.robot.name, kind, str(self.draw.randrange(10_000)), known)
         argv = [sys.executable, "-P", "-m", "tailor.tools.soak.faults.intruder", *words]
         with TemporaryFile("w+") as output:
@@ -98,8 +114,7 @@ class Scene:
         try:
             result = json.loads(printed)
         except ValueError:
-            self.record.notes.append(f"the intruder failed: {printed.strip()[-200:] or 'no end'}")
-            return False
+            raise ChildProcessError(f"the intruder failed: {printed.strip()[-200:] or 'no end'}") from None
         self.record.sent += result["sent"]
         return bool(result["refused"])
 

@@ -20,7 +20,6 @@ class Invariant(StrEnum):
     TASK_GOES_ON = "the task goes on once the robot is armed"
     CHILDREN = "each child of the launcher runs, once"
     ORDERLY_END = "a system ends with 0 in 5 s and leaves no process behind"
-    STRANGERS = "a stranger's request changes nothing"
 
 
 LATENESS = frozenset({Invariant.ZERO_IN_TIME, Invariant.REST_IN_TIME, Invariant.BACK_IN_TIME, Invariant.TASK_GOES_ON})

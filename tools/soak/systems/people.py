@@ -18,6 +18,7 @@ class People:
 
     Attributes:
       armed_ns: Time of their last request to arm; 0: none.
+      armed_for_task: Whether a task waited for it.
       prepared_ns: Time at which they last prepared a task, which may disarm; 0: never.
       count: Number of tasks that they set.
       hurry: Somebody waits for motion.
@@ -26,7 +27,7 @@ class People:
     def __init__(self, system: System, tasks: Tasks) -> None:
         """`tasks` are those of the present start."""
         self.armed_ns = self.prepared_ns = self.count = 0
-        self.hurry = False
+        self.hurry = self.armed_for_task = False
         self._system, self._tasks = system, tasks
         self._executive = ""  # sender id
         self._goal_ns = 0  # a goal is due then; 0: none
@@ -38,6 +39,7 @@ class People:
         if link is None or link.view.driver is None or not link.view.sender:
             return
         self.armed_ns = now_ns
+        self.armed_for_task = link.view.status is not None and not link.view.status.result
         self._system.judge.people_arm(now_ns)
         link.arming.publish(ArmRequest(True, link.view.driver.mode == "estopped", link.view.sender, 0))
 

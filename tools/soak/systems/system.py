@@ -21,7 +21,7 @@ from tailor.tools.soak.systems import processes
 from tailor.tools.soak.systems.sessions import open_people
 from tailor.tools.soak.systems.view import Totals, View
 
-CHILDREN = ("record", "sim", "executive")
+CHILDREN = ("gateway", "record", "sim", "executive")
 FRESH_NS = 1_000_000_000
 END_S = 5.0  # faults.md, row 11
 CALL_S = 1.0
