@@ -128,7 +128,7 @@ def _order(config: UnitsConfig, part: str) -> Iterator[Setting]:
         yield "After", "network-online.target"
         yield "Wants", "network-online.target"
     elif "bus" in config.parts:
-        yield "BindsTo", _name("bus")
+        yield "Requires", _name("bus")  # not BindsTo: it ends a quick service at once, and nothing starts that again
 
 
 def _scenario(config: UnitsConfig) -> tuple[str, ...]:

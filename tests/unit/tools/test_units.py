@@ -108,8 +108,8 @@ def test_services_stop_in_the_reverse_order_and_start_anew_with_the_bus(all_unit
     after = {name: [value for key, value in rows if key == "After"] for name, rows in all_units.items()}
     assert after["tailor-executive"] == ["tailor-bus.service", "tailor-recorder.service", "tailor-driver.service"]
     assert after["tailor-driver"] == ["tailor-bus.service", "tailor-recorder.service"]
-    bound = {name: dict(rows).get("BindsTo") for name, rows in all_units.items()}
-    assert bound == {
+    required = {name: dict(rows).get("Requires") for name, rows in all_units.items()}
+    assert required == {
         "tailor": None, "tailor-bus": None, "tailor-recorder": "tailor-bus.service",
         "tailor-driver": "tailor-bus.service", "tailor-executive": "tailor-bus.service",
     }  # fmt: skip
@@ -125,7 +125,7 @@ def test_a_bus_of_several_machines_may_use_the_network_and_need_not_run_here(tmp
     assert set(made) == {"tailor", "tailor-executive"}
     executive = dict(made["tailor-executive"])
     assert "IPAddressDeny" not in executive
-    assert "BindsTo" not in executive
+    assert "Requires" not in executive
     assert command_of(made["tailor-executive"])[-2:] == ["--connect", "tls/robot.example:7447"]
 
 
