@@ -10,7 +10,9 @@ from dataclasses import dataclass
 
 from tailor.runtime import realtime
 from tailor.runtime.processes.child import tailor
+from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.launch import unit_settings
+from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
 from tailor.tools.launch.unit_text import command_line, path, path_in_list, unit_text
 
@@ -18,7 +20,6 @@ Setting = tuple[str, str]
 TARGET = "tailor.target"
 PARTS = ("bus", "recorder", "driver", "executive")  # in the order of their starts
 FILE_S = 3600  # of a recording; then the next file begins
-BUS_SILENCE_NS: int | None = None  # `tailor bus` reports nothing yet
 BUS_CONNECTIONS = 16_384  # file descriptors: a port scan must not use them up
 
 
@@ -29,10 +30,11 @@ class UnitsConfig:
     domain: str
     robot: str
     user: str
-    endpoint: str
-    bus_flags: tuple[str, ...]  # --connect and --config as each command takes them
+    bus: BusSettings
     parts: tuple[str, ...]
+    deployment_file: str = ""
     scenario: str = ""
+    zoo: str = ""  # folder of action models; empty: those that ship with Tailor
     record: str = ""  # folder of the recordings
     driver_command: tuple[str, ...] = ()  # of a hardware driver; empty: the simulator
     driver_file: str = ""  # its specification
@@ -58,19 +60,21 @@ def _bus(config: UnitsConfig) -> str:
         ("LimitNOFILE", str(BUS_CONNECTIONS)),
         ("OOMScoreAdjust", "-800"),
         ("PrivateDevices", "yes"),
-        *unit_settings.network(config.endpoint),
+        *(() if config.bus.remote else unit_settings.network(config.bus.endpoint)),
     ]
-    return _unit(config, "bus", "Router of the bus.", tailor("bus", *config.bus_flags), BUS_SILENCE_NS, settings)
+    remote = ("--secure", config.bus.remote, "--keys", config.bus.keys) if config.bus.remote else ()
+    command = tailor("bus", "--security", config.bus.security, *remote, *_bus_flags(config))
+    return _unit(config, "bus", "Router of the bus.", command, GATEWAY_SILENCE_NS, settings)
 
 
 def _recorder(config: UnitsConfig) -> str:
-    command = tailor("record", "--quiet", "--max-duration", str(FILE_S), *config.bus_flags)
+    command = tailor("record", "--quiet", "--max-duration", str(FILE_S), *_bus_flags(config))
     settings = [
         ("WorkingDirectory", path(config.record)),
         ("ReadWritePaths", path_in_list(config.record)),
         ("OOMScoreAdjust", "500"),
         ("PrivateDevices", "yes"),
-        *unit_settings.network(config.endpoint),
+        *unit_settings.network(config.bus.endpoint),
     ]
     return _unit(config, "recorder", "Records every message.", command, RECORDER_SILENCE_NS, settings)
 
@@ -79,20 +83,21 @@ def _driver(config: UnitsConfig) -> str:
     settings = [("LimitRTPRIO", str(realtime.DRIVER_PRIORITY)), ("OOMScoreAdjust", "-900")]
     if config.driver_command:  # it may need devices and the robot's network, and need not report to systemd
         return _unit(config, "driver", "Driver of the robot.", config.driver_command, None, settings)
-    settings += [("PrivateDevices", "yes"), *unit_settings.network(config.endpoint)]
-    command = tailor("sim", config.robot, *_scenario(config), *config.bus_flags)
+    settings += [("PrivateDevices", "yes"), *unit_settings.network(config.bus.endpoint)]
+    command = tailor("sim", config.robot, *_scenario(config), *_bus_flags(config))
     return _unit(config, "driver", "Simulated robot.", command, SIM_SILENCE_NS, settings)
 
 
 def _executive(config: UnitsConfig) -> str:
     own_driver = ("--driver", config.driver_file) if config.driver_file else ()
-    command = tailor("executive", config.domain, "--wait", *_scenario(config), *own_driver, *config.bus_flags)
+    zoo = ("--zoo", config.zoo) if config.zoo else ()
+    command = tailor("executive", config.domain, "--wait", *_scenario(config), *zoo, *own_driver, *_bus_flags(config))
     settings = [
         ("LimitRTPRIO", str(realtime.PRIORITY)),
         ("LimitMEMLOCK", "infinity"),
         ("OOMScoreAdjust", "-500"),
         ("PrivateDevices", "yes"),
-        *unit_settings.network(config.endpoint),
+        *unit_settings.network(config.bus.endpoint),
     ]
     return _unit(config, "executive", "The executive; it waits for a goal.", command, EXECUTIVE_SILENCE_NS, settings)
 
@@ -129,6 +134,13 @@ def _order(config: UnitsConfig, part: str) -> Iterator[Setting]:
         yield "Wants", "network-online.target"
     elif "bus" in config.parts:
         yield "Requires", _name("bus")  # not BindsTo: it ends a quick service at once, and nothing starts that again
+
+
+def _bus_flags(config: UnitsConfig) -> tuple[str, ...]:
+    """Flags of every command; they override the file, whose relative paths mean another folder for a service."""
+    file = ("--config", config.deployment_file) if config.deployment_file else ()
+    key = ("--key", config.bus.key) if config.bus.key else ()
+    return (*file, "--connect", config.bus.endpoint, *key)
 
 
 def _scenario(config: UnitsConfig) -> tuple[str, ...]:

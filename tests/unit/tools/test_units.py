@@ -10,10 +10,12 @@ import sys
 
 import pytest
 
+from tailor.models.runtime import ZOO
 from tailor.runtime import realtime
 from tailor.runtime.processes import restart
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.run import units
+from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
 from tailor.tools.launch.unit_text import command_line
 from tailor.tools.main import COMMANDS, main
@@ -66,7 +68,7 @@ def test_each_command_parses_with_the_commands_own_parser(all_units, part):
     importlib.import_module(COMMANDS[name][0]).configure(parser)
     parsed = vars(parser.parse_args(arguments))
     assert parsed["config"].endswith("/my robot $1 100%.toml")
-    assert parsed["connect"] is None, "the file names the endpoint"
+    assert parsed["connect"] == "tcp/127.0.0.1:7499"
     assert not parsed.get("leave"), "after a restart people arm"
     assert parsed.get("scenario", "waypoints") == "waypoints"
 
@@ -88,7 +90,7 @@ def test_a_service_that_shall_report_does_report(all_units, part):
         ("executive", {"WatchdogSec": EXECUTIVE_SILENCE_NS / 1e9, "LimitRTPRIO": realtime.PRIORITY}),
         ("driver", {"WatchdogSec": SIM_SILENCE_NS / 1e9, "LimitRTPRIO": realtime.DRIVER_PRIORITY}),
         ("recorder", {"WatchdogSec": RECORDER_SILENCE_NS / 1e9}),
-        ("bus", {"LimitRTPRIO": realtime.BUS_PRIORITY}),
+        ("bus", {"WatchdogSec": GATEWAY_SILENCE_NS / 1e9, "LimitRTPRIO": realtime.BUS_PRIORITY}),
     ],
 )
 def test_supervision_is_that_of_the_launcher(all_units, part, expected):
@@ -127,6 +129,31 @@ def test_a_bus_of_several_machines_may_use_the_network_and_need_not_run_here(tmp
     assert "IPAddressDeny" not in executive
     assert "Requires" not in executive
     assert command_of(made["tailor-executive"])[-2:] == ["--connect", "tls/robot.example:7447"]
+
+
+def test_a_bus_for_other_machines_takes_its_keys_wherever_it_starts(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = written(tmp_path, "--secure", "tls/0.0.0.0:7448", "--keys", "keys")
+    bus = command_of(made["tailor-bus"])
+    assert bus[bus.index("--secure") + 1] == "tls/0.0.0.0:7448"
+    assert bus[bus.index("--keys") + 1] == str(tmp_path / "keys")
+    assert "IPAddressDeny" not in dict(made["tailor-bus"])
+    assert dict(made["tailor-executive"])["IPAddressDeny"] == "any", "it connects on this machine"
+
+
+def test_a_part_on_another_machine_has_its_own_key(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = written(tmp_path, "--connect", "tls/robot:7448", "--parts", "executive", "--key", "agilo-executive")
+    executive = command_of(made["tailor-executive"])
+    assert executive[executive.index("--key") + 1] == str(tmp_path / "agilo-executive")
+
+
+def test_models_of_the_deployment_file_are_found_wherever_the_service_starts(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ZOO, tmp_path / "zoo")
+    (tmp_path / "d.toml").write_text('zoo = "zoo"')
+    executive = command_of(written(tmp_path, "--config", "d.toml")["tailor-executive"])
+    assert executive[executive.index("--zoo") + 1] == str(tmp_path / "zoo")
 
 
 def test_a_bus_on_this_machine_alone_reaches_no_other(all_units):
@@ -168,6 +195,7 @@ def parsed(*arguments):
         (("--user", "robot", "--driver-command", "drive"), "--driver-command drive: expected the absolute path"),
         (("--user", "robot", "--driver-command", "'x"), "--driver-command 'x: No closing quotation"),
         (("--user", "robot", "--connect", "tcp"), "bus endpoint 'tcp': expected PROTOCOL/HOST:PORT"),
+        (("--user", "robot", "--key", "k"), "--key k: a key has one role, expected one part that connects"),
         (("--user", "robot", "--record", "nowhere"), "--record 'nowhere': expected a folder that exists"),
         (("--user", "robot", "--driver-command", "/bin/sh 'a\nb'"), "expected text that a unit file can hold"),
     ],

@@ -10,13 +10,15 @@ import getpass
 import os
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 from tailor.executive.composition import build_context
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
-from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 from tailor.tools.launch.units import PARTS, UnitsConfig, unit_files
@@ -36,6 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--driver-command", metavar="COMMAND", default="", help="driver of the hardware, instead of the simulator")
     add("--driver", metavar="FILE", help="specification of that driver (default: that of the simulated robot)")
     add("--force", action="store_true", help="overwrite existing files")
+    configure_hosting(parser)
     configure_bus(parser)
 
 
@@ -60,21 +63,29 @@ def _config(arguments: argparse.Namespace) -> UnitsConfig:
     deployment = deployment_from(arguments)
     domain = build_context(executive_config(arguments.domain, deployment), sender="").domain
     check_driver(domain, driver_of(domain.robot, arguments.driver))
-    flags: tuple[str, ...] = ("--config", _absolute(arguments.config)) if arguments.config else ()
-    if arguments.connect or not arguments.config:
-        flags += ("--connect", deployment.bus.endpoint)
+    parts = _parts(arguments.parts, bool(arguments.record))
     return UnitsConfig(
         domain=arguments.domain,
         robot=domain.robot,
         user=_user(arguments.user),
-        endpoint=check_endpoint(deployment.bus.endpoint),
-        bus_flags=flags,
-        parts=_parts(arguments.parts, bool(arguments.record)),
+        bus=_bus(arguments, parts),
+        parts=parts,
+        deployment_file=_absolute(arguments.config) if arguments.config else "",
         scenario=arguments.scenario or "",
+        zoo=_absolute(deployment.zoo) if deployment.zoo else "",
         record=_folder(arguments.record) if arguments.record else "",
         driver_command=_driver_command(arguments.driver_command),
         driver_file=_absolute(arguments.driver) if arguments.driver else "",
     )
+
+
+def _bus(arguments: argparse.Namespace, parts: tuple[str, ...]) -> BusSettings:
+    settings = with_hosting_flags(bus_settings(arguments), arguments)
+    check_endpoint(settings.endpoint)
+    if settings.key and ("bus" in parts or len(parts) > 1):
+        raise UsageError(f"--key {settings.key}: a key has one role, expected one part that connects, see --parts")
+    key, keys = (_absolute(path) if path else "" for path in (settings.key, settings.keys))
+    return replace(settings, key=key, keys=keys)
 
 
 def _absolute(path: str) -> str:
