@@ -15,6 +15,7 @@ from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser
@@ -243,6 +244,32 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
     with serving(page("live", [], live=True), again, port):
         browser.wait(f"Math.abs(Number(document.querySelector('footer input').max) - {rows[4].at_s}) < 0.01")
     assert browser.errors == []
+
+
+def test_the_stop_button_shows_what_the_drivers_confirm_also_after_a_restart_of_the_server(browser: Browser) -> None:
+    def served(port: int, states: dict[str, m.DriverState]):
+        endpoint = StopEndpoint(lambda: states)
+        return serving(page("live", [], live=True, stop_token=endpoint.token), EventBroadcast(), port, endpoint)
+
+    press = "document.querySelector('button.stop').click()"
+    outcome = "document.querySelector('.outcome').textContent"
+    with served(0, {"agilo": m.DriverState(0, "estopped", "e-stop", "", 1, "", 0)}) as port:
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.value(press)
+        browser.wait(f"{outcome} === 'agilo is estopped'")
+        assert count(browser, ".outcome.confirmed") == 1
+    browser.wait("document.documentElement.dataset.connection === 'lost'")
+    with served(port, {}):
+        browser.wait("document.documentElement.dataset.connection === 'open'")
+        browser.value(press)
+        browser.wait(f"{outcome} === 'no driver is on the bus'")
+        assert count(browser, ".outcome.failed") == 1
+    assert browser.errors == []
+
+
+def test_a_recorded_page_has_no_stop_button(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer)
+    assert count(browser, "button.stop") == 0
 
 
 def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> None:

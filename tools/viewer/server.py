@@ -5,6 +5,7 @@ The only input that it accepts is a press of the stop button.
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Iterator
@@ -115,7 +116,8 @@ class _Handler(BaseHTTPRequestHandler):
         if sys.platform == "linux":  # of this thread alone
             os.nice(NICENESS)
         try:
-            self._send(f"retry: {RETRY_MS}\nevent: reset\ndata: all\n\n")
+            token = {"stop": self.stop.token if self.stop else ""}  # a page outlives its server, and a token does not
+            self._send(f"retry: {RETRY_MS}\nevent: reset\ndata: {json.dumps(token)}\n\n")
             with self.broadcast.subscribe() as page:
                 while not page.lost:
                     batch = page.next(BEAT_S)

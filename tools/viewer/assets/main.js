@@ -29,8 +29,9 @@ player.watch((at) => {
   root.dataset.rows = String(run.version);
 });
 
-/** Restart after a reconnection: the server sends all events again. */
-function forget() {
+/** Restart after a reconnection, perhaps to another server: it sends all events again, and its stop button's token. */
+function forget(event) {
+  given.stop = JSON.parse(event.data).stop;
   Object.assign(run, new Run(), { version: run.version + 1 }); // the version continues: it marks what is drawn
 }
 
@@ -54,5 +55,5 @@ function listen() {
 const hash = /^#t=([0-9.]+)$/.exec(location.hash);
 player.set(hash ? Number(hash[1]) : given.live ? Infinity : run.end);
 if (given.live) listen();
-if (given.live && given.stop) document.getElementById("heading").append(stopButton(given.stop));
+if (given.live && given.stop) document.getElementById("heading").append(stopButton(() => given.stop));
 root.dataset.ready = "yes";

@@ -2,13 +2,14 @@
 
 const STOP_WAIT_MS = 4000; // longer than the server waits for the drivers
 
+/** `token` gives the server's present token. */
 function stopButton(token) {
   const outcome = html("span", { class: "outcome", role: "alert" });
   const button = html("button", { class: "stop", type: "button", text: "STOP", title: "emergency stop of every driver" });
   button.addEventListener("click", async () => {
     outcome.className = "outcome";
     outcome.textContent = "stopping …";
-    const [confirmed, words] = await pressed(token);
+    const [confirmed, words] = await pressed(token());
     outcome.className = confirmed ? "outcome confirmed" : "outcome failed";
     outcome.textContent = words;
   });

@@ -109,6 +109,17 @@ def test_another_sites_page_cannot_press_it(live, button, changes):
     assert button.presses == 0
 
 
+def test_a_page_that_reconnects_to_another_server_learns_its_token(live):
+    port, token = live
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
+    connection.request("GET", "/events")
+    response = connection.getresponse()
+    lines = [response.readline() for _ in range(3)]
+    response.close()
+    assert lines[2] == f'data: {{"stop": "{token}"}}\n'.encode()
+    connection.close()
+
+
 @pytest.mark.parametrize("method", ["GET", "PUT", "DELETE", "HEAD", "OPTIONS"])
 def test_only_a_post_presses_it(live, button, method):
     assert post(*live, method=method)[0] in (404, 501)
