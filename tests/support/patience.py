@@ -1,7 +1,9 @@
 """Waits for conditions instead of times, always bounded."""
 
 import select
+import signal
 import time
+from contextlib import contextmanager
 
 PATIENCE_S = 90.0  # a process starts in 2 s, and a busy machine runs ten others; only failures wait
 
@@ -14,6 +16,22 @@ def wait_until(condition, what="condition", timeout_s=PATIENCE_S):
             return value
         time.sleep(0.005)
     raise AssertionError(f"{what}: not within {timeout_s} s")
+
+
+@contextmanager
+def interrupted_after(seconds, what="block"):
+    """Fails the test if the block, of the main thread, takes longer: also one that waits in a call of the system."""
+
+    def fail(*_):
+        raise AssertionError(f"{what}: not within {seconds} s")
+
+    before = signal.signal(signal.SIGALRM, fail)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def first_line(stream):

@@ -10,7 +10,7 @@ import pytest
 
 from tailor.runtime.processes.notify import ALIVE_PERIOD_S, Notifier
 from tailor.runtime.processes.notify_socket import NotifySocket, Report
-from tests.support.patience import wait_until
+from tests.support.patience import interrupted_after, wait_until
 
 
 @pytest.fixture
@@ -69,11 +69,12 @@ def test_nothing_happens_where_nobody_listens(address):
 def test_a_supervisor_that_does_not_read_delays_nothing_and_loses_no_readiness(receiver):
     now = iter(range(10_000))
     notifier = Notifier(str(receiver.path), lambda: next(now))
-    began = time.monotonic()
-    for _ in range(5000):
-        notifier.alive()
-    notifier.ready()
-    assert time.monotonic() - began < 1.0
+    with interrupted_after(10.0, "reports to a full queue"):
+        began = time.monotonic()
+        for _ in range(5000):
+            notifier.alive()
+        notifier.ready()
+        assert time.monotonic() - began < 1.0
     wait_until(lambda: receiver.poll(os.getpid()) == Report(), "an empty queue")
     notifier.alive()
     assert receiver.poll(os.getpid()) == Report(ready=True, alive=True)
@@ -88,3 +89,13 @@ def test_a_fast_loop_reports_at_the_watchdogs_pace(receiver):
         notifier.alive()
         received += receiver.poll(os.getpid()).alive
     assert 16 <= received <= 21  # a loop of other phase loses a part of each period
+
+
+def test_a_flood_of_reports_does_not_keep_the_supervisor(receiver, monkeypatch):
+    monkeypatch.setattr("tailor.runtime.processes.notify_socket.MAX_DATAGRAMS", 3)
+    notifier = Notifier(str(receiver.path), iter(range(10)).__next__)
+    for _ in range(3):
+        notifier.alive()
+    notifier.ready()
+    assert receiver.poll(os.getpid()) == Report(alive=True)
+    assert receiver.poll(os.getpid()) == Report(ready=True)
