@@ -133,6 +133,7 @@ def test_a_delay_of_800_ms_that_comes_up_stops_the_robot(tmp_path, tries, measur
 
         def delayed():
             robot.proxy.delay(0.0)
+            robot.back_s()  # what was held up has gone by
             wait_until(robot.drives, "robot moves")
             time.sleep(phases.uniform(0.5, 0.6))
             since_s = time.monotonic()
@@ -155,6 +156,7 @@ def test_a_delay_that_creeps_up_stops_the_robot(tmp_path, tries, measured):
 
         def crept():
             robot.proxy.delay(0.0)
+            robot.back_s()  # what was held up has gone by
             wait_until(robot.drives, "robot moves")
             since_s = time.monotonic()
             while moving(robot.trace, 0.5)():

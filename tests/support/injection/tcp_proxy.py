@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import random
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from tailor.tools.launch.hosting import free_endpoint
@@ -74,15 +74,17 @@ async def _serve(proxy, behind, stop, ready):
             _forward(reader, far_writer, proxy.to_router),
             _forward(far_reader, writer, proxy.from_router),
         )
-        await asyncio.gather(*both, return_exceptions=True)
+        with suppress(asyncio.CancelledError):  # the proxy ends
+            await asyncio.gather(*both, return_exceptions=True)
 
     server = await asyncio.start_server(connect, *_address(proxy.endpoint))
-    async with server:
-        ready.set()
-        await stop.wait()
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+    ready.set()
+    await stop.wait()
+    server.close()
+    await asyncio.sleep(0)  # connections accepted just now become tasks
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
 
 
 async def _forward(reader, writer, direction):
