@@ -16,7 +16,7 @@ import pytest
 
 from tailor.runtime.processes.child import Child, tailor
 from tests.support.bus_system import guarded_robot, moving
-from tests.support.driven import Driven
+from tests.support.driven import Driven, burners
 from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.stalls import repeat_on_stall
 
@@ -166,3 +166,17 @@ def test_the_button_of_the_live_page_stops_the_robot(robot, tmp_path, tries, mea
         for _ in range(tries):
             time.sleep(phases.uniform(0.0, 0.1))
             measured.add(repeat_on_stall(5, lambda: stopped_by(robot, press, PAGE_LIMIT_S)), PAGE_LIMIT_S)
+
+
+@pytest.mark.promise("P45")
+@pytest.mark.slow
+def test_a_held_switch_stops_nobody_on_a_busy_machine(robot):
+    held = Held(robot.endpoint)
+    try:
+        wait_until(robot.moves, "robot moves")
+        with burners():
+            ends = time.monotonic() + 20.0
+            while time.monotonic() < ends:
+                assert "estopped" not in robot.modes()
+    finally:
+        held.end()
