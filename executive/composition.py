@@ -90,6 +90,7 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
         "config": dataclasses.asdict(config),
         "sender": context.sender,
         "stamp_offset_ns": context.stamp_offset_ns,
+        "driver_sender": context.driver_sender,
         "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
     }
 
@@ -111,6 +112,7 @@ def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     if GATE not in recorded["models"]:  # the run had no refinement gate, whatever is installed here
         config = without_gate(config)
     context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"])
+    context = dataclasses.replace(context, driver_sender=str(recorded.get("driver_sender", "")))  # newer than others
     here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():
         if here.get(name) != sha256:

@@ -64,6 +64,7 @@ class Context:
     settings: Settings
     sender: str  # this executive's sender id, 32 hex digits
     stamp_offset_ns: int = 0  # added to the monotonic time for the stamps of messages
+    driver_sender: str = ""  # sender id that the driver has when this executive starts; "": the first one heard
 
     def stamp(self, now_ns: int) -> int:
         """Stamp of a message, from the monotonic time `now_ns`."""

@@ -11,7 +11,7 @@ from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Arming, Inputs, State, Task
 from tailor.schemas.messages import DriverState
 from tailor.schemas.reason_text import reason_text
-from tailor.schemas.topics import key_of
+from tailor.schemas.topics import TOPICS, key_of
 
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
@@ -31,7 +31,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
         arrivals=newest_arrivals(state.arrivals, inputs.samples),
         streams=with_samples(state.streams, tuple(s for s in inputs.samples if s.key in sensors), now_ns),
         overruns_ns=overruns,
-        arming=_driver_of(context, state.arming, inputs),
+        arming=_driver_of(context, state.arming, now_ns, inputs),
     )
     if inputs.goal:
         state = _with_goal(context, state, inputs.goal)
@@ -43,7 +43,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
 def disarmed(context: Context, state: State) -> Cause | None:
     """Cause for which the driver does not obey this executive; None if it does."""
     driver, robot = state.arming.driver, context.domain.robot
-    if driver is None or stale_topics(("driver",), robot, state.arrivals, state.now_ns):
+    if driver is None or _is_silent(state.arming, state.now_ns):
         return Cause(Reason.DRIVER_SILENT, robot)
     if driver.mode != "armed":
         return Cause(Reason.DRIVER_NOT_ARMED, reason_text(driver.mode, reason_text(driver.reason, driver.detail)))
@@ -58,12 +58,22 @@ def slow_inputs(context: Context, state: State) -> Cause | None:
     return Cause(Reason.INPUT_SLOW, ", ".join(slow)) if slow else None
 
 
-def _driver_of(context: Context, arming: Arming, inputs: Inputs) -> Arming:
+def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) -> Arming:
+    """The driver's newest state. Another sender counts only once the known one is silent, e.g. after a restart."""
     key = key_of("driver", context.domain.robot)
+    if arming.heard_ns is None:
+        arming = replace(arming, heard_ns=now_ns)
     for sample in inputs.samples:
         if sample.key == key and isinstance(sample.message, DriverState):
-            arming = replace(arming, driver=sample.message)
+            first = not arming.driver_sender and arming.driver is None
+            if first or sample.sender == arming.driver_sender or _is_silent(arming, sample.arrival_ns):
+                arming = replace(arming, driver=sample.message, driver_sender=sample.sender, heard_ns=sample.arrival_ns)
     return arming
+
+
+def _is_silent(arming: Arming, now_ns: int) -> bool:
+    limit_s = TOPICS["driver"].fresh_s
+    return limit_s is not None and (arming.heard_ns is None or now_ns - arming.heard_ns > limit_s * 1e9)
 
 
 def _with_goal(context: Context, state: State, goal: str) -> State:

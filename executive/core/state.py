@@ -42,6 +42,8 @@ class Arming:
     """Last state of the driver, and the last request to arm. One epoch is armed: restart is not resume."""
 
     driver: DriverState | None = None
+    driver_sender: str = ""  # of that state; "" before the first one: the first sender counts
+    heard_ns: int | None = None  # arrival of that state; before the first one: the first tick
     requested_epoch: int = 0  # 0: no request yet
     requested_ns: int = 0
 
@@ -98,4 +100,5 @@ class State:
 
 def initial_state(context: Context) -> State:
     """State before the first tick: no goal, no percepts, a zero command."""
-    return State(belief=context.domain.initial_belief(), command=at_rest(context.domain.axes))
+    arming = Arming(driver_sender=context.driver_sender)
+    return State(belief=context.domain.initial_belief(), command=at_rest(context.domain.axes), arming=arming)

@@ -1,4 +1,4 @@
-"""Samples since the last drain: the newest of a state topic, all of an event topic (up to a bound).
+"""Samples since the last drain: of a state topic each sender's newest, of an event topic all (up to a bound).
 
 Drained from the loop's own thread, without callbacks. Rejected samples are counted by key and reason.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
-from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.attachment import Origin, unpack
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
@@ -55,7 +55,7 @@ class Inbox:
         encodings: Callable[[type], str],
         now: Callable[[], int],
         wall: Callable[[], int] = wall_ns,
-        newest_only: bool = False,  # of a state topic, the newest valid sample alone
+        newest_only: bool = False,  # of a state topic, each sender's newest valid sample alone
     ) -> None:
         self.rejected: Counter[tuple[str, str]] = Counter()  # (key, reason) -> count
         self._subscriptions = [(topic, key, source, encodings(topic.type)) for topic, key, source in subscriptions]
@@ -69,28 +69,29 @@ class Inbox:
         samples = []
         for topic, key, source, encoding in self._subscriptions:
             newest_only = self._newest_only and is_state(topic)
-            waiting = _received(source)
+            waiting, complete = _received(source), set[str]()  # senders whose newest valid sample is known
             for raw in reversed(waiting) if newest_only else waiting:
-                sample = raw if isinstance(raw, Rejected) else self._read(topic, key, encoding, raw, now)
+                sample = raw if isinstance(raw, Rejected) else self._read(topic, key, encoding, raw, now, complete)
+                if sample is None:
+                    continue
                 if isinstance(sample, Rejected):
                     self.rejected[key, sample.reason] += 1
                     continue
                 samples.append(sample)
-                if newest_only:  # the newest valid one: an invalid sample must not replace a valid one
-                    break
+                if newest_only:  # no invalid sample, and none of a stranger, replaces a valid one
+                    complete.add(sample.sender)
         self._previous = now
         return tuple(sorted(samples, key=lambda each: each.arrival_ns))
 
-    def _read(self, topic: Topic, key: str, encoding: str, raw: Raw, now: Instant) -> Sample | Rejected:
-        if raw.key != key:
-            return Rejected("other key")  # a put on a wildcard reaches every key that matches
-        if not raw.is_put:
-            return Rejected("not a put")
-        if raw.encoding.startswith("application/cdr;") and raw.encoding != encoding:
-            return Rejected("other type")
-        origin = unpack(raw.attachment)
+    def _read(
+        self, topic: Topic, key: str, encoding: str, raw: Raw, now: Instant, complete: set[str]
+    ) -> Sample | Rejected | None:
+        """The sample; None if it comes from one of the `complete` senders."""
+        origin = _origin(key, encoding, raw)
         if isinstance(origin, Rejected):
             return origin
+        if origin.sender in complete:
+            return None
         repeated = origin.sequence and self._last.get(key) == (origin.sender, origin.sequence)
         if repeated and topic.type is not EStop:  # a forged repetition must not take the place of an e-stop
             return Rejected("repeated")  # repeats of a frozen sender are ignored, so its topic becomes stale
@@ -100,6 +101,16 @@ class Inbox:
         self._last[key] = (origin.sender, origin.sequence)
         arrived = arrival_ns(raw.received_wall_ns, self._previous, now)
         return Sample(key, message, arrived, origin.sequence, origin.sender)
+
+
+def _origin(key: str, encoding: str, raw: Raw) -> Origin | Rejected:
+    if raw.key != key:
+        return Rejected("other key")  # a put on a wildcard reaches every key that matches
+    if not raw.is_put:
+        return Rejected("not a put")
+    if raw.encoding.startswith("application/cdr;") and raw.encoding != encoding:
+        return Rejected("other type")
+    return unpack(raw.attachment)
 
 
 def _received(source: Source) -> list[Raw | Rejected]:

@@ -15,7 +15,11 @@ def configure_sender(parser: argparse.ArgumentParser) -> None:
 
 def sender_of(arguments: argparse.Namespace) -> str:
     """Sender id, or "" for a random one; raises UsageError for anything else."""
-    sender: str = arguments.sender or ""
+    return checked_sender(arguments.sender, "--sender")
+
+
+def checked_sender(sender: str | None, flag: str) -> str:
+    """Value of a flag that holds a sender id, "" without one; raises UsageError for anything else."""
     if sender and not re.fullmatch("[0-9a-f]{32}", sender):
-        raise UsageError(f"--sender {sender}: expected 32 hex digits")
-    return sender
+        raise UsageError(f"{flag} {sender}: expected 32 hex digits")
+    return sender or ""

@@ -65,5 +65,5 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
         "executive",
         tailor("executive", executive.domain, *flags),
         silence_ns=EXECUTIVE_SILENCE_NS,
-        arguments=lambda start: senders.arguments("executive", start),
+        arguments=lambda start: ("--driver-sender", senders.of("sim"), *senders.arguments("executive", start)),
     )

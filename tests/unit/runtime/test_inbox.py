@@ -126,6 +126,14 @@ def test_of_several_valid_states_the_newest_counts():
     assert [sample.sequence for sample in box.drain(9)] == [8]
 
 
+@pytest.mark.promise("P17")
+def test_a_strangers_states_do_not_push_the_right_ones_out():
+    ours, stranger = raw(ODOMETRY), numbered(ODOMETRY, 99, "agilo/odom", "ee" * 16)
+    rows = [(TOPICS["odom"], "agilo/odom", Line(ours, stranger, stranger))]
+    box = Inbox(rows, encoding_of, lambda: 0, lambda: 0, newest_only=True)
+    assert sorted(sample.sender for sample in box.drain(9)) == sorted([SENDER, "ee" * 16])
+
+
 def test_of_events_and_commands_all_count_even_where_of_states_only_the_newest_does():
     commands = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in (1, 2, 3)]
     rows = [(TOPICS["cmd_vel"], "agilo/cmd_vel", Line(*commands))]

@@ -17,6 +17,7 @@ from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.arming_exchange import WAIT_S, Exchange, Outcome
 from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.sender_flag import checked_sender
 
 POLL_S = 0.01
 TEXTS = {
@@ -45,8 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     robot: str = arguments.robot
     if not re.fullmatch(r"[\w-]+(/[\w-]+)*", robot, re.ASCII):
         raise UsageError(f"robot {robot!r}: expected a name, e.g. agilo")
-    if arguments.sender and not re.fullmatch("[0-9a-f]{32}", arguments.sender):
-        raise UsageError(f"--sender {arguments.sender}: expected 32 hex digits")
+    checked_sender(arguments.sender, "--sender")
     with open_bus(arguments, "people") as session:
         sender = arguments.sender or ("" if arguments.off else _executive_sender(session))
         if not sender and not arguments.off:

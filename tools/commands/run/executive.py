@@ -18,7 +18,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import open_bus
-from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.cli.sender_flag import checked_sender, configure_sender, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 
@@ -32,6 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--goal", help="PDDL goal to start with (default: the scenario's)")
     parser.add_argument("--wait", action="store_true", help="start without a goal; `tailor goal` sends one")
     configure_sender(parser)
+    parser.add_argument("--driver-sender", metavar="HEX", help="sender id of the driver (default: the first heard)")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
 
@@ -43,9 +44,10 @@ def run(arguments: argparse.Namespace) -> int:
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)
+    driver_sender = checked_sender(arguments.driver_sender, "--driver-sender")
     with open_bus(arguments, "executive", sender=sender_of(arguments)) as session:
         offset_ns = wall_ns() - time.monotonic_ns()
-        context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns)
+        context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns, driver_sender=driver_sender)
         codec.prime()
         origin = {**provenance(config, context), "machine": platform_fingerprint()}
         origin["realtime"] = realtime.prepare()
