@@ -8,7 +8,7 @@ import pytest
 from tailor.runtime.processes.external_planner import MAX_ANSWER_BYTES, ExternalPlanner
 from tailor.schemas import codec
 from tailor.schemas.messages import PlanAnswer, PlanRequest
-from tests.faults.test_planner_process import LIMIT_S, POLL_LIMIT_S, program
+from tests.faults.supervision.test_planner_process import LIMIT_S, POLL_LIMIT_S, program
 from tests.support.patience import PATIENCE_S, gone
 from tests.support.stalls import repeat_on_stall
 
