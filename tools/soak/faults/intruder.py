@@ -26,7 +26,8 @@ from tailor.tools.soak.systems.sessions import open_intruder
 from tailor.tools.soak.systems.strangers import FORGED_NS, stranger_id
 
 SECONDS = 3.0
-HEAR_S = 1.0  # to the executive first
+HEAR_S = 5.0  # to the executive first, at most
+HEARD = 20  # commands
 RATE_HZ = 50.0
 FLOOD = 100_000  # messages at most
 BIG_BYTES = 1_000_000
@@ -45,10 +46,12 @@ class Intruder:
     heard: list[Raw] = field(default_factory=list)
 
     def overhear(self) -> None:
-        """Listen to the executive's commands for a while."""
+        """Listen to the executive's commands until there are some."""
         queue, subscription = self.session.subscribe_all(key_of(self.command(), self.robot))
-        time.sleep(HEAR_S)
-        self.heard = queue.drain()[-20:]
+        ends_s = time.monotonic() + HEAR_S
+        while len(self.heard) < HEARD and time.monotonic() < ends_s:
+            time.sleep(0.1)
+            self.heard += queue.drain()
         subscription.undeclare()
 
     def command(self) -> str:
