@@ -15,9 +15,9 @@ from tailor.executive import domains
 from tailor.tools.soak.systems.system import System
 
 BELIEF_NS = 1_500_000_000  # after the world was reset: the belief converges again
-REST_NS = 60_000_000_000  # between two tasks of the arm, unless there is a hurry: its word is finite
-STROKES = 2
-LETTERS = 10
+REST_NS = 200_000_000_000  # between two tasks of the arm, unless there is a hurry: its word is finite
+STROKES = 3
+LETTERS = 12
 CAPITALS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 REPEATABLE = ("approach-dribble", "aligned", "moved-ball", "kicked-ball", "approach")
 
