@@ -14,7 +14,7 @@ from tests.support.patience import PATIENCE_S, first_line, gone, is_alive
 from tests.support.planning_problems import DATA, own, printed
 from tests.support.stalls import repeat_on_stall
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 LIMIT_S = 30.0  # for those that end by themselves
 POLL_LIMIT_S = 0.05  # half a tick; a poll takes microseconds, the rest is for a busy machine
 

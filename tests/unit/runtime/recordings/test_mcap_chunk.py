@@ -12,7 +12,7 @@ from tailor.runtime.recordings.mcap_chunk import records_of
 from tailor.runtime.recordings.recording import open_recording
 from tailor.tools.recordings.survey import percentiles
 
-GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
+GOLDEN = Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap"
 
 
 def record(opcode, body):

@@ -24,10 +24,10 @@ from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.survey import survey
 from tests.support.bus_system import bus_system
 from tests.support.cpu_time import min_cpu_s
-from tests.unit.runtime.test_mcap_writer import chunk_bounds, write_tape
+from tests.unit.runtime.recordings.test_mcap_writer import chunk_bounds, write_tape
 
 NOTHING = Selection(("no/such/key",))
-GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
+GOLDEN = Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap"
 
 
 def foreign(path, rows=((10, "x"),), metadata=()):

@@ -13,8 +13,8 @@ from tailor.schemas.messages import DriverState
 from tailor.schemas.own import example
 from tailor.tools.recordings.playback import RecordingPart, remapping
 from tailor.tools.recordings.substitution import armed_for
+from tests.unit.runtime.recordings.test_mcap_writer import S, write_tape
 from tests.unit.runtime.test_loop import SteppedClock
-from tests.unit.runtime.test_mcap_writer import S, write_tape
 
 MS = 1_000_000
 

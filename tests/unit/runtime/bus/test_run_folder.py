@@ -30,10 +30,10 @@ def test_folder_and_passwords_are_private():
 
 
 def test_the_group_of_a_service_may_read_them(tmp_path, monkeypatch):
-    (tmp_path / "service").mkdir(mode=0o750)
-    monkeypatch.setenv("TAILOR_RUN_DIR", str(tmp_path / "service"))
+    (tmp_path / "s").mkdir(mode=0o750)
+    monkeypatch.setenv("TAILOR_RUN_DIR", str(tmp_path / "s"))
     with hosted(ENDPOINT, ["people"]) as folder:
-        assert folder.path.parent == tmp_path / "service"
+        assert folder.path.parent == tmp_path / "s"
         assert (mode(folder.path), mode(folder.users_file)) == (0o750, 0o640)
 
 
