@@ -17,7 +17,7 @@ from tailor.runtime.bus.attachment import UNSIGNED, Origin, unpack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.channel_table import ChannelTable
 from tailor.runtime.recordings.chunk_index_spool import ChunkIndexSpool
-from tailor.runtime.recordings.sink import Sink
+from tailor.runtime.recordings.sink import SLOW, BackgroundSink, Sink
 from tailor.schemas.errors import Rejected
 from tailor.schemas.topics import TOPICS
 
@@ -30,13 +30,20 @@ STUCK_BYTES = 16_000_000  # of data waiting for the disk; then messages are drop
 class McapWriter:
     """Writes messages in the order of their reception."""
 
-    def __init__(self, path: Path, metadata: Mapping[str, Mapping[str, str]], compact: bool = False) -> None:
+    def __init__(
+        self,
+        path: Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        compact: bool = False,
+        background: bool = False,
+    ) -> None:
         """Create the file.
 
         Args:
           path: New file.
           metadata: First metadata records, name -> entries.
           compact: Write one chunk without index.
+          background: Flush without waiting for the disk.
 
         Raises:
           FileExistsError: The file exists.
@@ -46,7 +53,7 @@ class McapWriter:
         self.messages = 0
         self.first_ns: int | None = None  # log time of the first message
         self.disk_error = ""  # of the last flush; empty after a successful one
-        self._sink = Sink(path)
+        self._sink = BackgroundSink(path) if background else Sink(path)
         target: Any = self._sink
         layout: dict[str, Any] = COMPACT if compact else {"chunk_size": CHUNK_BYTES}
         self._writer: Any = Writer(target, compression=CompressionType.ZSTD, **layout)
@@ -105,16 +112,20 @@ class McapWriter:
         except OSError as error:
             self.disk_error = error.strerror or str(error)
             return False
-        self.disk_error = ""
-        return True
+        self.disk_error = SLOW if self._sink.is_slow else ""
+        return not self.disk_error
 
     def close(self) -> bool:
         """Write index and footer; False if writing fails, the file is then readable without them."""
         self._writer.finish()
-        done = self.flush()
+        try:
+            self._sink.finish()
+            self.disk_error = ""
+        except OSError as error:
+            self.disk_error = error.strerror or str(error)
         self._index.close()
         self._sink.close()
-        return done
+        return not self.disk_error
 
 
 def _topics_table() -> dict[str, str]:

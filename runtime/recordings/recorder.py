@@ -151,7 +151,8 @@ class Recorder:
     def _next_writer(self) -> McapWriter:
         part = len(self.health.files)
         name = f"{self._path.stem}_{part:03d}{self._path.suffix}" if self._limits.splits else self._path.name
-        writer = McapWriter(self._path.with_name(name), {**self._metadata.entries, "part": {"number": str(part)}})
+        metadata = {**self._metadata.entries, "part": {"number": str(part)}}
+        writer = McapWriter(self._path.with_name(name), metadata, background=True)
         self.health.files.append(writer.path)
         return writer
 

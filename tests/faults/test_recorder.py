@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 import time
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
@@ -11,8 +12,9 @@ from tailor.runtime.processes.child import Child
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas import codec
 from tailor.schemas.messages import Odometry
-from tests.support.bus_system import bus_system
+from tests.support.bus_system import bus_system, driving, guarded_robot, moving, zero_at
 from tests.support.patience import PATIENCE_S, wait_until
+from tests.support.stalls import repeat_on_stall
 
 MAX_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
 LIMITED = f"""
@@ -21,6 +23,25 @@ resource.setrlimit(resource.RLIMIT_FSIZE, ({MAX_BYTES}, {MAX_BYTES}))
 from tailor.tools.main import main
 sys.exit(main(sys.argv[1:]))
 """
+SLOW = """
+import os, sys, time
+really, blocks = os.write, []
+def slowly(file, data):
+    blocks.append(len(data))
+    time.sleep(4.0 if sum(blocks) > 20_000 else 0.0)
+    return really(file, data)
+os.write = slowly
+from tailor.tools.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+DISKS = {
+    "full": (LIMITED, "disk: File too large"),
+    "tmpfs": (
+        "import sys; from tailor.tools.main import main; sys.exit(main(sys.argv[1:]))",
+        "disk: No space left on device",
+    ),
+    "slow": (SLOW, "disk: a write takes longer than 3 s"),
+}
 
 
 def noise(number):
@@ -59,6 +80,61 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
 
 
 @pytest.mark.promise("P9")
+@contextmanager
+def small_disk(folder):
+    """A file system of 100 kB in a folder; skips the test where this user may not mount one."""
+    folder.mkdir()
+    options = ["-t", "tmpfs", "-o", "size=100k", "none", str(folder)]
+    if subprocess.run(["mount", *options], capture_output=True).returncode:
+        pytest.skip("no right to mount a small disk; the case `full` limits the file instead")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+@pytest.mark.xdist_group("live")
+@pytest.mark.parametrize("disk", ["full", "slow", pytest.param("tmpfs", marks=pytest.mark.slow)])
+def test_the_robot_drives_on_while_the_recorders_disk_is_full_or_slow_and_it_is_reported(tmp_path, disk):
+    program, report = DISKS[disk]
+    with ExitStack() as stack:
+        folder = stack.enter_context(small_disk(tmp_path / "disk")) if disk == "tmpfs" else tmp_path
+        session, endpoint, start, trace = stack.enter_context(guarded_robot(tmp_path))
+        log = stack.enter_context((tmp_path / "log").open("w"))
+        options = ["record", "-o", str(folder / "run.mcap"), "--connect", endpoint]
+        recorder = Child("recorder", [sys.executable, "-P", "-c", program, *options], log, notify_folder=tmp_path)
+        publisher, states = session.publisher("odom", "agilo"), session.inbox(["driver"], "agilo")
+
+        def is_reported():
+            publisher.publish(noise(publisher.sequence))
+            return recorder.report().status == report
+
+        try:
+            wait_until(publisher.matched, "recorder")
+            driving(start, endpoint, trace)
+            wait_until(is_reported, "status of the recorder", 60.0)
+            repeat_on_stall(5, lambda: drives_on_for(2.0, trace, states))
+            assert recorder.exit_code() is None
+        finally:
+            code = recorder.stop(PATIENCE_S)
+        recording = open_recording(folder / "run.mcap")
+        sequences = [m.sequence for m in recording.messages() if m.sender == session.sender]
+        assert len(sequences) > 10
+        assert sequences == sorted(set(sequences))
+        assert recording.damage.damaged_chunks == 0
+        assert code == 1, "it is reported at the end, too"
+
+
+def drives_on_for(seconds, trace, states):
+    """The guard's output, whose changes the trace holds, stays at the speed of the executive."""
+    since_s = time.monotonic()
+    states.drain()
+    time.sleep(seconds)
+    assert states.drain(), "the driver runs"
+    assert moving(trace, 0.5)()
+    assert zero_at(trace, since_s) is None
+
+
 @pytest.mark.slow
 def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     path = tmp_path / "flood.mcap"

@@ -25,6 +25,7 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, EStop, ExecStatus, Odometry, Provenance
 from tailor.schemas.own import example
+from tests.support.patience import wait_until
 
 SENDER = "ab" * 16
 EVERYTHING = Selection()
@@ -208,7 +209,7 @@ def make_recorder(tmp_path, queue, wanted=EVERYTHING, **limits):
 
 
 def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
-    monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 2000)
+    monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 6000)
     queue = IngestQueue()
     recorder = make_recorder(tmp_path, queue)
     real = os.write
@@ -220,11 +221,17 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
     for sequence in range(1, 31):
         queue.put(odometry(sequence))
         recorder.step(sequence * S)
+    steps = iter(range(31 * S, 10**6 * S, S))  # an error appears with the next flush
+    wait_until(lambda: recorder.step(next(steps)) or recorder.health.disk_error, "error of the disk")
     assert recorder.health.disk_error == "No space left on device"
     lost = recorder.health.drops["agilo/odom"]
     assert 0 < lost < 30
     monkeypatch.setattr(os, "write", real)
-    recorder.step(100 * S)
+    on_disk = (tmp_path / "r.mcap").stat
+    wait_until(
+        lambda: recorder.step(next(steps)) or on_disk().st_size == recorder.health.bytes, "a flush that succeeds"
+    )
+    recorder.step(next(steps))
     assert recorder.health.disk_error == ""
     queue.put(odometry(31))
     assert recorder.close().messages == 31 - lost

@@ -1,0 +1,92 @@
+"""A recorder on a disk that is slow, stalls or is full: its loop never waits, and the file is whole."""
+
+import errno
+import os
+import threading
+import time
+
+import pytest
+
+from tailor.runtime.recordings import sink
+from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.sink import SLOW, BackgroundSink
+from tests.support.patience import wait_until
+
+
+@pytest.fixture
+def disk(monkeypatch):
+    """Writes wait until the event is set."""
+    ready, real = threading.Event(), os.write
+
+    def write(file, data):
+        ready.wait(60.0)
+        return real(file, data)
+
+    monkeypatch.setattr(sink.os, "write", write)
+    yield ready
+    ready.set()
+
+
+def test_a_flush_does_not_wait_for_a_disk_that_stalls_and_nothing_is_lost(tmp_path, disk):
+    file = BackgroundSink(tmp_path / "f")
+    began = time.monotonic()
+    for number in range(100):
+        file.write(b"%03d" % number)
+        file.flush()
+    assert time.monotonic() - began < 1.0
+    assert (file.pending, file.tell(), file.on_disk) == (300, 300, 0)
+    disk.set()
+    file.finish()
+    file.close()
+    assert (tmp_path / "f").read_bytes() == b"".join(b"%03d" % number for number in range(100))
+
+
+def test_a_slow_disk_is_reported_while_it_is_slow(tmp_path, disk, monkeypatch):
+    monkeypatch.setattr(sink, "SLOW_S", 0.05)
+    writer = McapWriter(tmp_path / "r.mcap", {}, background=True)
+    assert writer.flush()
+    time.sleep(0.1)
+    assert not writer.flush()
+    assert writer.disk_error == SLOW
+    disk.set()
+    wait_until(writer.flush, "disk")
+    assert writer.disk_error == ""
+    assert writer.close()
+
+
+def test_a_disk_that_hangs_for_ever_does_not_keep_a_stopped_recorder(tmp_path, disk, monkeypatch):
+    monkeypatch.setattr(sink, "FINISH_S", 0.1)
+    writer = McapWriter(tmp_path / "r.mcap", {}, background=True)
+    writer.flush()
+    assert not writer.close()
+    assert writer.disk_error == SLOW
+
+
+def test_positions_do_not_depend_on_the_progress_of_the_thread(tmp_path):
+    file = BackgroundSink(tmp_path / "f")
+    for number in range(1, 2001):
+        file.write(b"12345")
+        file.flush()
+        assert file.tell() == 5 * number
+    file.finish()
+    assert file.on_disk == 10_000
+    file.close()
+
+
+def test_an_error_appears_with_the_next_flush_and_the_bytes_are_written_again(tmp_path, monkeypatch):
+    real = os.write
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(sink.os, "write", full)
+    file = BackgroundSink(tmp_path / "f")
+    file.write(b"first")
+    file.flush()
+    with pytest.raises(OSError, match="No space"):
+        wait_until(file.flush, "error")
+    monkeypatch.setattr(sink.os, "write", real)
+    file.write(b"second")
+    file.finish()
+    file.close()
+    assert (tmp_path / "f").read_bytes() == b"firstsecond"
