@@ -1,43 +1,56 @@
-"""The emergency-stop key of a live view: from the first press on, the e-stop is published repeatedly."""
+"""The emergency-stop key of a live view: each press stops every driver, beside the view's own work."""
 
 from __future__ import annotations
 
+from threading import Thread
+from typing import Protocol
+
 from rich.text import Text
 
-from tailor.runtime.bus.publisher import Publisher
-from tailor.schemas.messages import EStop
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.status.picture import Picture
 
 KEYS = frozenset(b"s ")
-REPEAT_NS = 50_000_000  # a publication may be lost
-LASTING_NS = 3_000_000_000  # after the last press; a person may arm again after that
+MAX_WAITING = 4  # presses that wait for an earlier one to be confirmed
+
+
+class Button(Protocol):
+    """Stops every driver; `tailor.tools.cli.stop_button.StopButton` does."""
+
+    def press(self) -> object:
+        """Return when every driver has confirmed, or after a time limit."""
+        ...
 
 
 class StopKey:
-    """Publishes the e-stop for a while after each press."""
+    """Presses the button in threads of its own, so that neither drawing nor a flood delays an e-stop."""
 
-    def __init__(self, publisher: Publisher) -> None:
-        """`publisher`: of the topic `estop`."""
-        self._publisher = publisher
-        self._pressed_ns: int | None = None
-        self._published_ns = 0
+    def __init__(self, button: Button) -> None:
+        self._button = button
+        self._pressed = False
+        self._presses: list[Thread] = []
 
-    def poll(self, keys: bytes, now_ns: int) -> None:
-        """Take the keys since the last call, any of which may be the stop key; publish when due."""
-        if KEYS.intersection(keys):
-            self._pressed_ns, self._published_ns = now_ns, now_ns - REPEAT_NS
-        lasting = self._pressed_ns is not None and now_ns - self._pressed_ns <= LASTING_NS
-        if lasting and now_ns - self._published_ns >= REPEAT_NS:
-            self._published_ns = now_ns
-            self._publisher.publish(EStop(True))
+    def poll(self, keys: bytes) -> None:
+        """Take the keys since the last call, any of which may be the stop key."""
+        if not KEYS.intersection(keys):
+            return
+        self._pressed = True
+        self._presses = [press for press in self._presses if press.is_alive()]
+        if len(self._presses) < MAX_WAITING:
+            self._presses.append(Thread(target=self._button.press, daemon=True))
+            self._presses[-1].start()
+
+    def finish(self) -> None:
+        """Wait until all presses are confirmed, or have reached their time limit."""
+        for press in self._presses:
+            press.join()
 
     def line(self, picture: Picture, keyboard: bool) -> Text:
         """The line that names the key, if there is a keyboard, and after a press the mode of every driver."""
         if not keyboard:
             return Text("no keyboard: no emergency stop from here", "yellow")
         text = Text(" s or space: EMERGENCY STOP ", "bold white on red").append("  q: quit  ", "default on default")
-        if self._pressed_ns is not None:
+        if self._pressed:
             modes = [f"{driver.robot} is {driver.mode}" for driver in picture.drivers]
             text.append(plain("pressed: " + (", ".join(modes) or "no driver is on the bus")), "bold red on default")
         return text

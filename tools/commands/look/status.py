@@ -23,6 +23,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import finite
+from tailor.tools.cli.stop_button import StopButton
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.status.panel import panel
 from tailor.tools.status.picture import Picture
@@ -84,7 +85,7 @@ def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -
 
 def _watch(session: Session, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
     """The live view, until Ctrl-C or q."""
-    button = StopKey(session.publisher("estop", ""))
+    key = StopKey(StopButton(session))
     console = Console(highlight=False)
     drawn_ns = 0
     with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
@@ -93,12 +94,13 @@ def _watch(session: Session, model: SystemModel, watcher: Watcher, endpoint: str
             keys = keyboard.read()
             if b"q" in keys:
                 break
-            button.poll(keys, now_ns)
+            key.poll(keys)
             if now_ns - drawn_ns >= DRAW_NS:
                 drawn_ns = now_ns
                 watcher.poll(now_ns)
                 picture = model.picture(now_ns)
-                shown = (button.line(picture, keyboard.there), panel(picture, endpoint))
+                shown = (key.line(picture, keyboard.there), panel(picture, endpoint))
                 live.update(Group(*shown), refresh=True)
             time.sleep(KEY_S)
+        key.finish()
     return model.picture(time.monotonic_ns())

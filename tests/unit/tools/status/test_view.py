@@ -2,15 +2,17 @@
 
 import time
 from io import StringIO
+from threading import Event, Semaphore
 
 from rich.console import Console
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.messages import EStop, Odometry, ProcessState, ProcessStates
 from tailor.tools.status.panel import panel
-from tailor.tools.status.stop_key import LASTING_NS, REPEAT_NS, StopKey
+from tailor.tools.status.stop_key import StopKey
 from tailor.tools.status.system_model import SystemModel
 from tailor.tools.status.watcher import MAX_OF_KEY, MAX_READ, Watcher
+from tests.support.patience import PATIENCE_S
 from tests.unit.tools.status.bus_feed import OTHER, Feed, driver, raw_of, status
 
 ENDPOINT = "tcp/127.0.0.1:7447"
@@ -22,12 +24,15 @@ def drawn(picture, width=120):
     return [line.rstrip() for line in console.file.getvalue().splitlines()]
 
 
-class Published:
-    def __init__(self):
-        self.messages = []
+class SlowButton:
+    """A button whose press lasts until the test releases it."""
 
-    def publish(self, message):
-        self.messages.append(message)
+    def __init__(self):
+        self.begun, self.released = Semaphore(0), Event()
+
+    def press(self):
+        self.begun.release()
+        assert self.released.wait(PATIENCE_S)
 
 
 def test_the_verdict_comes_first_and_every_part_has_its_line():
@@ -72,26 +77,35 @@ def test_an_empty_bus_is_drawn_too():
     assert drawn(Feed().picture())[0] == f"2 problems   {ENDPOINT}, observed for 0 s"
 
 
-def test_a_press_publishes_the_estop_again_and_again_for_three_seconds():
-    published = Published()
-    key = StopKey(published)
-    key.poll(b"", 0)
-    assert published.messages == []
-    key.poll(b"xxs", 1)
-    assert published.messages == [EStop(True)], "at once, also among other keys"
-    for step in range(1, 200):
-        key.poll(b"", 1 + step * REPEAT_NS)
-    assert published.messages == [EStop(True)] * (1 + LASTING_NS // REPEAT_NS)
-    key.poll(b" ", 200 * REPEAT_NS)
-    assert len(published.messages) == 2 + LASTING_NS // REPEAT_NS
+def test_each_press_stops_without_waiting_for_an_earlier_one():
+    button = SlowButton()
+    key = StopKey(button)
+    key.poll(b"")
+    key.poll(b"xq")
+    assert not button.begun.acquire(blocking=False)
+    for keys in (b"s", b" ", b"\x1b[As"):
+        key.poll(keys)
+        assert button.begun.acquire(timeout=PATIENCE_S), "also among other keys"
+    for _ in range(100):
+        key.poll(b"s")
+    assert button.begun.acquire(timeout=PATIENCE_S)
+    assert not button.begun.acquire(blocking=False), "presses that wait are bounded"
+    button.released.set()
+    key.finish()
+    key.poll(b"s")
+    assert button.begun.acquire(timeout=PATIENCE_S)
+    key.finish()
 
 
 def test_the_line_of_the_stop_key_shows_what_became_of_it():
-    key = StopKey(Published())
+    button = SlowButton()
+    button.released.set()
+    key = StopKey(button)
     healthy, stopped = Feed().run(1.0), Feed().run(1.0, driver=driver("estopped", "e-stop", ""))
     assert "pressed" not in key.line(healthy, keyboard=True).plain
     assert key.line(healthy, keyboard=False).plain == "no keyboard: no emergency stop from here"
-    key.poll(b"s", 0)
+    key.poll(b"s")
+    key.finish()
     assert key.line(stopped, keyboard=True).plain.endswith("pressed: agilo is estopped")
     assert key.line(Feed().picture(), keyboard=True).plain.endswith("pressed: no driver is on the bus")
 
