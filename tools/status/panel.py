@@ -79,7 +79,7 @@ def _executive(executive: ExecutiveView) -> RenderableType:
         elapsed = f"{executive.action_elapsed_s:.1f} of {executive.action_predicted_s:.1f} s predicted"
         grid.add_row("action", Text(plain(f"{executive.action}  {elapsed}")))
     if executive.ticks is not None:
-        grid.add_row("ticks", _ticks(executive.ticks))
+        grid.add_row("ticks p50/p99/max", _ticks(executive.ticks))
     if executive.realtime:
         granted = ", ".join(f"{name} {value}" for name, value in executive.realtime.items())
         grid.add_row("granted", Text(plain(granted), WEAK))
@@ -94,7 +94,7 @@ def _task(executive: ExecutiveView) -> str:
 def _ticks(ticks: TickTimes) -> Text:
     text = Text(f"{ticks.reported} in the last minute, ")
     text.append(f"{ticks.skipped} skipped", BAD if ticks.skipped else "default")
-    return text.append(f";  work {_spread(ticks.work_ms)},  late {_spread(ticks.lateness_ms)} ms (p50/p99/max)")
+    return text.append(f"; work {_spread(ticks.work_ms)}, late {_spread(ticks.lateness_ms)} ms")
 
 
 def _spread(spread: Spread) -> str:
