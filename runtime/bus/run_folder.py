@@ -51,6 +51,11 @@ class RunFolder:
         """zenoh's dictionary where a certificate decides; its password is no secret."""
         return self.path / CERTIFICATE_USERS
 
+    @property
+    def secured(self) -> bool:
+        """Whether the bus runs with passwords."""
+        return self.users_file.exists()
+
     def running(self) -> bool:
         """Whether a router of this bus listens on this machine."""
         with socket.socket(socket.AF_UNIX) as probe:

@@ -73,7 +73,7 @@ def local_router(folder: RunFolder) -> str:
     """JSON of the router of one machine: it listens at the socket of a run folder alone, secured if that has users."""
     config = _listening(folder.socket_endpoint) | {"connect": {"endpoints": []}}
     config |= {"downsampling": access.rate_limits(access.LOCAL_LIMIT_HZ)}
-    if folder.users_file.exists():
+    if folder.secured:
         subjects = [{"id": name, "usernames": [name]} for name in (*ROLES, access.GATEWAY)]
         config |= _secured(subjects)
         config["transport"]["auth"] = {"usrpwd": {"dictionary_file": str(folder.users_file)}}

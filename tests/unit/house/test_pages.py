@@ -6,6 +6,7 @@ import pytest
 
 import tailor
 from tailor.tools.main import COMMANDS
+from tests.unit.house import draw_roles
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
 PAGES = [
@@ -49,3 +50,8 @@ def test_the_readme_links_every_page() -> None:
 
 def test_the_citation_names_the_version() -> None:
     assert re.findall(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE) == [tailor.__version__]
+
+
+def test_the_page_on_security_lists_every_role_with_its_rights() -> None:
+    page = draw_roles.PAGE.read_text()
+    assert draw_roles.drawn(page) == page, "run `python -m tests.unit.house.draw_roles`"

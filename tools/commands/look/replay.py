@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tailor.runtime.bus.run_folder import run_folder
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, PlaybackClock
@@ -25,7 +26,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Clock
 from tailor.schemas.topics import TOPICS
-from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
@@ -71,7 +72,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--clock", type=float, default=0.0, metavar="HZ", help="publish the recorded time on /clock")
     add("--paused", action="store_true", help="begin paused")
     add("--wait", type=float, default=2.0, metavar="S", help="wait this long for subscribers (default 2)")
-    add("--drive", action="store_true", help="publish commands and arming requests even if a driver is live")
+    add(
+        "--drive", action="store_true", help="publish commands and requests even if a driver is live; needs an open bus"
+    )
     add(
         "--substitute",
         choices=SUBSTITUTES,
@@ -96,8 +99,8 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.substitute:
             wanted = Selection(wanted.include, wanted.exclude + OMITTED)
             changes = {"rewrite": partial(armed_for, live_executive(session))}
-        elif not arguments.drive and _driver_is_live(session):
-            _warn("a driver is live: commands, arming requests and e-stops are omitted (--drive publishes them)")
+        elif reason := _why_not_drive(arguments, session):
+            _warn(f"{reason}: commands, arming requests and e-stops are omitted")
             wanted = Selection(wanted.include, wanted.exclude + DRIVING)
             changes = {"excluded_keys": Selection(exclude=DRIVING)}
         part = RecordingPart(recording, wanted, remap, arguments.start, arguments.duration, **changes)
@@ -149,6 +152,15 @@ def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
     elif key in ("up", "down"):
         playback.scale(1.1 if key == "up" else 1 / 1.1, now_ns)
     return key != "quit"
+
+
+def _why_not_drive(arguments: argparse.Namespace, session: Session) -> str:
+    """Reason for omitting what drives a robot; empty: it is published."""
+    if run_folder(bus_settings(arguments).endpoint).secured:
+        return "the bus is secured, and a replay may not drive there (`tailor bus --security open`)"
+    if not arguments.drive and _driver_is_live(session):
+        return "a driver is live (--drive publishes all)"
+    return ""
 
 
 def _driver_is_live(session: Session) -> bool:
