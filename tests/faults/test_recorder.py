@@ -79,7 +79,6 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     assert recording.damage.damaged_chunks == 0
 
 
-@pytest.mark.promise("P9")
 @contextmanager
 def small_disk(folder):
     """A file system of 100 kB in a folder; skips the test where this user may not mount one."""
@@ -93,6 +92,7 @@ def small_disk(folder):
         subprocess.run(["umount", str(folder)], check=True)
 
 
+@pytest.mark.promise("P9")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("disk", ["full", "slow", pytest.param("tmpfs", marks=pytest.mark.slow)])
 def test_the_robot_drives_on_while_the_recorders_disk_is_full_or_slow_and_it_is_reported(tmp_path, disk):
@@ -135,6 +135,7 @@ def drives_on_for(seconds, trace, states):
     assert zero_at(trace, since_s) is None
 
 
+@pytest.mark.promise("P9")
 @pytest.mark.slow
 def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
     path = tmp_path / "flood.mcap"

@@ -45,6 +45,7 @@ def recorded(path, messages, **limits):
     return recorder.close()
 
 
+@pytest.mark.promise("P9")
 def test_more_sender_ids_than_mcap_can_number_are_recorded_without_loss(tmp_path):
     path, count = tmp_path / "r.mcap", 66_150
     health = recorded(path, (odometry(number, by=number) for number in range(1, count + 1)))
