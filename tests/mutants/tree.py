@@ -61,12 +61,12 @@ class Tree:
 
     def run(self, tests: Sequence[str], limit_s: float) -> Outcome:
         """Run tests until the first one fails, at most for `limit_s`."""
-        options = ("-x", "-q", "-p", "no:cacheprovider", "--tb=no", "-rfE", f"--basetemp={self.folder}.tmp")
+        options = ("-x", "-q", "-p", "no:cacheprovider", "--tb=no", "-rfE", "-m", "not slow")
         log, began = self.folder.with_suffix(".log"), time.monotonic()
         with log.open("w") as output:
             try:
                 done = subprocess.run(
-                    [sys.executable, "-m", "pytest", *options, *tests],
+                    [sys.executable, "-m", "pytest", *options, f"--basetemp={self.folder}.tmp", *tests],
                     cwd=self.folder,
                     env=os.environ | ENVIRONMENT | {"PYTHONPATH": str(self.folder / "src")},
                     stdin=subprocess.DEVNULL,
