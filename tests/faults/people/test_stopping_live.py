@@ -72,7 +72,12 @@ class Held:
             command, stdin=theirs, stdout=subprocess.PIPE, text=True, start_new_session=True
         )
         os.close(theirs)
-        wait_until(lambda: "agilo is" in self.process.stdout.readline(), "a state")
+        assert "hears this switch" in wait_until(self._line, "a state")
+
+    def _line(self):
+        """The next line on a driver; empty if it is none."""
+        line = self.process.stdout.readline()
+        return line if line.startswith("agilo is") else ""
 
     def key(self, key=b" "):
         os.write(self.terminal, key)
