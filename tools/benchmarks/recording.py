@@ -46,12 +46,12 @@ def run(console: Console, quick: bool) -> None:
     console.print(table)
 
 
-def _recorder(session: Session, endpoint: str, path: Path) -> Child:
-    """A recorder that is already subscribed."""
-    child = Child("record", tailor("record", "--quiet", "-o", str(path), "--connect", endpoint))
-    probe, deadline = session.player("bench/probe", ""), time.monotonic() + START_S
-    while not probe.matched():
-        if time.monotonic() > deadline:
+def _recorder(endpoint: str, path: Path) -> Child:
+    """A recorder that is ready."""
+    command = tailor("record", "--quiet", "-o", str(path), "--connect", endpoint)
+    child, deadline = Child("record", command, notify_folder=path.parent), time.monotonic() + START_S
+    while not child.report().ready:
+        if child.exit_code() is not None or time.monotonic() > deadline:
             raise NoMeasurement(f"no recorder after {START_S:.0f} s")
         time.sleep(0.02)
     return child
@@ -59,7 +59,7 @@ def _recorder(session: Session, endpoint: str, path: Path) -> Child:
 
 def _cost(table: Table, session: Session, endpoint: str, place: Path, seconds: float) -> None:
     path = place / "cost.mcap"
-    with stopped_in_order([_recorder(session, endpoint, path)]) as (child,), traffic(session, RATE_HZ):
+    with stopped_in_order([_recorder(endpoint, path)]) as (child,), traffic(session, RATE_HZ):
         time.sleep(1.0)
         cpu_s, began = _cpu_s(child.pid), time.monotonic()
         time.sleep(seconds)
@@ -88,11 +88,14 @@ def _loss(table: Table, session: Session, endpoint: str, place: Path, tries: int
     with traffic(session, RATE_HZ):
         for number in range(tries):
             path = place / f"loss{number}.mcap"
-            child = _recorder(session, endpoint, path)
+            child = _recorder(endpoint, path)
             time.sleep(2.0 + phases.uniform(0.0, 1.0))
             killed_ns = time.time_ns()
             child.kill()
-            losses.append((killed_ns - max(message.log_ns for message in open_recording(path).messages())) / 1e9)
+            kept = [message.log_ns for message in open_recording(path).messages()]
+            if not kept:
+                raise NoMeasurement(f"the recorder that was killed in try {number + 1} has written no message")
+            losses.append((killed_ns - max(kept)) / 1e9)
     table.add_row(
         f"lost by kill -9 of the recorder, {tries} tries", f"max {max(losses):.2f} s, mean {np.mean(losses):.2f} s"
     )
@@ -101,7 +104,10 @@ def _loss(table: Table, session: Session, endpoint: str, place: Path, tries: int
 def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int) -> None:
     command = tailor("replay", str(path), "--rate", str(rate), "--duration", str(10 * rate), "--wait", "0", "--json")
     output = subprocess.run([*command, "--connect", endpoint], capture_output=True, text=True, check=True).stdout
-    late = json.loads(output)["lateness"]
+    replayed = json.loads(output)
+    if not replayed["messages"]:
+        raise NoMeasurement(f"the replay at rate {rate} has published no message")
+    late = replayed["lateness"]
     table.add_row(
         f"replay at rate {rate}, {RATE_HZ * rate:.0f} msg/s: late",
         f"p50 {late['p50_ms']:.2f} ms, p99 {late['p99_ms']:.2f} ms, max {late['max_ms']:.2f} ms",
@@ -117,6 +123,8 @@ def _soccer(table: Table, path: Path) -> None:
         messages = list(open_recording(path).messages())
     except UsageError as error:
         raise NoMeasurement(f"no soccer run was recorded: {error}") from error
+    if not messages:
+        raise NoMeasurement("the recording of the soccer run is empty")
     seconds = (messages[-1].log_ns - messages[0].log_ns) / 1e9
     table.add_row("size of a soccer run", f"{path.stat().st_size / 1e6 / seconds * 60:.2f} MB a minute")
     for name, options in (("verify", ()), ("verify without proofs", ("--without-proofs",))):
@@ -124,6 +132,8 @@ def _soccer(table: Table, path: Path) -> None:
         command = tailor("verify", str(path), "--json", *options)
         completed = subprocess.run(command, capture_output=True, text=True, check=False)
         with_start_s, verdict = time.monotonic() - began, json.loads(completed.stdout)[0]
+        if not verdict.get("ticks"):
+            raise NoMeasurement(f"{name} has compared no tick: {completed.stdout.strip()[:200]}")
         run_s = verdict["ticks"] / 10
         speeds = f"{run_s / verdict['took_s']:.0f} times real time, {run_s / with_start_s:.0f} with start-up"
         table.add_row(f"{name}, a run of {run_s:.0f} s", f"{speeds} (exit {completed.returncode})")

@@ -25,6 +25,8 @@ from tailor.tools.launch.hosting import free_endpoint
 BURNERS = 4
 BURN = "while True: pass"
 START_S = 30.0
+TICK_S = 0.1
+MIN_SHARE = 0.5  # of the ticks of the whole time; with fewer the system was down, or hardly ran
 
 
 def run(console: Console, quick: bool) -> None:
@@ -41,7 +43,7 @@ def run(console: Console, quick: bool) -> None:
         with tempfile.TemporaryDirectory() as folder:
             recording = Path(folder) / "ticks.mcap"
             _drive(recording, seconds, burners)
-            table.add_row(case, *_row(recording))
+            table.add_row(case, *_row(recording, round(MIN_SHARE * seconds / TICK_S)))
     console.print(table)
 
 
@@ -53,6 +55,7 @@ def _drive(recording: Path, seconds: float, burners: int) -> None:
         wait_for_router(endpoint)
         children += [Child("burner", [sys.executable, "-c", BURN]) for _ in range(burners)]
         with open_client(endpoint, role="people") as session:
+            _wait_for_status(session)
             play(session, time.monotonic() + seconds)
 
 
@@ -66,6 +69,15 @@ def wait_for_router(endpoint: str) -> None:
                 return
         time.sleep(0.05)
     raise NoMeasurement(f"no router at {endpoint} after {START_S} s")
+
+
+def _wait_for_status(session: Session) -> None:
+    """Wait until an executive ticks; raises NoMeasurement after START_S."""
+    inbox, deadline = session.inbox(("status",), ""), time.monotonic() + START_S
+    while not inbox.drain():
+        if time.monotonic() > deadline:
+            raise NoMeasurement(f"no executive after {START_S} s")
+        time.sleep(0.05)
 
 
 def play(session: Session, until_s: float) -> None:
@@ -85,8 +97,8 @@ def play(session: Session, until_s: float) -> None:
         time.sleep(0.05)
 
 
-def _row(recording: Path) -> list[str]:
-    """Cells of one case: ticks, missed ticks, work, lateness, delay from percept to command."""
+def _row(recording: Path, min_ticks: int = 1) -> list[str]:
+    """Cells of one case: ticks, missed ticks, work, lateness, delay from percept to command; fewer ticks are none."""
     reports, delays = [], []
     sent: dict[int, int] = {}
     percepts: dict[tuple[str, int], int] = {}
@@ -105,8 +117,9 @@ def _row(recording: Path) -> list[str]:
             ]
             if message.stamp_ns in sent and newest:
                 delays.append((sent[message.stamp_ns] - max(newest)) / 1e6)
-    if not reports or not delays:
-        raise NoMeasurement(f"the recording has {len(reports)} tick reports and {len(delays)} commands after a percept")
+    if len(reports) < min_ticks or not delays:
+        found = f"{len(reports)} tick reports and {len(delays)} commands after a percept"
+        raise NoMeasurement(f"the recording has {found}, expected at least {min_ticks} ticks")
     work = np.array([report.work_ns for report in reports]) / 1e6
     late = np.array([report.lateness_ns for report in reports]) / 1e6
     missed = sum(report.skipped for report in reports)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 import sys
 import types
 
 import pytest
 from rich.console import Console
+from rich.table import Table
 
 from tailor.runtime.recordings.recording import open_recording
 from tailor.tools.benchmarks import planning, recording, refine, ticks
@@ -32,6 +35,7 @@ def stand_ins(monkeypatch):
         monkeypatch.setitem(sys.modules, f"tailor.tools.benchmarks.{name}", module)
 
 
+@pytest.mark.promise("P55")
 def test_benchmark_that_measured_nothing_fails_after_the_others_have_run(stand_ins, capsys):
     assert main(["bench"]) == 1
     printed = capsys.readouterr()
@@ -55,6 +59,7 @@ def test_planning_without_problems_has_measured_nothing(monkeypatch, tmp_path):
         planning.run(Console(), True)
 
 
+@pytest.mark.promise("P55")
 def test_ticks_of_a_recording_without_ticks_have_measured_nothing(monkeypatch):
     class Empty:
         def decoded(self):
@@ -75,6 +80,45 @@ def test_ticks_of_a_run_without_commands_have_measured_nothing(monkeypatch):
     monkeypatch.setattr(ticks, "open_recording", lambda path: Silent())
     with pytest.raises(NoMeasurement, match="0 commands"):
         ticks._row("nowhere.mcap")
+
+
+@pytest.mark.promise("P55")
+def test_a_system_that_hardly_ran_has_measured_nothing():
+    whole = len([m for _, m in open_recording(GOLDEN).decoded() if type(m).__name__ == "TickReport"])
+    assert ticks._row(GOLDEN, whole)[0] == str(whole)
+    with pytest.raises(NoMeasurement, match=f"{whole} tick reports .* expected at least {whole + 1} ticks"):
+        ticks._row(GOLDEN, whole + 1)
+
+
+class Ended:
+    """A process that has ended; what it printed."""
+
+    def __init__(self, stdout):
+        self.stdout, self.returncode = stdout, 0
+
+
+@pytest.mark.promise("P55")
+def test_a_replay_of_nothing_has_measured_nothing(monkeypatch):
+    late = {"p50_ms": 0.0, "p99_ms": 0.0, "max_ms": 0.0}
+    printed = json.dumps({"messages": 0, "bytes": 0, "lateness": late})
+    monkeypatch.setattr(recording.subprocess, "run", lambda *_, **__: Ended(printed))
+    with pytest.raises(NoMeasurement, match="the replay at rate 4 has published no message"):
+        recording._replay(None, None, "tcp/127.0.0.1:1", "nowhere.mcap", 4)
+
+
+@pytest.mark.promise("P55")
+def test_a_verification_of_no_tick_has_measured_nothing(monkeypatch, tmp_path):
+    class Recorded:
+        def __init__(self, *arguments):
+            shutil.copy(GOLDEN, tmp_path / "run.mcap")
+
+        def wait(self, timeout_s):
+            return 0
+
+    monkeypatch.setattr(recording, "Child", Recorded)
+    monkeypatch.setattr(recording.subprocess, "run", lambda *_, **__: Ended('[{"ticks": 0, "took_s": 0.1}]'))
+    with pytest.raises(NoMeasurement, match="verify has compared no tick"):
+        recording._soccer(Table(), tmp_path / "run.mcap")
 
 
 def test_run_that_was_not_recorded_is_no_measurement(monkeypatch, tmp_path):
