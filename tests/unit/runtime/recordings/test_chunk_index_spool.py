@@ -70,6 +70,7 @@ def test_a_long_recording_opens_in_other_readers(tmp_path, small_blocks):
         assert sum(1 for _ in bags.messages()) == 200 * len(KEYS)
 
 
+@pytest.mark.promise("P54")
 def test_memory_does_not_grow_with_the_recording(tmp_path):
     writer = McapWriter(tmp_path / "r.mcap", {})
     for number in range(1, 501):
