@@ -10,8 +10,8 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import wall_ns
 from tailor.tools.status.system_model import SystemModel
 
-MAX_OF_KEY = 100  # read in one poll; the fastest topic has 13 in 0.25 s
-MAX_READ = 1500  # of all keys; takes less than 0.1 s
+MAX_OF_KEY = 50  # read in one poll; the fastest topic has 13 in 0.25 s
+MAX_READ = 500  # of all keys; takes less than 50 ms
 
 
 class Watcher:

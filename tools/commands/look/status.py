@@ -11,12 +11,12 @@ import json
 import os
 import sys
 import time
+from contextlib import ExitStack
 from dataclasses import asdict
 
 from rich.console import Console, Group
 from rich.live import Live
 
-from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
@@ -59,14 +59,17 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--seconds is {seconds:g}, expected {MIN_S:g} to {MAX_S:g}")
     endpoint = bus_settings(arguments).endpoint
     stop = stop_on_signals()
-    with open_bus(arguments, "people" if live else "observer") as session:
-        os.nice(NICENESS)
+    with open_bus(arguments, "observer") as session, ExitStack() as stack:
+        # The stop key has a session of its own: a flood of all that is observed must not delay it.
+        key = StopKey(StopButton(stack.enter_context(open_bus(arguments, "people")))) if live else None
+        if key is None:  # with a stop key it must not wait for the CPU
+            os.nice(NICENESS)
         codec.prime()
         queue, subscription = session.subscribe_all("**")
         began_ns = time.monotonic_ns()
         model = SystemModel(began_ns)
         watcher = Watcher(queue, model, began_ns)
-        picture = _watch(session, model, watcher, endpoint, stop) if live else _observe(model, watcher, seconds, stop)
+        picture = _watch(key, model, watcher, endpoint, stop) if key else _observe(model, watcher, seconds, stop)
         subscription.undeclare()
     if arguments.json:
         print(json.dumps(asdict(picture), allow_nan=False))
@@ -83,9 +86,8 @@ def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -
     return model.picture(time.monotonic_ns())
 
 
-def _watch(session: Session, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
+def _watch(key: StopKey, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
     """The live view, until Ctrl-C or q."""
-    key = StopKey(StopButton(session))
     console = Console(highlight=False)
     drawn_ns = 0
     with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
