@@ -89,8 +89,8 @@ class MotionJudge:
         elif not self.permitted and self.zero_ns is None:
             self._stopped(now_ns)
 
-    def truth(self, now_ns: int, speeds: tuple[float, ...]) -> None:
-        """The body's speeds, from the simulator."""
+    def truth(self, now_ns: int, speeds: tuple[float, ...], at_rest: float = AT_REST) -> None:
+        """The body's speeds, from the simulator; below `at_rest` it does not move by itself."""
         self._recent.append((now_ns, speeds))
         if is_moving(speeds):
             self.moved_ns = now_ns
@@ -98,7 +98,7 @@ class MotionJudge:
             self._violated(now_ns, Invariant.OUTPUT_LIMITS, f"the body moves at {_text(speeds)}")
         if self.permitted:
             return
-        if not is_moving(speeds, AT_REST):
+        if not is_moving(speeds, at_rest):
             self.rest_ns = self.rest_ns or now_ns
         elif now_ns > self._rest_due_ns + UNASKED_NS:
             after_s = (now_ns - self.revoked_ns) / 1e9

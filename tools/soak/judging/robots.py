@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from tailor.schemas.messages import JointState, Message
@@ -12,6 +13,8 @@ from tailor.simnodes.powercube.physical_parameters import WRITING, PhysicalParam
 
 AT_REST = 0.02  # m/s and rad/s; a body at rest reads below 0.001
 MOVING = 0.1  # m/s and rad/s
+TOUCHED = 0.3  # m/s and rad/s; a ball that rolls against a robot at rest jolts it by half of this
+TOUCH_M = 0.4  # from the robot's centre to the ball's
 BODY_TOLERANCE = 1.1  # of the limit: wheels and joints overshoot their set-points
 
 
@@ -43,6 +46,13 @@ def speeds_of(truth: Message) -> tuple[float, ...] | None:
     if isinstance(truth, JointState):
         return truth.velocities[: len(WRITING)]
     return None
+
+
+def rest_threshold(truth: Message) -> float:
+    """Speed below which a body counts as at rest: higher while the ball touches it."""
+    if isinstance(truth, SoccerGroundTruth) and math.dist((truth.x, truth.y), (truth.ball_x, truth.ball_y)) < TOUCH_M:
+        return TOUCHED
+    return AT_REST
 
 
 def is_moving(speeds: tuple[float, ...], threshold: float = MOVING) -> bool:

@@ -8,7 +8,7 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas.messages import DriverState, ExecStatus, JointCommand, Sample, TickReport, VelocityCommand
 from tailor.simnodes.driver import command_values
 from tailor.tools.soak.judging.motion import MotionJudge
-from tailor.tools.soak.judging.robots import Robot, is_moving, speeds_of
+from tailor.tools.soak.judging.robots import Robot, is_moving, rest_threshold, speeds_of
 from tailor.tools.soak.systems.strangers import FORGED_NS, STRANGER
 
 AXES = {"agilo": ("v", "omega"), "powercube": ("pan", "lift")}
@@ -58,7 +58,7 @@ class View:
         if speeds is not None:
             self._simulator = sample.sender
             self._totals.motion_s += TRUTH_S * is_moving(speeds)
-            self._judge.truth(now_ns, speeds)
+            self._judge.truth(now_ns, speeds, rest_threshold(message))
         elif isinstance(message, DriverState):
             if sample.sender == self._simulator:
                 self.driver, self.driver_ns = message, now_ns

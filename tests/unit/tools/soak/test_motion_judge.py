@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.soak.judging.motion import MotionJudge
-from tailor.tools.soak.judging.robots import ROBOTS
+from tailor.tools.soak.judging.robots import ROBOTS, rest_threshold, speeds_of
 from tailor.tools.soak.judging.violations import Invariant
 
 AGILO = ROBOTS[0]
@@ -87,6 +88,17 @@ def test_motion_after_the_stop_is_unasked(judged, motion):
     judged.truth(4.4)
     judged.truth(6.0, **motion)
     assert Invariant.UNASKED_MOTION in judged.invariants()
+
+
+@pytest.mark.parametrize(("ball_m", "threshold"), [(0.3, 0.3), (0.41, 0.02)])
+def test_a_ball_that_touches_the_robot_may_jolt_it(judged, ball_m, threshold):
+    stop(judged)
+    truth = SoccerGroundTruth(0, 0.0, 0.0, 0.0, -0.028, 0.145, ball_m, 0.0, -0.1, 0.0)
+    assert rest_threshold(truth) == threshold
+    judged.judge.truth(6 * S, speeds_of(truth), rest_threshold(truth))
+    assert judged.invariants() == ([] if threshold > 0.145 else [Invariant.UNASKED_MOTION])
+    judged.judge.truth(7 * S, (0.31, 0.0), rest_threshold(truth))
+    assert judged.invariants() == [Invariant.UNASKED_MOTION]
 
 
 def test_arming_after_the_stop_is_unasked(judged):
