@@ -9,6 +9,7 @@ import ast
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,6 +75,7 @@ def problems(mutants: Iterable[Mutant], root: Path = ROOT) -> list[str]:
     return [f"{mutant.name}: {found}" for mutant in mutants if (found := problem(mutant, root))]
 
 
+@lru_cache(maxsize=8)  # mutants of one file follow each other
 def _tree(text: str) -> str | None:
     try:
         return ast.dump(ast.parse(text))
@@ -86,5 +88,11 @@ def _exists(test: str, root: Path) -> bool:
     path, *names = test.split("::")
     if not (root / path).is_file():
         return False
-    defined = {n.name for n in ast.walk(ast.parse((root / path).read_text())) if hasattr(n, "name")}
-    return {name.partition("[")[0] for name in names} <= defined
+    return {name.partition("[")[0] for name in names} <= _defined(root / path)
+
+
+@cache
+def _defined(path: Path) -> set[str]:
+    """Names of the classes and functions in a file."""
+    kinds = (ast.FunctionDef, ast.ClassDef)
+    return {node.name for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, kinds)}
