@@ -1,5 +1,7 @@
 """The e-stop of the command line, the page and the dead man's switch, with a bus that only counts."""
 
+import os
+import sys
 import time
 
 import pytest
@@ -8,7 +10,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import DriverState, EStop
-from tailor.tools.cli import stop_button
+from tailor.tools.cli import dead_mans_switch, stop_button
 from tailor.tools.cli.dead_mans_switch import HELD, DeadMansSwitch, driver_lines
 from tailor.tools.cli.stop_button import STOP, StopButton, all_stopped, summary
 
@@ -127,3 +129,17 @@ def test_a_line_tells_whether_the_driver_hears_the_switch(driver, expected):
 def test_a_driver_that_falls_silent_is_reported():
     lines = driver_lines({"agilo": state(detail="held by ab12cd34")}, "ab12cd34", {"agilo"})
     assert lines == {"agilo": "agilo is SILENT: its state is unknown"}
+
+
+@pytest.mark.parametrize("way", ["nothing to read", "a line", "its end", "closed", "none"])
+def test_a_switch_is_held_only_while_standard_input_is_open_and_silent(monkeypatch, way):
+    read, write = os.pipe()
+    with open(read) as terminal, open(write, "w") as keys:
+        if way == "a line":
+            keys.write("x\n")
+        if way in ("a line", "its end"):
+            keys.close()
+        if way == "closed":
+            terminal.close()
+        monkeypatch.setattr(sys, "stdin", None if way == "none" else terminal)
+        assert dead_mans_switch._readable() is (way != "nothing to read")

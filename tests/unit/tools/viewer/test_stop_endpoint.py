@@ -138,6 +138,13 @@ def test_without_a_button_every_post_is_refused():
         assert post(port)[0] == 403
 
 
+def test_the_page_listens_on_the_loopback_interface_alone(live):
+    port, _ = live
+    with open("/proc/net/tcp") as sockets:
+        addresses = [line.split()[1] for line in sockets if line.split()[3] == "0A"]  # listening
+    assert [address for address in addresses if address.endswith(f":{port:04X}")] == [f"0100007F:{port:04X}"]
+
+
 def test_no_other_page_may_frame_it(live):
     port, _ = live
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)

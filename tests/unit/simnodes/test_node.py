@@ -1,0 +1,144 @@
+"""The node period by period, with a bus that is a list: what reaches the body, and when it is zero."""
+
+import itertools
+from collections import Counter
+
+import pytest
+
+from tailor.schemas.messages import ArmRequest, EStop, Sample, VelocityCommand
+from tailor.simnodes.driver_spec import DriverSpec
+from tailor.simnodes.guard import Limit, Mode
+from tailor.simnodes.node import MAX_AT_ONCE, Node
+from tailor.simnodes.world import World
+from tests.support.stand_ins.body import FakeBody
+from tests.unit.simnodes.test_services import Request, Server
+
+MS = 1_000_000
+EXECUTIVE, PERSON = "a" * 32, "b" * 32
+SPEC = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)))
+
+
+class Body(FakeBody):
+    """Notes each set-point."""
+
+    def __init__(self):
+        super().__init__()
+        self.taken = []
+
+    def command(self, values):
+        self.taken.append(values[0])
+        super().command(values)
+
+
+class Bus:
+    """Session, inbox and publishers in one."""
+
+    def __init__(self):
+        self.waiting, self.rejected, self.states = [], Counter(), []
+        self.servers = {}
+
+    def inbox(self, names, robot):
+        return self
+
+    def drain(self, now_ns):
+        waiting, self.waiting = self.waiting, []
+        return tuple(waiting)
+
+    def service_server(self, key):
+        return self.servers.setdefault(key.rpartition("/")[2], Server())
+
+    def publisher(self, name, robot):
+        return self if name == "driver" else Bus()
+
+    def publish(self, message):
+        self.states.append(message)
+
+
+class Clock:
+    def __init__(self):
+        self.now = 0
+
+    def now_ns(self):
+        return self.now
+
+    def sleep_until(self, deadline_ns):
+        self.now = max(self.now, deadline_ns)
+
+
+class Robot:
+    """A node that runs as many periods as asked for."""
+
+    def __init__(self):
+        self.body, self.bus, self.clock = Body(), Bus(), Clock()
+        self.node = Node(World(self.body, {}, 3), SPEC, self.bus, self.clock, epoch=7)
+        self.numbers = itertools.count(1)
+
+    def send(self, message, topic, sender):
+        self.bus.waiting.append(Sample(f"agilo/{topic}", message, self.clock.now, next(self.numbers), sender))
+
+    def periods(self, count):
+        """Set-points that the body takes in the next periods."""
+        before = len(self.body.taken)
+        for _ in range(count):  # `run` would disarm the robot at its end
+            self.node._run_period(self.node._loop.wait_for_next_period())
+        return self.body.taken[before:]
+
+    def moving(self):
+        self.send(ArmRequest(True, False, EXECUTIVE, 0), "arm_request", PERSON)
+        self.send(VelocityCommand(0, 0.5, 0.0), "cmd_vel", EXECUTIVE)
+        assert self.periods(1) == [0.5]
+        return self
+
+
+@pytest.fixture
+def robot():
+    return Robot().moving()
+
+
+def test_a_command_moves_the_body_in_the_period_of_its_arrival(robot):
+    robot.send(VelocityCommand(0, 0.25, 0.0), "cmd_vel", EXECUTIVE)
+    assert robot.periods(2) == [0.25, 0.25]
+
+
+def test_the_body_stands_in_the_first_period_after_the_timeout(robot):
+    assert robot.periods(32) == [0.5] * 30 + [0.0] * 2
+
+
+def test_an_estop_stops_the_body_in_the_period_of_its_arrival(robot):
+    robot.send(EStop(True), "estop", PERSON)
+    assert robot.periods(1) == [0.0]
+    assert robot.bus.states[-1].mode == "estopped"
+
+
+def test_after_a_stall_the_body_catches_up_a_little_and_stands_meanwhile(robot):
+    robot.clock.now += 5_000 * MS
+    assert robot.periods(1) == [0.0] * MAX_AT_ONCE
+
+
+def test_the_robot_is_disarmed_at_the_end_and_reports_it(robot):
+    robot.node.run(lambda: True)
+    assert robot.node.driver.guard.output(robot.clock.now) == (0.0, 0.0)
+    state = robot.bus.states[-1]
+    assert (state.mode, state.reason) == ("disarmed", "the driver ends")
+
+
+def test_a_reset_of_the_world_disarms_the_robot():
+    robot = Robot()
+    robot.bus.servers["reset"].waiting.append(Request(""))
+    robot.node.driver.guard.arm(0, EXECUTIVE)
+    robot.node.run(iter([False, True]).__next__)
+    assert robot.node.driver.guard.mode is Mode.DISARMED
+
+
+def test_a_paused_world_moves_in_requested_steps_alone_and_the_guard_waits_for_it(robot):
+    robot.bus.servers["pause"].waiting.append(Request("true"))
+    assert robot.periods(100) == []
+    robot.bus.servers["step"].waiting.append(Request("31"))
+    assert robot.periods(1) == [0.5] * 30 + [0.0], "its guard counts the time of the world"
+
+
+def test_a_dead_mans_switch_is_held_in_real_time_while_the_world_is_paused(robot):
+    robot.send(EStop(False), "estop", PERSON)
+    robot.bus.servers["pause"].waiting.append(Request("true"))
+    robot.periods(52)
+    assert robot.node.driver.guard.mode is Mode.ESTOPPED

@@ -1,0 +1,65 @@
+"""Who may use a bus that is hosted: secured unless another choice is named, and an open one is reported."""
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.launch import hosting
+from tailor.tools.launch.hosting import free_endpoint, gateways, hosted_bus, private_bus
+
+S = 1_000_000_000
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """(endpoint, secured) of each local router that would be opened."""
+    opened = []
+
+    class Router:
+        def __init__(self, endpoint, secured):
+            opened.append((endpoint, secured))
+
+        def __enter__(self):
+            return "session", "folder"
+
+        def __exit__(self, *error):
+            pass
+
+    monkeypatch.setattr(hosting, "open_local_router", Router)
+    return opened
+
+
+@pytest.mark.parametrize(("security", "secured", "reports"), [("run", True, 0), ("local", True, 0), ("open", False, 1)])
+def test_a_bus_is_secured_unless_it_is_named_open_and_then_that_is_reported(opened, security, secured, reports):
+    settings, lines = BusSettings(free_endpoint(), security=security), []
+    with hosted_bus(settings, lines.append) as session:
+        assert session == "session"
+    assert opened == [(settings.endpoint, secured)]
+    assert lines == [f"the bus is open: whoever reaches {settings.endpoint} drives the robot"] * reports
+
+
+def test_the_default_is_secured_on_loopback_and_closed_to_other_machines():
+    settings = BusSettings()
+    assert (settings.security, settings.endpoint, settings.remote) == ("run", "tcp/127.0.0.1:7447", "")
+
+
+def test_a_local_bus_opens_no_port():
+    assert gateways(BusSettings(security="local")) == []
+    assert private_bus().security == "local"
+
+
+def test_every_port_has_a_process_of_its_own_that_is_missed_when_it_is_silent():
+    specs = gateways(BusSettings(remote="tls/0.0.0.0:7448", keys="k"))
+    assert [(spec.name, spec.silence_ns, spec.restarts) for spec in specs] == [
+        ("gateway", 5 * S, True),
+        ("remote gateway", 5 * S, True),
+    ]
+    assert specs[0].argv[-3:] == ["gateway", "--connect", "tcp/127.0.0.1:7447"]
+    assert specs[1].argv[-4:] == ["--listen", "tls/0.0.0.0:7448", "--keys", "k"]
+
+
+def test_other_machines_are_let_in_with_tls_alone(opened):
+    settings = BusSettings(free_endpoint(), remote=free_endpoint())
+    with pytest.raises(UsageError, match="expected tls/HOST:PORT for other machines"), hosted_bus(settings, print):
+        pass
+    assert opened == []

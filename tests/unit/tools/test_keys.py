@@ -1,0 +1,93 @@
+"""Keys of a deployment: who signs, what they are valid for, and who may read them. tests/faults tries them live."""
+
+import json
+import stat
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from cryptography import x509
+from cryptography.hazmat.primitives import serialization
+from cryptography.x509.oid import NameOID
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.keys.authority import AUTHORITY_KEY, Authority
+from tailor.tools.keys.registry import check_name, registered_roles, write_roles
+from tailor.tools.main import main
+
+NOW = datetime(2026, 11, 22, tzinfo=UTC)
+
+
+@pytest.fixture
+def keys(tmp_path):
+    folder = tmp_path / "keys"
+    Authority.of(folder, NOW, 30).issue(folder / "driving", "driving", ["10.0.0.7", "robot.local"], NOW, 10)
+    return folder
+
+
+def certificate(path):
+    return x509.load_pem_x509_certificate(path.read_bytes())
+
+
+def mode(path):
+    return stat.S_IMODE(path.lstat().st_mode)
+
+
+def test_keys_and_their_folders_are_readable_by_their_user_alone(keys):
+    assert (mode(keys), mode(keys / "driving")) == (0o700, 0o700)
+    assert (mode(keys / AUTHORITY_KEY), mode(keys / "driving" / "key.pem")) == (0o600, 0o600)
+
+
+def test_a_certificate_names_its_process_and_is_signed_by_the_authority(keys):
+    issued, authority = certificate(keys / "driving" / "certificate.pem"), certificate(keys / "authority.pem")
+    issued.verify_directly_issued_by(authority)
+    assert [each.value for each in issued.subject.get_attributes_for_oid(NameOID.COMMON_NAME)] == ["driving"]
+    assert (keys / "driving" / "authority.pem").read_bytes() == (keys / "authority.pem").read_bytes()
+    key = serialization.load_pem_private_key((keys / "driving" / "key.pem").read_bytes(), None)
+    assert key.public_key() == issued.public_key()
+
+
+def test_only_the_authority_signs_others(keys):
+    def signs(path):
+        return certificate(path).extensions.get_extension_for_class(x509.BasicConstraints).value
+
+    assert signs(keys / "authority.pem") == x509.BasicConstraints(True, 0)
+    assert signs(keys / "driving" / "certificate.pem") == x509.BasicConstraints(False, None)
+
+
+def test_a_key_is_valid_for_its_days_alone(keys):
+    for path, days in ((keys / "driving" / "certificate.pem", 10), (keys / "authority.pem", 30)):
+        issued = certificate(path)
+        assert issued.not_valid_before_utc == NOW - timedelta(days=1)
+        assert issued.not_valid_after_utc == NOW + timedelta(days=days)
+
+
+def test_the_authority_is_made_once(keys):
+    before = (keys / AUTHORITY_KEY).read_bytes()
+    Authority.of(keys, NOW, 30).issue(keys / "viewing", "viewing", [], NOW, 10)
+    assert (keys / AUTHORITY_KEY).read_bytes() == before
+    certificate(keys / "viewing" / "certificate.pem").verify_directly_issued_by(certificate(keys / "authority.pem"))
+
+
+def test_a_revoked_name_has_no_role(tmp_path, capsys):
+    write_roles(str(tmp_path), {"driving": "executive", "viewing": "observer"})
+    assert main(["keys", "revoke", "driving", "--keys", str(tmp_path)]) == 0
+    assert registered_roles(str(tmp_path)) == {"viewing": "observer"}
+
+
+@pytest.mark.parametrize("table", [{"x": "root"}, {"x": ""}, ["people"], "people"])
+def test_an_unknown_role_is_refused(tmp_path, table):
+    (tmp_path / "roles.json").write_text(json.dumps(table))
+    with pytest.raises(UsageError, match="expected names with one of the roles"):
+        registered_roles(str(tmp_path))
+
+
+@pytest.mark.parametrize("name", ["", "..", "a/b", "a/../../b", ".hidden", "a b", "x" * 64, "a\n"])
+def test_a_name_is_no_path(name):
+    with pytest.raises(UsageError, match="expected letters, digits"):
+        check_name(name)
+
+
+def test_a_key_is_not_written_over_another_one(keys, capsys):
+    before = (keys / "driving" / "key.pem").read_bytes()
+    assert main(["keys", "new", "driving", "--role", "executive", "--keys", str(keys)]) == 2
+    assert (keys / "driving" / "key.pem").read_bytes() == before
