@@ -24,6 +24,7 @@ from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.stalls import StallMeter, repeat_on_stall
 
 LIMIT_S = 0.3 + 0.1  # the guard's time-out and one period
+END_S = 5.0
 
 
 def command(*arguments, timeout=2 * PATIENCE_S):
@@ -131,7 +132,8 @@ def test_ticks_are_counted_and_every_input_has_a_number(recording):
 
 @pytest.mark.promise("P11")
 @pytest.mark.xdist_group("live")
-def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_path):
+@pytest.mark.parametrize("sent", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
+def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_path, sent, measured):
     path, endpoint = tmp_path / "run.mcap", free_endpoint()
     flags = ("--seed", "1", "--record", str(path), "--connect", endpoint)
     up = subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT)
@@ -141,8 +143,10 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
         wait_until(lambda: any(s.message.v > 0.2 for s in truth.drain()), "robot moves")
     processes = children_of(up.pid)
     assert len(processes) == 5  # gateway, recorder, simulator, executive, and the one that kills orphans
-    up.send_signal(signal.SIGINT)
+    up.send_signal(sent)
+    sent_s = time.monotonic()
     assert up.wait(PATIENCE_S) == 0
+    measured.add(time.monotonic() - sent_s, END_S, what="to the end")
     assert not [pid for pid in processes if os.path.exists(f"/proc/{pid}")]
     from tailor.runtime.recordings.recording import open_recording
 
