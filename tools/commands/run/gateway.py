@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import resource
 import time
 
 from tailor.runtime.bus.credentials import identity_in
@@ -41,6 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     roles = registered_roles(arguments.keys) if arguments.keys else None
     stop = stop_on_signals()
     os.nice(NICENESS)
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a port scan must not use them up
     with open_gateway(listen, folder, identity, roles):
         notifier.ready()
         while not stop.requested:
