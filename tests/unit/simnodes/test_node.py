@@ -3,8 +3,6 @@
 import itertools
 from collections import Counter
 
-import pytest
-
 from tailor.schemas.messages import ArmRequest, EStop, Sample, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit, Mode
@@ -90,32 +88,36 @@ class Robot:
         return self
 
 
-@pytest.fixture
-def robot():
+def moving_robot():
     return Robot().moving()
 
 
-def test_a_command_moves_the_body_in_the_period_of_its_arrival(robot):
+def test_a_command_moves_the_body_in_the_period_of_its_arrival():
+    robot = moving_robot()
     robot.send(VelocityCommand(0, 0.25, 0.0), "cmd_vel", EXECUTIVE)
     assert robot.periods(2) == [0.25, 0.25]
 
 
-def test_the_body_stands_in_the_first_period_after_the_timeout(robot):
+def test_the_body_stands_in_the_first_period_after_the_timeout():
+    robot = moving_robot()
     assert robot.periods(32) == [0.5] * 30 + [0.0] * 2
 
 
-def test_an_estop_stops_the_body_in_the_period_of_its_arrival(robot):
+def test_an_estop_stops_the_body_in_the_period_of_its_arrival():
+    robot = moving_robot()
     robot.send(EStop(True), "estop", PERSON)
     assert robot.periods(1) == [0.0]
     assert robot.bus.states[-1].mode == "estopped"
 
 
-def test_after_a_stall_the_body_catches_up_a_little_and_stands_meanwhile(robot):
+def test_after_a_stall_the_body_catches_up_a_little_and_stands_meanwhile():
+    robot = moving_robot()
     robot.clock.now += 5_000 * MS
     assert robot.periods(1) == [0.0] * MAX_AT_ONCE
 
 
-def test_the_robot_is_disarmed_at_the_end_and_reports_it(robot):
+def test_the_robot_is_disarmed_at_the_end_and_reports_it():
+    robot = moving_robot()
     robot.node.run(lambda: True)
     assert robot.node.driver.guard.output(robot.clock.now) == (0.0, 0.0)
     state = robot.bus.states[-1]
@@ -126,18 +128,20 @@ def test_a_reset_of_the_world_disarms_the_robot():
     robot = Robot()
     robot.bus.servers["reset"].waiting.append(Request(""))
     robot.node.driver.guard.arm(0, EXECUTIVE)
-    robot.node.run(iter([False, True]).__next__)
+    robot.periods(1)
     assert robot.node.driver.guard.mode is Mode.DISARMED
 
 
-def test_a_paused_world_moves_in_requested_steps_alone_and_the_guard_waits_for_it(robot):
+def test_a_paused_world_moves_in_requested_steps_alone_and_the_guard_waits_for_it():
+    robot = moving_robot()
     robot.bus.servers["pause"].waiting.append(Request("true"))
     assert robot.periods(100) == []
     robot.bus.servers["step"].waiting.append(Request("31"))
     assert robot.periods(1) == [0.5] * 30 + [0.0], "its guard counts the time of the world"
 
 
-def test_a_dead_mans_switch_is_held_in_real_time_while_the_world_is_paused(robot):
+def test_a_dead_mans_switch_is_held_in_real_time_while_the_world_is_paused():
+    robot = moving_robot()
     robot.send(EStop(False), "estop", PERSON)
     robot.bus.servers["pause"].waiting.append(Request("true"))
     robot.periods(52)
