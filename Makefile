@@ -10,7 +10,7 @@ setup: .venv/.installed
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
-	@$(BIN)/python -m compileall -q executive models runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
+	@$(BIN)/python -m compileall -q executive models robots runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
 	@touch $@
 
 demo: setup

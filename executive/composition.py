@@ -14,6 +14,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.gate import check_gate
 from tailor.models.runtime import GATE, load_gate, load_robot
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
 
 PLACE_UNIT = "m"
@@ -24,7 +25,7 @@ class ExecutiveConfig:
     """Configuration of the executive: a domain, one of its scenarios, settings, models.
 
     Attributes:
-      domain: Name, see tailor.executive.domains.DOMAINS.
+      domain: Name, see tailor.schemas.installed.domain_names.
       scenario: Name of one of the domain's scenarios.
       settings: Settings of the executive; their seed also draws the scenario.
       zoo: Folder of action models; empty: the shipped ones.
@@ -60,7 +61,7 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
       UsageError: A missing or altered model, one whose training range is smaller than its action's, or a refinement
         gate that was learned with other models.
     """
-    folder = Path(zoo) if zoo else None
+    folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
     gate = load_gate(robot, folder, {**durations, **successes}) if gated else None
     return Models(durations, successes, None if gate is None else check_gate(gate))
@@ -72,12 +73,11 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
     Places are left out: models use their distance and direction, which single parameters do not bound.
     """
     ranges: dict[str, dict[str, tuple[float, float]]] = {}
-    for domain in filter(lambda domain: domain.robot == robot, map(domains.load, domains.DOMAINS)):
-        for action in domain.actions.values():
-            declared = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
-            for p in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
-                lower, upper = declared.get(p.name, (p.lower, p.upper))
-                declared[p.name] = min(lower, p.lower), max(upper, p.upper)
+    for action in domains.load(spec_of_robot(robot).name).actions.values():
+        declared = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
+        for p in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
+            lower, upper = declared.get(p.name, (p.lower, p.upper))
+            declared[p.name] = min(lower, p.lower), max(upper, p.upper)
     return ranges
 
 

@@ -6,9 +6,10 @@ import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import file, spec_of_robot
 from tailor.simnodes.guard import Limit
 
 MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command protects nothing
@@ -25,10 +26,19 @@ class DriverSpec:
 
 
 def shipped_driver_spec(robot: str) -> DriverSpec:
-    """The declaration of a robot in this package, e.g. `shipped_driver_spec("agilo")`."""
-    return read_driver_spec(
-        resources.files("tailor.simnodes").joinpath(robot, "driver.toml").read_text(encoding="utf-8")
-    )
+    """The declaration in a robot's package, e.g. `shipped_driver_spec("agilo")`.
+
+    Raises:
+      UsageError: There is no such robot, or its file is missing or no declaration; the message names the file.
+    """
+    spec = spec_of_robot(robot)
+    declared = file(spec, "driver")
+    try:
+        return read_driver_spec(declared.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"domain {spec.name}: driver = '{spec.driver}': {error.strerror}") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise UsageError(f"{declared}: {error}, expected the specification of a driver") from error
 
 
 def read_driver_spec(text: str) -> DriverSpec:

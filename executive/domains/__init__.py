@@ -1,41 +1,43 @@
-"""The shipped domains by name. A new robot is a new folder here."""
+"""Domains and their scenarios by name, as installed packages declare them."""
 
 from __future__ import annotations
 
-import importlib
 import tomllib
 from collections.abc import Mapping
-from importlib import resources
+from importlib.resources.abc import Traversable
 from typing import Any
 
 import numpy as np
 
 from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import file, part, spec_of
+from tailor.schemas.packages.spec import DomainSpec
 
 SCENARIO_STREAM = 0  # random stream of a run's seed; noise and search use others
-DOMAINS = ("soccer", "arm")
 
 
 def load(name: str) -> Domain:
     """Load a domain.
 
     Raises:
-      UsageError: Unknown name; the message lists the known ones.
+      UsageError: Unknown name; the message lists the known ones. Or the package cannot be used.
     """
-    if name not in DOMAINS:
-        raise UsageError(f"no domain {name!r}, expected one of: {', '.join(DOMAINS)}")
-    made: Domain = _package(name).make()
+    made: Domain = part(spec_of(name), "domain")()
     return made
 
 
 def scenarios(name: str) -> list[str]:
-    """Names of a domain's scenarios, the default first."""
-    load(name)
-    if _generates_scenarios(name):
-        generated: list[str] = _package(name).scenarios()
+    """Names of a domain's scenarios, the default first.
+
+    Raises:
+      UsageError: Unknown domain.
+    """
+    spec = spec_of(name)
+    if spec.generator:
+        generated: list[str] = part(spec, "generator").scenarios()
         return generated
-    declared = ((_declaration(name, file), file) for file in _scenario_files(name))
+    declared = ((_declaration(spec, file), file) for file in _scenario_files(spec))
     return [file for _, file in sorted(declared, key=lambda pair: (pair[0].get("order", 99), pair[1]))]
 
 
@@ -48,15 +50,15 @@ def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[S
     Raises:
       UsageError: Unknown domain or scenario.
     """
-    known = scenarios(name)
-    if _generates_scenarios(name):
-        generated: tuple[Scenario, dict[str, float]] = _package(name).load_scenario(scenario, rng)
+    spec, known = spec_of(name), scenarios(name)
+    if spec.generator:
+        generated: tuple[Scenario, dict[str, float]] = part(spec, "generator").load_scenario(scenario, rng)
         return generated
     if scenario not in known:
         raise UsageError(f"no scenario {scenario!r} in {name}, expected one of: {', '.join(known)}")
-    declared = _declaration(name, scenario)
-    problem = resources.files(f"tailor.executive.domains.{name}.scenarios").joinpath(declared["problem"]).read_text()
-    start, places, events = _package(name).sample_scenario(declared, rng)
+    declared = _declaration(spec, scenario)
+    problem = _folder(spec).joinpath(declared["problem"]).read_text(encoding="utf-8")
+    start, places, events = part(spec, "draw")(declared, rng)
     settings = {**declared.get("settings", {}), "events": events}
     return Scenario(scenario, problem, places, settings), start
 
@@ -66,25 +68,17 @@ def seeded_scenario(name: str, scenario: str, seed: int) -> tuple[Scenario, dict
     return load_scenario(name, scenario, np.random.default_rng([seed, SCENARIO_STREAM]))
 
 
-def _package(name: str) -> Any:
-    """A domain's package; it offers `make()` and `sample_scenario(declared, rng) -> (start, places, events)`.
-
-    One that generates its scenarios offers `scenarios()` and `load_scenario(scenario, rng)` instead of the latter and
-    of files.
-    """
-    return importlib.import_module(f"tailor.executive.domains.{name}")
-
-
-def _generates_scenarios(name: str) -> bool:
-    """Whether a domain generates its scenarios, as the arm does from the letters of a font."""
-    return hasattr(_package(name), "load_scenario")
+def _folder(spec: DomainSpec) -> Traversable:
+    """The folder of a domain's scenario files."""
+    folder = file(spec, "scenarios")
+    if not folder.is_dir():
+        raise UsageError(f"domain {spec.name}: scenarios = '{spec.scenarios}': no such folder")
+    return folder
 
 
-def _scenario_files(name: str) -> list[str]:
-    folder = resources.files(f"tailor.executive.domains.{name}.scenarios")
-    return [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
+def _scenario_files(spec: DomainSpec) -> list[str]:
+    return [entry.name.removesuffix(".toml") for entry in _folder(spec).iterdir() if entry.name.endswith(".toml")]
 
 
-def _declaration(name: str, scenario: str) -> Mapping[str, Any]:
-    folder = resources.files(f"tailor.executive.domains.{name}.scenarios")
-    return tomllib.loads(folder.joinpath(f"{scenario}.toml").read_text())
+def _declaration(spec: DomainSpec, scenario: str) -> Mapping[str, Any]:
+    return tomllib.loads(_folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8"))

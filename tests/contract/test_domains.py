@@ -13,21 +13,22 @@ from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.refinement.instantiation import instantiate
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import domain_names
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.lockstep.action_run import new_body, newest, run_action, sample_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
 PERIOD_NS = 100_000_000
-EVERY = [pytest.param(name, id=name) for name in domains.DOMAINS]
+EVERY = [pytest.param(name, id=name) for name in domain_names()]
 ACTIONS = [
     pytest.param(name, action, id=f"{name}-{action}")
-    for name in domains.DOMAINS
+    for name in domain_names()
     for action in domains.load(name).actions
 ]
 SCENARIOS = [
     pytest.param(name, scenario, id=f"{name}-{scenario}")
-    for name in domains.DOMAINS
+    for name in domain_names()
     for scenario in domains.scenarios(name)[:6]
 ]
 

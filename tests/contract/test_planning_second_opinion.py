@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from tailor.executive import domains
 from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
+from tailor.schemas.installed import domain_names
 from tests.support.planning_problems import DATA, OWN, SHARED, read, solve
 from tests.unit.executive.planning.test_language import IRON, TIMED, WORKSHOP
 
@@ -60,7 +61,7 @@ def test_a_problem_as_an_external_planner_gets_it_is_the_same_in_anothers_eyes(n
     assert accepted([TEXTS[name][0], format_problem(problem)], solve(domain, problem, DEFAULT).plan)
 
 
-@pytest.mark.parametrize(("name", "scenario"), [(d, s) for d in domains.DOMAINS for s in domains.scenarios(d)[:8]])
+@pytest.mark.parametrize(("name", "scenario"), [(d, s) for d in domain_names() for s in domains.scenarios(d)[:8]])
 def test_the_domains_that_ship_are_pddl_that_another_reads(name, scenario):
     texts = [domains.load(name).pddl, domains.seeded_scenario(name, scenario, 0)[0].problem]
     domain, problem = read(*texts)

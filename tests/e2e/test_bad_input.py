@@ -36,7 +36,7 @@ def refused(*arguments):
             ("executive", "soccer", "--planner", "'vhpop"),
             "planner command ''vhpop': cannot be started: No closing quot",
         ),
-        (("sim", "hal"), "unknown robot 'hal', expected one of: agilo"),
+        (("sim", "hal"), "no robot 'hal', expected one of: powercube, agilo"),
         (("arm", ""), "robot '': expected a name, e.g. agilo"),
         (("arm", "agilo#"), "robot 'agilo#': expected a name"),
         (("arm", "*"), "robot '*': expected a name"),

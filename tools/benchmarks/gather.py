@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive import domains
+from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import modelled_actions
@@ -21,7 +22,7 @@ def run(console: Console, quick: bool) -> None:
       NoMeasurement: An action has gathered no episode.
     """
     table = Table("action", "episodes", "mean duration", "speed (× real time)", title="gathering, one process")
-    for name in domains.DOMAINS:
+    for name in domain_names():
         robot = domains.load(name).robot
         for action in modelled_actions(name):
             with tempfile.TemporaryDirectory() as folder:

@@ -22,6 +22,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of_robot
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
@@ -54,10 +55,7 @@ def domain_of(robot: str) -> str:
     Raises:
       UsageError: There is no such robot.
     """
-    robots = {domains.load(name).robot: name for name in domains.DOMAINS}
-    if robot not in robots:
-        raise UsageError(f"no robot '{robot}' (expected one of: {', '.join(robots)})")
-    return robots[robot]
+    return spec_of_robot(robot).name
 
 
 def check_action(domain: str, action: str) -> None:

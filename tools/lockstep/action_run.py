@@ -5,7 +5,6 @@ They yield the random episodes that action models learn from (paper 5.1). `run.p
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -15,17 +14,13 @@ import numpy as np
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array, Belief
+from tailor.schemas.installed import part, spec_of
 from tailor.schemas.messages import ActionFinished, Message, Sample
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.body import Body, Reading
 
 PERIOD_NS = 100_000_000  # 10 Hz
 TIME_LIMIT_S = 40.0  # an action that takes longer has failed
-BODIES = {"soccer": "tailor.simnodes.agilo.body:AgiloBody", "arm": "tailor.simnodes.powercube.body:PowerCubeBody"}
-SAMPLERS = {
-    "soccer": "tailor.tools.lockstep.samplers.soccer:SoccerSampler",
-    "arm": "tailor.tools.lockstep.samplers.arm:ArmSampler",
-}
 
 
 class TaskSampler(Protocol):
@@ -127,14 +122,22 @@ def sample_arguments(domain: Domain, action_name: str, rng: np.random.Generator)
 
 
 def new_body(domain: Domain) -> Body:
-    """A simulated body of the domain's robot. Reuse it for every run: making one is slow."""
-    body: Body = _object_at(BODIES[domain.name])()
+    """A simulated body of the domain's robot. Reuse it for every run: making one is slow.
+
+    Raises:
+      UsageError: The robot's package has no body.
+    """
+    body: Body = part(spec_of(domain.name), "body")()
     return body
 
 
 def sampler_of(domain: Domain) -> TaskSampler:
-    """The domain's task sampler."""
-    sampler: TaskSampler = _object_at(SAMPLERS[domain.name])()
+    """The domain's task sampler.
+
+    Raises:
+      UsageError: The robot's package has no sampler.
+    """
+    sampler: TaskSampler = part(spec_of(domain.name), "sampler")()
     return sampler
 
 
@@ -198,8 +201,3 @@ def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
         for reading in sorted(last.values(), key=lambda reading: reading.time_ns)
         if TOPICS[reading.topic].source == "driver"
     )
-
-
-def _object_at(path: str) -> Any:
-    module, name = path.split(":")
-    return getattr(importlib.import_module(module), name)

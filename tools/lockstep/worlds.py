@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-import importlib
-
 from tailor.executive import domains
+from tailor.schemas.installed import part, spec_of_robot
 from tailor.simnodes.world import Event, World
-
-# robot -> (module and class of its body, the domain whose scenarios it plays)
-ROBOTS = {
-    "agilo": ("tailor.simnodes.agilo.body", "AgiloBody", "soccer"),
-    "powercube": ("tailor.simnodes.powercube.body", "PowerCubeBody", "arm"),
-}
 
 
 def make_world(robot: str, scenario: str, seed: int) -> World:
     """World of a scenario, sampled with the same seed and order of draws as the executive uses.
 
     Args:
-      robot: A key of `ROBOTS`.
+      robot: Name of a robot whose package has a body.
       scenario: One of the scenarios of the robot's domain; empty for the first.
       seed: Random seed of start, targets and noise.
 
     Raises:
-      UsageError: The scenario is unknown.
+      UsageError: Robot or scenario is unknown, or the robot has no body.
     """
-    module, kind, domain = ROBOTS[robot]
-    name = scenario or domains.scenarios(domain)[0]
-    sampled, start = domains.seeded_scenario(domain, name, seed)
-    body = getattr(importlib.import_module(module), kind)()
+    spec = spec_of_robot(robot)
+    name = scenario or domains.scenarios(spec.name)[0]
+    sampled, start = domains.seeded_scenario(spec.name, name, seed)
+    body = part(spec, "body")()
     return World(body, start, seed, [_event(entry) for entry in sampled.settings.get("events", ())])
 
 

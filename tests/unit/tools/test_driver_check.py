@@ -9,12 +9,13 @@ import pytest
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import domain_names
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.driver_check import check_driver, driver_of
 
 
-@pytest.mark.parametrize("name", domains.DOMAINS)
+@pytest.mark.parametrize("name", domain_names())
 def test_every_domain_matches_the_driver_of_its_robot(name):
     domain = domains.load(name)
     check_driver(domain, shipped_driver_spec(domain.robot))

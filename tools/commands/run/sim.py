@@ -13,20 +13,21 @@ from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names
 from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import deployment_from
-from tailor.tools.lockstep.worlds import ROBOTS, make_world
+from tailor.tools.lockstep.worlds import make_world
 
 MAX_SPEED = 10.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor sim`."""
-    parser.add_argument("robot", help=f"robot to simulate: {', '.join(ROBOTS)}")
+    parser.add_argument("robot", help=f"robot to simulate: {', '.join(robot_names())}")
     parser.add_argument("--scenario", help="scenario to start in (default: the first of the domain)")
     parser.add_argument("--seed", type=int, help="random seed (default 0)")
     parser.add_argument(
@@ -40,8 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Simulate until stopped."""
     notifier = Notifier.from_environment()
-    if arguments.robot not in ROBOTS:
-        raise UsageError(f"unknown robot {arguments.robot!r}, expected one of: {', '.join(ROBOTS)}")
+    declared = shipped_driver_spec(arguments.robot)
     if not 0.1 <= arguments.speed <= MAX_SPEED:
         raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MAX_SPEED:g}")
     deployment = deployment_from(arguments)
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         realtime.elevate_bus_threads()
         run_node(
             world,
-            shipped_driver_spec(arguments.robot),
+            declared,
             session,
             lambda: stop.requested,
             arguments.speed,

@@ -20,6 +20,7 @@ from tailor.executive.planning import (
     validate,
 )
 from tailor.executive.planning.plans.links import links_of
+from tailor.schemas.installed import domain_names
 from tests.support.planning_problems import DATA, OWN, own, printed, read, solve
 
 RICH_DOMAIN = """(define (domain rich) (:requirements :typing :fluents :timed-initial-literals :durative-actions)
@@ -45,7 +46,7 @@ def test_types_values_timed_literals_and_the_metric_are_written_too():
     assert parse_problem(format_problem(problem), domain) == problem
 
 
-@pytest.mark.parametrize("name", domains.DOMAINS)
+@pytest.mark.parametrize("name", domain_names())
 def test_every_scenario_of_every_domain_can_be_asked(name):
     loaded = domains.load(name)
     domain = parse_domain(loaded.pddl)

@@ -1,0 +1,1 @@
+"""The robots that ship, declared as any package declares its own."""

@@ -1,0 +1,17 @@
+"""Robot soccer with AGILO."""
+
+from __future__ import annotations
+
+from tailor.schemas.packages.spec import DomainSpec
+
+SPEC = DomainSpec(
+    name="soccer",
+    robot="agilo",
+    domain="tailor.executive.domains.soccer:make",
+    driver="tailor.simnodes.agilo:driver.toml",
+    body="tailor.simnodes.agilo.body:AgiloBody",
+    sampler="tailor.tools.lockstep.samplers.soccer:SoccerSampler",
+    scenarios="tailor.executive.domains.soccer:scenarios",
+    draw="tailor.executive.domains.soccer.scenario_sampling:sample_scenario",
+    models="tailor.models:zoo",
+)

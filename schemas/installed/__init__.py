@@ -1,0 +1,97 @@
+"""Looks up the installed packages of robots, and loads single parts of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module, resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.packages.discovery import Package, packages
+from tailor.schemas.packages.spec import DomainSpec
+
+
+def domain_names() -> tuple[str, ...]:
+    """Names of the domains that can be used, in alphabetical order."""
+    return tuple(package.name for package in packages() if package.spec and not package.faults)
+
+
+def robot_names() -> tuple[str, ...]:
+    """Names of the robots that can be used, in the order of `domain_names`."""
+    return tuple(package.spec.robot for package in packages() if package.spec and not package.faults)
+
+
+def spec_of(name: str) -> DomainSpec:
+    """Spec of a domain.
+
+    Raises:
+      UsageError: There is none, or its package is at fault; the message lists the known names, or all faults.
+    """
+    named = [package for package in packages() if package.name == name]
+    return _usable(named, f"no domain {name!r}, expected one of: {', '.join(domain_names())}")
+
+
+def spec_of_robot(robot: str) -> DomainSpec:
+    """Spec of the domain of a robot.
+
+    Raises:
+      UsageError: As `spec_of`.
+    """
+    owners = [package for package in packages() if package.spec and package.spec.robot == robot]
+    return _usable(owners, f"no robot {robot!r}, expected one of: {', '.join(robot_names())}")
+
+
+def _usable(found: Iterable[Package], otherwise: str) -> DomainSpec:
+    """The spec of the one among `found` that is not at fault."""
+    faulty = []
+    for package in found:
+        if package.spec and not package.faults:
+            return package.spec
+        faulty.append(f"{package.declared_in}: {'; '.join(package.faults)}")
+    raise UsageError("; ".join(faulty) or otherwise)
+
+
+def part(spec: DomainSpec, field: str) -> Any:
+    """Import an object that a spec names.
+
+    Args:
+      spec: Spec of a domain.
+      field: Name of the attribute that names the object, e.g. "body".
+
+    Raises:
+      UsageError: The spec names none, or what it names cannot be imported.
+    """
+    written: str = getattr(spec, field)
+    if not written:
+        raise UsageError(f"domain {spec.name} has no {field}: its spec names none")
+    module, _, attribute = written.partition(":")
+    try:
+        loaded = import_module(module)
+        return getattr(loaded, attribute) if attribute else loaded
+    except (ImportError, AttributeError) as error:
+        raise UsageError(f"domain {spec.name}: {field} = '{written}': {error}") from error
+
+
+def file(spec: DomainSpec, field: str) -> Traversable:
+    """A file or folder that a spec names; it may be missing.
+
+    Raises:
+      UsageError: Its package cannot be imported.
+    """
+    written: str = getattr(spec, field)
+    package, _, path = written.rpartition(":")
+    try:
+        return resources.files(package or spec.package).joinpath(path)
+    except ImportError as error:
+        raise UsageError(f"domain {spec.name}: {field} = '{written}': {error}") from error
+
+
+def models_folder(robot: str) -> Path:
+    """Folder of the models that a robot's package ships.
+
+    Raises:
+      UsageError: There is no such robot.
+    """
+    return Path(str(file(spec_of_robot(robot), "models"))).resolve()

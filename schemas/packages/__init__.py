@@ -1,0 +1,1 @@
+"""Packages of robots: what one declares, and those that are found."""
