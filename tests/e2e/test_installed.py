@@ -18,7 +18,7 @@ import tailor
 from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
 
-LINKS = ("executive", "models", "runtime", "schemas", "simnodes", "tools")
+LINKS = ("executive", "models", "robots", "runtime", "schemas", "simnodes", "tools")
 DATA_KINDS = {".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
 BUILD = "import sys; from setuptools import build_meta; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
@@ -103,6 +103,10 @@ def run(call):
 def test_the_wheel_has_one_top_level_name(wheel):
     names = zipfile.ZipFile(wheel).namelist()
     assert {name.split("/")[0] for name in names} == {"tailor", f"tailor-{tailor.__version__}.dist-info"}
+
+
+def test_the_wheel_finds_its_robots_by_their_entry_points(call):
+    assert "no robot 'hal', expected one of: powercube, agilo" in call("sim", "hal").stderr
 
 
 def test_the_wheel_holds_every_module_and_every_data_file(wheel):
