@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 
 from tailor.runtime.bus import access, zenoh_config
@@ -50,14 +50,18 @@ def open_local_router(endpoint: str, secured: bool = True) -> Iterator[tuple[Ses
 
 @contextmanager
 def open_gateway(
-    listen: str, folder: RunFolder, identity: Identity | None = None, names: Mapping[str, Role] | None = None
+    listen: str,
+    folder: RunFolder,
+    identity: Identity | None = None,
+    names: Mapping[str, Role] | None = None,
+    roles: Sequence[Role] = ROLES,
 ) -> Iterator[Session]:
     """Router for other sessions, linked to the local router of `folder`; see `zenoh_config.gateway`.
 
     Raises:
       UsageError: The port is in use, cannot be listened at, or there is no local router.
     """
-    with _router(zenoh_config.gateway(listen, folder, identity, names or {}), listen) as session:
+    with _router(zenoh_config.gateway(listen, folder, identity, names or {}, roles), listen) as session:
         yield session
 
 

@@ -15,7 +15,7 @@ from tailor.runtime.bus import access
 from tailor.runtime.bus.credentials import Identity, Password
 from tailor.runtime.bus.run_folder import CERTIFICATE_USER, RunFolder
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import ROLES
+from tailor.schemas.roles import ROLES, Role
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a peer that is silent for longer counts as gone
@@ -80,7 +80,13 @@ def local_router(folder: RunFolder) -> str:
     return json.dumps(config)
 
 
-def gateway(listen: str, folder: RunFolder, identity: Identity | None, names: Mapping[str, str]) -> str:
+def gateway(
+    listen: str,
+    folder: RunFolder,
+    identity: Identity | None,
+    names: Mapping[str, str],
+    roles: Sequence[Role] = ROLES,
+) -> str:
     """JSON of a router that listens for other sessions and passes what they may publish on to the local router.
 
     Args:
@@ -88,6 +94,7 @@ def gateway(listen: str, folder: RunFolder, identity: Identity | None, names: Ma
       folder: Of the local router.
       identity: Certificate of a TLS endpoint; None: passwords as the local router, if it has any.
       names: Role of each certificate's common name, for a TLS endpoint.
+      roles: Sessions of other roles may do nothing here.
     """
     config = _listening(check_endpoint(listen)) | {"downsampling": access.rate_limits()}
     config["connect"] = _connecting([folder.socket_endpoint], CONNECT_MS)
@@ -95,16 +102,17 @@ def gateway(listen: str, folder: RunFolder, identity: Identity | None, names: Ma
     if password is not None:
         own = Password(access.GATEWAY, password)
         config["transport"]["auth"] = own.auth(folder.users_file if identity is None else folder.certificate_users_file)
-        config |= _secured([*_subjects(names, identity), {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}])
+        inwards = {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}
+        config |= _secured([*_subjects(names, identity, roles), inwards])
     if identity is not None:
         config["transport"]["link"]["tls"] = identity.listening()
     return json.dumps(config)
 
 
-def _subjects(names: Mapping[str, str], identity: Identity | None) -> list[dict[str, Any]]:
+def _subjects(names: Mapping[str, str], identity: Identity | None, roles: Sequence[Role]) -> list[dict[str, Any]]:
     if identity is None:
-        return [{"id": role, "usernames": [role]} for role in ROLES]
-    common = {role: sorted(name for name, each in names.items() if each == role) for role in ROLES}
+        return [{"id": role, "usernames": [role]} for role in roles]
+    common = {role: sorted(name for name, each in names.items() if each == role) for role in roles}
     return [{"id": role, "cert_common_names": found} for role, found in common.items() if found]
 
 

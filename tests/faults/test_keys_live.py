@@ -11,7 +11,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import opened
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import VelocityCommand
+from tailor.schemas.messages import EStop, VelocityCommand
 from tests.support.bus_system import accepts, free_endpoint
 from tests.support.patience import wait_until
 
@@ -29,7 +29,12 @@ def bus(tmp_path_factory):
     folder, local = tmp_path_factory.mktemp("bus") / "keys", free_endpoint()
     remote = free_endpoint().replace("tcp/127.0.0.1", "tls/127.0.0.1")
     assert keys(folder, "new", "router", "--host", "127.0.0.1").returncode == 0
-    for name, role in (("driving", "executive"), ("viewing", "observer"), ("former", "executive")):
+    for name, role in (
+        ("driving", "executive"),
+        ("viewing", "observer"),
+        ("former", "executive"),
+        ("stopping", "people"),
+    ):
         made = keys(folder, "new", name, "--role", role, "--for", remote)
         assert made.stdout == f"{folder / name}\n", made.stderr
     assert keys(folder, "revoke", "former").returncode == 0
@@ -88,6 +93,28 @@ def test_a_router_of_another_name_is_not_believed(tmp_path):
         wait_until(lambda: accepts(remote.replace("tls/", "tcp/")), "gateway")
         with ExitStack() as stack, pytest.raises(UsageError, match="opens no session here"):
             stack.enter_context(open_client(remote, 0.7, identity=identity_in(str(folder / "me"))))
+    finally:
+        process.stop()
+
+
+@pytest.mark.promise("P16")
+def test_an_endpoint_for_people_alone_takes_no_other_key(bus):
+    """The remote e-stop's own endpoint: a router of its own, which other traffic cannot delay."""
+    folder, local, _ = bus
+    listen = free_endpoint().replace("tcp/127.0.0.1", "tls/127.0.0.1")
+    line = tailor("gateway", "--connect", local, "--listen", listen, "--keys", str(folder), "--only", "people")
+    process = Child("gateway", line)
+    try:
+        wait_until(lambda: accepts(listen.replace("tls/", "tcp/")), "gateway")
+        with open_client(local, role="observer") as listener:
+            queue, subscription = listener.subscribe_all("**")
+            for name in ("driving", "stopping"):
+                with open_client(listen, identity=identity_in(str(folder / name))) as session:
+                    session.publisher("cmd_vel", "agilo").publish(VelocityCommand(0, 0.5, 0.0))
+                    session.publisher("estop", "").publish(EStop(True))
+                    time.sleep(STEP_S)
+            subscription.undeclare()
+            assert [raw.key for raw in queue.drain() if raw.key in ("agilo/cmd_vel", "estop")] == ["estop"]
     finally:
         process.stop()
 

@@ -20,7 +20,7 @@ SPEC = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-1.0, 1.0), Limit(-2.0, 2.0)
 
 
 def goals_pursued(count):
-    """Executive and driver on their way from goal to goal; yields the state after each goal, and the set-points until then."""
+    """Executive and driver on their way; yields the state after each goal, and the set-points until then."""
     context, driver = line_context(), Driver(SPEC, 7)
     driver.take([Sample("agilo/arm_request", ArmRequest(True, False, SENDER, 0), 0, 1, "f" * 32)], {}, 0)
     state, x, moved_ticks = initial_state(context), 0.0, 0

@@ -30,6 +30,8 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
             _check_free(endpoint)
     if settings.remote and not settings.remote.startswith("tls/"):
         raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
+    if settings.remote and settings.security == "open":
+        raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
     if settings.security == "open":
         report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
     with open_local_router(settings.endpoint, settings.security != "open") as (session, _):

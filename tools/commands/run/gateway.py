@@ -13,6 +13,7 @@ from tailor.runtime.bus.run_folder import run_folder
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
+from tailor.schemas.roles import ROLES
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
@@ -25,6 +26,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--listen", metavar="ENDPOINT", help="where to listen (default: the endpoint of the bus, with its passwords)"
     )
     parser.add_argument("--keys", metavar="DIR", help="folder that `tailor keys` wrote, for an endpoint tls/HOST:PORT")
+    parser.add_argument(
+        "--only", choices=ROLES, action="append", metavar="ROLE", help="let only this role in, e.g. people; repeatable"
+    )
     configure_bus(parser)
 
 
@@ -44,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     os.nice(NICENESS)
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a port scan must not use them up
-    with open_gateway(listen, folder, identity, roles):
+    with open_gateway(listen, folder, identity, roles, arguments.only or ROLES):
         notifier.ready()
         while not stop.requested:
             notifier.alive()

@@ -29,6 +29,13 @@ def opened(monkeypatch):
     return opened
 
 
+def test_an_open_bus_does_not_listen_for_other_machines(opened):
+    settings = BusSettings(free_endpoint(), security="open", remote=free_endpoint().replace("tcp/", "tls/"))
+    with pytest.raises(UsageError, match="expected a secured bus for other machines"), hosted_bus(settings, print):
+        pass
+    assert opened == []
+
+
 @pytest.mark.parametrize(("security", "secured", "reports"), [("run", True, 0), ("local", True, 0), ("open", False, 1)])
 def test_a_bus_is_secured_unless_it_is_named_open_and_then_that_is_reported(opened, security, secured, reports):
     settings, lines = BusSettings(free_endpoint(), security=security), []
