@@ -24,9 +24,10 @@ from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.soak import report
 from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS
 from tailor.tools.soak.judging.slopes import growth
+from tailor.tools.soak.party import Party
 from tailor.tools.soak.recordings import recording_rows
 from tailor.tools.soak.schedule import Planned, schedule
-from tailor.tools.soak.soak import Party, Soak
+from tailor.tools.soak.soak import Soak
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,6 @@ import random
 import signal
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -19,7 +18,9 @@ from tailor.tools.soak.faults.kinds import FAULTS
 from tailor.tools.soak.faults.scene import FaultRecord, Scene
 from tailor.tools.soak.judging.robots import ROBOTS
 from tailor.tools.soak.judging.violations import Invariant, Violation
+from tailor.tools.soak.party import Party, Result
 from tailor.tools.soak.schedule import Planned
+from tailor.tools.soak.stalls import Stalls
 from tailor.tools.soak.systems.people import People
 from tailor.tools.soak.systems.system import System
 from tailor.tools.soak.systems.tasks import tasks_of
@@ -31,31 +32,6 @@ STALL_WINDOW_S = 5.0
 START_S = 60.0
 MOVING_S = 20.0  # a fault waits so long for a robot in motion
 MOVING_NS = 300_000_000
-
-
-@dataclass(slots=True)
-class Result:
-    """What a soak has found."""
-
-    seed: int
-    duration_s: float = 0.0
-    records: list[FaultRecord] = field(default_factory=list)
-    violations: list[Violation] = field(default_factory=list)
-    failed_faults: list[str] = field(default_factory=list)
-    worst_stall_s: float = 0.0
-
-
-@dataclass(slots=True)
-class Party:
-    """A system, and who looks after it."""
-
-    system: System
-    people: People
-    watch: Watch
-    record: FaultRecord | None = None  # of its last fault
-    ending: bool = False
-    tasks: int = 0  # set by people
-    stops: int = 0  # of the driver, that nobody caused
 
 
 class Soak:
@@ -73,7 +49,7 @@ class Soak:
         self._draw = random.Random(seed)
         self._progress = progress
         self._began_s = time.monotonic()
-        self._stalls: list[tuple[float, float]] = []  # time, lateness
+        self._stalls = Stalls()
         self._startup_s = START_S
         self.parties = {robot.name: self._party(robot.name, folder) for robot in ROBOTS}
 
@@ -86,7 +62,7 @@ class Soak:
                 self._inject(each)
             self.wait(lambda: False, duration_s - self._elapsed_s())
         finally:
-            self.result.duration_s = self._elapsed_s()
+            self.result.duration_s, self.result.worst_stall_s = self._elapsed_s(), self._stalls.worst_s
             for party in self.parties.values():
                 self._end(party)
         return self.result
@@ -98,7 +74,7 @@ class Soak:
             if time.monotonic() >= ends_s:
                 return False
             self._poll()
-            self._sleep()
+            self._stalls.sleep(POLL_S)
         return True
 
     def restart(self, system: System, sign: signal.Signals) -> None:
@@ -207,22 +183,12 @@ class Soak:
     def _violated(self, robot: str, now_ns: int, invariant: Invariant, detail: str) -> None:
         record = self.parties[robot].record
         at_s = now_ns / 1e9 - self._began_s
-        stall_s = max((late for at, late in self._stalls if at > now_ns / 1e9 - STALL_WINDOW_S), default=0.0)
+        stall_s = self._stalls.worst_since(now_ns / 1e9 - STALL_WINDOW_S)
         fault = f"{record.name} at {record.at_s:.1f} s" if record is not None else ""
         violation = Violation(at_s, robot, invariant, detail, fault, stall_s)
         self.result.violations.append(violation)
         excuse = " (the machine stalled)" if violation.excused else ""
         self._progress(at_s, f"VIOLATION{excuse} {robot}: {invariant.name}: {detail}; after {fault or 'no fault'}")
-
-    def _sleep(self) -> None:
-        """Sleep for a period; what comes on top is a stall of the machine."""
-        before_s = time.monotonic()
-        time.sleep(POLL_S)
-        now_s = time.monotonic()
-        late_s = now_s - before_s - POLL_S
-        if late_s > 0.01:
-            self._stalls = [each for each in self._stalls if each[0] > now_s - 60.0] + [(now_s, late_s)]
-            self.result.worst_stall_s = max(self.result.worst_stall_s, late_s)
 
     def _elapsed_s(self) -> float:
         return time.monotonic() - self._began_s

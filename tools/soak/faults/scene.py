@@ -104,7 +104,7 @@ class Scene:
           ChildProcessError: It has failed, so that nothing was tried.
         """
         words = (self.system.endpoint, self.system.robot.name, kind, str(self.draw.randrange(10_000)), known)
-        argv = [sys.executable, "-P", "-m", "tailor.tools.soak.faults.intruder", *words]
+        argv = [sys.executable, "-P", "-m", "tailor.tools.soak.faults.intrude", *words]
         with TemporaryFile("w+") as output:
             with subprocess.Popen(argv, stdout=output, stderr=output, text=True, env=environment) as process:
                 self.wait(lambda: process.poll() is not None, INTRUDER_S)
