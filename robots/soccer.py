@@ -10,6 +10,7 @@ SPEC = DomainSpec(
     domain="tailor.executive.domains.soccer:make",
     driver="tailor.simnodes.agilo:driver.toml",
     body="tailor.simnodes.agilo.body:AgiloBody",
+    topics="tailor.robots.soccer_topics:TOPICS",
     sampler="tailor.tools.lockstep.samplers.soccer:SoccerSampler",
     scenarios="tailor.executive.domains.soccer:scenarios",
     draw="tailor.executive.domains.soccer.scenario_sampling:sample_scenario",

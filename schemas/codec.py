@@ -13,10 +13,9 @@ from typing import Any
 from tailor.schemas.errors import DecodeRefusal, RefusedValueError, Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS, Topic
-from tailor.schemas.typesystem import MESSAGES, from_bytes, ros_type, to_bytes
+from tailor.schemas.typesystem import from_bytes, message_types, ros_type, to_bytes
 
 MAX_TRAILING_BYTES = 7  # padding that real ROS 2 serializers append
-_LIMITS = {kind: max((t.max_bytes for t in TOPICS.values() if t.type is kind), default=4096) for kind in MESSAGES}
 
 
 @cache
@@ -26,6 +25,11 @@ def _codec(kind: type) -> tuple[Any, Any, str]:
 
     write, read = CONVERTERS[kind] if kind in CONVERTERS else converters(kind)
     return write, read, ros_type(kind)
+
+
+@cache
+def _limit(kind: type) -> int:
+    return max((topic.max_bytes for topic in TOPICS.values() if topic.type is kind), default=4096)
 
 
 @cache
@@ -58,7 +62,7 @@ def decode(what: Topic | type[Message], data: bytes) -> Message | Rejected:
       The message, or a Rejected whose reason is a value of DecodeRefusal.
     """
     kind: type = what.type if isinstance(what, Topic) else what
-    limit = what.max_bytes if isinstance(what, Topic) else _LIMITS[what]
+    limit = what.max_bytes if isinstance(what, Topic) else _limit(kind)
     if len(data) > limit:
         return Rejected(DecodeRefusal.TOO_LONG.value)
     _, read, name = _codec(kind)
@@ -79,5 +83,5 @@ def prime() -> None:
     from tailor.schemas.own import example
 
     _damage()
-    for kind in MESSAGES:
+    for kind in message_types():
         decode(kind, encode(example(kind)))

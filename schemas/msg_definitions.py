@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 from typing import Any, get_args, get_type_hints
 
-PACKAGE = "tailor_msgs"
+from tailor.schemas.packages.ros_names import ros_type
+
 HEADER = "std_msgs/Header header"
 PRIMITIVES: dict[Any, str] = {int: "int64", float: "float64", bool: "bool", str: "string"}
 
@@ -43,11 +44,11 @@ def declarations(kind: type) -> dict[str, str]:
 
 
 def _declaration(name: str, hint: Any) -> str:
-    element = element_type(hint)
+    element: Any = element_type(hint)
     if hint in PRIMITIVES:
         return f"{PRIMITIVES[hint]} {name}"
     if element in PRIMITIVES:
         return f"{PRIMITIVES[element]}[] {name}"
-    if is_dataclass(element):
-        return f"{PACKAGE}/{getattr(element, '__name__', '')}[] {name}"
+    if isinstance(element, type) and is_dataclass(element):
+        return f"{ros_type(element).replace('/msg/', '/')}[] {name}"
     raise TypeError(f"field '{name}' is {hint}, expected int, float, bool, str, or a tuple of them or of dataclasses")

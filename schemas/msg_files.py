@@ -11,7 +11,8 @@ import re
 from pathlib import Path
 
 from tailor.schemas.msg_definitions import declarations
-from tailor.schemas.typesystem import OWN
+from tailor.schemas.packages.ros_names import PACKAGE, ros_type
+from tailor.schemas.typesystem import own_types
 
 FOLDER = Path(__file__).parent / "msg"
 FIELD = re.compile(r"^    (\w+): .*?  # (.+)$", re.MULTILINE)
@@ -29,7 +30,7 @@ def msg_text(kind: type) -> str:
 
 def msg_files() -> dict[str, str]:
     """Content of every `.msg` file by its name."""
-    return {f"{kind.__name__}.msg": msg_text(kind) for kind in OWN}
+    return {f"{k.__name__}.msg": msg_text(k) for k in own_types() if ros_type(k).startswith(f"{PACKAGE}/")}
 
 
 def write(folder: Path = FOLDER) -> None:

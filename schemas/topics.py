@@ -5,43 +5,22 @@ Message types, codecs, freshness limits, recording policy and documentation deri
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from functools import cached_property, lru_cache
 
 from tailor.schemas import messages as m
-from tailor.schemas.messages import soccer
+from tailor.schemas.packages.discovery import packages
+from tailor.schemas.packages.package_topics import PackageTopics, add_topics
+from tailor.schemas.packages.topic import Priority, Source, Topic
 
-Priority = Literal["real_time", "interactive_high", "data"]
-Source = Literal["driver", "executive", "people", "simulator", "player", "launcher"]
-
-
-@dataclass(frozen=True, slots=True)
-class Topic:
-    """One row of the table; `{robot}` in a key is a placeholder for the robot's name."""
-
-    key: str
-    type: type[m.Message]
-    rate_hz: float  # 0: on demand or on change
-    source: Source
-    fresh_s: float | None = None  # a message older than this is stale; None: never
-    priority: Priority = "data"
-    recorded: bool = True
-    max_bytes: int = 4096
-
-    @property
-    def drives(self) -> bool:
-        """Whether it moves, arms or stops a robot."""
-        return self.priority == "real_time" or self.type is m.ArmRequest
-
+__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "key_of"]
 
 STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
 
-TOPICS: dict[str, Topic] = {
+_SHIPPED: dict[str, Topic] = {
     "cmd_vel": Topic("{robot}/cmd_vel", m.VelocityCommand, 10, "executive", priority="real_time"),
     "odom": Topic("{robot}/odom", m.Odometry, 50, "driver", STALE_S, "interactive_high"),
     "pose": Topic("{robot}/pose", m.PoseEstimate, 12.5, "driver", 1.0),
-    "ball": Topic("{robot}/ball", soccer.BallPercept, 12.5, "driver"),
     "joint_cmd": Topic("{robot}/joint_cmd", m.JointCommand, 10, "executive", priority="real_time"),
     "joint_states": Topic("{robot}/joint_states", m.JointState, 50, "driver", STALE_S, "interactive_high"),
     "currents": Topic("{robot}/currents", m.MotorCurrents, 10, "driver"),
@@ -50,7 +29,6 @@ TOPICS: dict[str, Topic] = {
     "self_arm": Topic("{robot}/self_arm", m.ArmRequest, 0, "executive", priority="interactive_high"),  # by its leave
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
     "clock": Topic("clock", m.Clock, 0, "player", recorded=False),  # of a replay
-    "truth": Topic("{robot}/sim/truth", soccer.SoccerGroundTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
@@ -63,6 +41,38 @@ TOPICS: dict[str, Topic] = {
     "provenance": Topic("exec/provenance", m.Provenance, 1, "executive", max_bytes=262144),
     "processes": Topic("launch/processes", m.ProcessStates, 1, "launcher"),
 }
+
+
+class TopicTable(Mapping[str, Topic]):
+    """The topics that ship, and those of packages of robots.
+
+    The packages are read when the table is iterated over, or for a name that does not ship: an e-stop waits for none.
+    """
+
+    def __getitem__(self, name: str) -> Topic:
+        """Topic of a name."""
+        shipped = _SHIPPED.get(name)
+        return self._read.topics[name] if shipped is None else shipped
+
+    def __iter__(self) -> Iterator[str]:
+        """Names: those that ship first."""
+        return iter(self._read.topics)
+
+    def __len__(self) -> int:
+        """Number of topics."""
+        return len(self._read.topics)
+
+    @property
+    def faults(self) -> Mapping[str, tuple[str, ...]]:
+        """What is wrong with the topics of packages, by the package's name."""
+        return self._read.faults
+
+    @cached_property
+    def _read(self) -> PackageTopics:
+        return add_topics(_SHIPPED, packages())
+
+
+TOPICS = TopicTable()
 
 
 @lru_cache(maxsize=1024)  # a tick looks up a dozen, always the same

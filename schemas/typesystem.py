@@ -10,13 +10,35 @@ from functools import cache
 from typing import Any
 
 from tailor.schemas.messages import Message
-from tailor.schemas.msg_definitions import PACKAGE, declarations, with_parts
+from tailor.schemas.msg_definitions import declarations, with_parts
+from tailor.schemas.packages.ros_names import ros_type
 from tailor.schemas.topics import TOPICS
 
-MESSAGES: tuple[type[Message], ...] = tuple(dict.fromkeys(topic.type for topic in TOPICS.values()))
-STANDARD: dict[type[Message], str] = {kind: kind.ROS_TYPE for kind in MESSAGES if kind.ROS_TYPE}
-OWN: tuple[type, ...] = with_parts(kind for kind in MESSAGES if kind not in STANDARD)  # with types nested in them
+__all__ = [
+    "definition",
+    "from_bytes",
+    "message_types",
+    "own_types",
+    "ros_class",
+    "ros_type",
+    "to_bytes",
+    "type_hash",
+    "type_of",
+    "typestore",
+]
 MAX_ELEMENTS = 65536  # in one sequence; the longest legal message has fewer
+
+
+@cache
+def message_types() -> tuple[type[Message], ...]:
+    """Types of all topics, each once."""
+    return tuple(dict.fromkeys(topic.type for topic in TOPICS.values()))
+
+
+@cache
+def own_types() -> tuple[type, ...]:
+    """Types that ROS 2 does not define, with the types nested in them, parts before wholes."""
+    return with_parts(kind for kind in message_types() if not kind.ROS_TYPE)
 
 
 @cache
@@ -27,21 +49,16 @@ def typestore() -> Any:
     store = get_typestore(Stores.ROS2_JAZZY)
     store.max_sequence_length = MAX_ELEMENTS
     own: dict[str, Any] = {}
-    for kind in OWN:
+    for kind in own_types():
         own.update(get_types_from_msg("\n".join(declarations(kind).values()), ros_type(kind)))
     store.register(own)
     return store
 
 
-def ros_type(kind: type) -> str:
-    """Full ROS name of a message type, e.g. `ros_type(EStop) == "std_msgs/msg/Bool"`."""
-    return getattr(kind, "ROS_TYPE", "") or f"{PACKAGE}/msg/{kind.__name__}"
-
-
 @cache
 def type_of(ros_name: str) -> type[Message] | None:
     """The message type with this ROS name; None if no topic carries it."""
-    return {ros_type(kind): kind for kind in MESSAGES}.get(ros_name)
+    return {ros_type(kind): kind for kind in message_types()}.get(ros_name)
 
 
 @cache

@@ -11,16 +11,17 @@ from typing import Any
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.discovery import Package, packages
 from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.topics import TOPICS
 
 
 def domain_names() -> tuple[str, ...]:
     """Names of the domains that can be used, in alphabetical order."""
-    return tuple(package.name for package in packages() if package.spec and not package.faults)
+    return tuple(package.name for package in packages() if package.spec and not _faults(package))
 
 
 def robot_names() -> tuple[str, ...]:
     """Names of the robots that can be used, in the order of `domain_names`."""
-    return tuple(package.spec.robot for package in packages() if package.spec and not package.faults)
+    return tuple(package.spec.robot for package in packages() if package.spec and not _faults(package))
 
 
 def spec_of(name: str) -> DomainSpec:
@@ -47,10 +48,15 @@ def _usable(found: Iterable[Package], otherwise: str) -> DomainSpec:
     """The spec of the one among `found` that is not at fault."""
     faulty = []
     for package in found:
-        if package.spec and not package.faults:
+        faults = _faults(package)
+        if package.spec and not faults:
             return package.spec
-        faulty.append(f"{package.declared_in}: {'; '.join(package.faults)}")
+        faulty.append(f"{package.declared_in}: {'; '.join(faults)}")
     raise UsageError("; ".join(faulty) or otherwise)
+
+
+def _faults(package: Package) -> tuple[str, ...]:
+    return (*package.faults, *TOPICS.faults.get(package.name, ()))
 
 
 def part(spec: DomainSpec, field: str) -> Any:

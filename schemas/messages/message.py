@@ -10,10 +10,12 @@ class Message:
 
     Attributes:
       ROS_TYPE: The standard ROS 2 type that carries the message; empty: a type of our own, `tailor_msgs/msg/<name>`.
+      ROS_PACKAGE: ROS 2 package of a type that is not standard; a robot's package has its own.
       FRAME_ID: The frame in the header of a type of our own.
     """
 
     __slots__ = ()
 
     ROS_TYPE: ClassVar[str] = ""
+    ROS_PACKAGE: ClassVar[str] = "tailor_msgs"
     FRAME_ID: ClassVar[str] = ""

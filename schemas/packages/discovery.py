@@ -11,11 +11,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import tailor
 from tailor.schemas.packages.spec import DomainSpec, faults_of
+
+if TYPE_CHECKING:  # takes 20 ms, for which no e-stop waits
+    from importlib.metadata import EntryPoint
 
 GROUP = "tailor.domains"
 OURS = "tailor"
@@ -81,6 +84,8 @@ def _declared() -> Iterator[EntryPoint]:
 
     An editable install copies the entry points when it is made: after a `git pull` they may be old.
     """
+    from importlib.metadata import entry_points
+
     own = _of_source_tree(Path(tailor.__file__).parents[2] / "pyproject.toml")
     for point in entry_points(group=GROUP):
         if not own or point.dist is None or point.dist.name != OURS:
@@ -90,6 +95,8 @@ def _declared() -> Iterator[EntryPoint]:
 
 def _of_source_tree(file: Path) -> tuple[EntryPoint, ...]:
     """Entry points of our source tree; none if this is no source tree."""
+    from importlib.metadata import EntryPoint
+
     if not file.is_file():
         return ()
     project = tomllib.loads(file.read_text(encoding="utf-8")).get("project", {})

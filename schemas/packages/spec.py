@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 NAME = re.compile(r"[a-z][a-z0-9_-]*")  # part of keys on the bus, of file names and of commands
 OBJECT = re.compile(r"[A-Za-z_][\w.]*(:[A-Za-z_]\w*)?")
 REQUIRED = ("domain", "driver")
-OBJECTS = ("domain", "body", "sampler", "features", "draw", "generator")  # the other parts are files
+OBJECTS = ("domain", "body", "topics", "sampler", "features", "draw", "generator")  # the other parts are files
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,7 @@ class DomainSpec:
       domain: Callable without arguments that returns a tailor.executive.interfaces.domain.Domain.
       driver: File that declares command, axes with limits, and sensors with rates.
       body: Callable without arguments that returns a tailor.simnodes.body.Body; empty for a robot without simulator.
+      topics: Topics of the robot beside those that Tailor ships, by name; loaded with the table of topics.
       sampler: Callable without arguments that returns a TaskSampler, see tailor.tools.lockstep.action_run.
       features: Tuple of FeatureSpaces beside those that Tailor ships.
       scenarios: Folder of scenario files, from which `draw` draws.
@@ -39,6 +40,7 @@ class DomainSpec:
     domain: str
     driver: str = "driver.toml"
     body: str = ""
+    topics: str = ""
     sampler: str = ""
     features: str = ""
     scenarios: str = "scenarios"

@@ -16,10 +16,11 @@ from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example
-from tailor.schemas.typesystem import MESSAGES, STANDARD, ros_type
+from tailor.schemas.typesystem import message_types, ros_type
 from tests.support.filled import filled
 
-OWN = [kind for kind in MESSAGES if kind not in STANDARD]
+MESSAGES = message_types()
+OWN = [kind for kind in MESSAGES if not kind.ROS_TYPE]
 NPM = ["@mcap/core@2", "@foxglove/rosmsg@5", "@foxglove/rosmsg2-serialization@3", "fzstd"]
 
 

@@ -11,11 +11,12 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.msg_definitions import field_types
-from tailor.schemas.typesystem import MESSAGES, STANDARD, definition, ros_type, type_hash, type_of, typestore
+from tailor.schemas.typesystem import definition, message_types, ros_type, type_hash, type_of, typestore
 from tests.support.filled import filled
 
 PINNED = Path(__file__).resolve().parents[1] / "data" / "messages.json"
-OWN = [kind for kind in MESSAGES if kind not in STANDARD]
+MESSAGES = message_types()
+OWN = [kind for kind in MESSAGES if not kind.ROS_TYPE]
 
 # A TwistStamped as CDR, field by field.
 TWIST = bytes.fromhex(

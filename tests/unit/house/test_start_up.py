@@ -19,7 +19,7 @@ WITHOUT = {
     "replay": {*HEAVY, "onnxruntime", "executive"},
     "record": {*HEAVY, "onnxruntime", "executive"},
     "bus": {*HEAVY, "onnxruntime", "executive"},
-    "estop": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags", "rich", "mcap", "asyncio"},
+    "estop": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags", "rich", "mcap", "asyncio", "robots"},
     "arm": {*HEAVY, "onnxruntime", "executive"},
     "status": {*HEAVY, "onnxruntime", "executive"},
     "goal": {*HEAVY, "onnxruntime", "executive"},

@@ -10,7 +10,7 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.schemas.own import example
-from tailor.schemas.typesystem import MESSAGES
+from tailor.schemas.typesystem import message_types
 from tailor.tools.viewer.event_fields import numbers
 from tailor.tools.viewer.planar_scene import scene_of_belief
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -26,7 +26,7 @@ def kinds(events) -> set[str]:
     return {event.kind for event in events}
 
 
-@pytest.mark.parametrize("kind", MESSAGES, ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("kind", message_types(), ids=lambda kind: kind.__name__)
 def test_every_message_of_the_bus_has_events_in_json(kind: type) -> None:
     events = RunTimeline().events_of(0.0, "agilo/anything", example(kind))
     assert json.loads(json.dumps([event.json_value() for event in events], allow_nan=False)) is not None

@@ -1,0 +1,96 @@
+"""The topics that packages of robots add to the table, and what is wrong with them.
+
+A package adds sensors, commands and ground truth of its robot; never arming, e-stops or reports of the executive.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, is_dataclass
+from importlib import import_module
+from typing import Any
+
+from tailor.schemas.messages import ArmRequest, EStop, Message
+from tailor.schemas.packages.discovery import Package
+from tailor.schemas.packages.ros_names import PACKAGE, ros_type
+from tailor.schemas.packages.topic import Topic
+
+SOURCES = ("driver", "executive", "simulator")
+PRIORITIES = ("real_time", "interactive_high", "data")
+KEY_START = "{robot}/"
+
+
+@dataclass(frozen=True, slots=True)
+class PackageTopics:
+    """Topics that may enter the table, and the faults of packages whose topics may not, by the package's name."""
+
+    topics: Mapping[str, Topic]
+    faults: Mapping[str, tuple[str, ...]]
+
+
+def add_topics(known: Mapping[str, Topic], packages: Sequence[Package]) -> PackageTopics:
+    """Add the topics of packages, those of one package all or none."""
+    topics, faults = dict(known), {}
+    for package in packages:
+        if package.spec is None or package.faults or not package.spec.topics:
+            continue
+        try:
+            added = _load(package.spec.topics)
+        except Exception as error:
+            wrong: tuple[str, ...] = (f"topics = '{package.spec.topics}': {type(error).__name__}: {error}",)
+        else:
+            wrong = tuple(f"topics = '{package.spec.topics}': {fault}" for fault in _faults(added, topics))
+        if wrong:
+            faults[package.name] = wrong
+        else:
+            topics.update(added)
+    return PackageTopics(topics, faults)
+
+
+def _load(written: str) -> Any:
+    module, _, attribute = written.partition(":")
+    return getattr(import_module(module), attribute)
+
+
+def _faults(added: Any, known: Mapping[str, Topic]) -> Iterator[str]:
+    if not isinstance(added, Mapping):
+        yield f"is a {type(added).__name__}, expected a table of Topics by name"
+        return
+    keys = {topic.key: name for name, topic in known.items()}
+    types = {ros_type(topic.type): topic.type for topic in known.values()}
+    for name, topic in added.items():
+        if not isinstance(topic, Topic):
+            yield f"'{name}' is a {type(topic).__name__}, expected a Topic"
+            continue
+        if name in known:
+            yield f"'{name}' is a topic already"
+        if topic.key in keys:
+            yield f"'{name}' has the key {topic.key} of '{keys[topic.key]}'"
+        yield from (f"'{name}': {fault}" for fault in (*_faults_of_row(topic), *_faults_of_type(topic.type, types)))
+        keys[topic.key] = name
+
+
+def _faults_of_row(topic: Topic) -> Iterator[str]:
+    if not topic.key.startswith(KEY_START) or set(topic.key.removeprefix(KEY_START)) & set("{}*$#?"):
+        yield f"key is '{topic.key}', expected one that starts with {KEY_START} and has no pattern"
+    if topic.source not in SOURCES:
+        yield f"source is '{topic.source}', expected one of: {', '.join(SOURCES)}"
+    if topic.priority not in PRIORITIES:
+        yield f"priority is '{topic.priority}', expected one of: {', '.join(PRIORITIES)}"
+    if topic.priority == "real_time" and topic.source != "executive":
+        yield f"priority is real_time, which is for commands of the executive, but source is '{topic.source}'"
+    if not (math.isfinite(topic.rate_hz) and topic.rate_hz >= 0.0):
+        yield f"rate_hz is {topic.rate_hz}, expected a finite number, not negative"
+
+
+def _faults_of_type(kind: Any, types: Mapping[str, type]) -> Iterator[str]:
+    if not (isinstance(kind, type) and issubclass(kind, Message) and is_dataclass(kind)):
+        yield f"type is {kind!r}, expected a frozen dataclass derived from Message"
+        return
+    if kind in (ArmRequest, EStop):
+        yield f"type is {kind.__name__}, which no package publishes"
+    if types.get(ros_type(kind), kind) is not kind:
+        yield f"type has the name {ros_type(kind)} of another message"
+    elif ros_type(kind).startswith(f"{PACKAGE}/") and not kind.__module__.startswith("tailor."):
+        yield f"type {kind.__name__} has the ROS_PACKAGE {PACKAGE}, expected one of its own"

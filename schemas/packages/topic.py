@@ -1,0 +1,30 @@
+"""One row of the table of topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tailor.schemas.messages import ArmRequest, Message
+
+Priority = Literal["real_time", "interactive_high", "data"]
+Source = Literal["driver", "executive", "people", "simulator", "player", "launcher"]
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One row of the table; `{robot}` in a key is a placeholder for the robot's name."""
+
+    key: str
+    type: type[Message]
+    rate_hz: float  # 0: on demand or on change
+    source: Source
+    fresh_s: float | None = None  # a message older than this is stale; None: never
+    priority: Priority = "data"
+    recorded: bool = True
+    max_bytes: int = 4096
+
+    @property
+    def drives(self) -> bool:
+        """Whether it moves, arms or stops a robot."""
+        return self.priority == "real_time" or self.type is ArmRequest
