@@ -11,6 +11,7 @@ SPEC = DomainSpec(
     driver="tailor.simnodes.powercube:driver.toml",
     body="tailor.simnodes.powercube.body:PowerCubeBody",
     sampler="tailor.tools.lockstep.samplers.arm:ArmSampler",
+    features="tailor.models.features.joints:SPACES",
     generator="tailor.executive.domains.arm.letters",
     models="tailor.models:zoo",
 )

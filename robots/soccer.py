@@ -12,6 +12,7 @@ SPEC = DomainSpec(
     body="tailor.simnodes.agilo.body:AgiloBody",
     topics="tailor.robots.soccer_topics:TOPICS",
     sampler="tailor.tools.lockstep.samplers.soccer:SoccerSampler",
+    features="tailor.models.features.planar:SPACES",
     scenarios="tailor.executive.domains.soccer:scenarios",
     draw="tailor.executive.domains.soccer.scenario_sampling:sample_scenario",
     models="tailor.models:zoo",

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from sklearn.tree import DecisionTreeRegressor
 
 from tailor.models.cards.card import Card
-from tailor.models.features.features import SPACES, FeatureSpace
+from tailor.models.features.features import FeatureSpace
+from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.models.trees.distillation import distill
 from tailor.models.trees.linear_tree import LinearTree
@@ -19,8 +20,12 @@ ROWS = 30_000
 
 
 def space_of(card: Card) -> FeatureSpace:
-    """Feature space of a card."""
-    return SPACES[card["features"]]
+    """Feature space of a card.
+
+    Raises:
+      UsageError: No installed package declares it.
+    """
+    return feature_space(card["features"])
 
 
 def random_arguments(card: Card, count: int, rng: np.random.Generator) -> Array:

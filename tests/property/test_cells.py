@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tailor.models.bounds.cell_boxes import boxes_of_cells
 from tailor.models.bounds.onnx_reader import read_graph
 from tailor.models.export.onnx_export import export_duration
-from tailor.models.features.features import projective
+from tailor.models.features.planar import projective
 from tailor.models.trees.cells import MAX_CELLS, cells_of
 from tailor.models.trees.model_tree import BaggedModelTrees
 from tailor.models.trees.split_tree import LEAF, SplitTree

@@ -14,8 +14,8 @@ from tailor.models.bounds.leaf_bounds import LeafBounds, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.cards.card import card_path
 from tailor.models.features.feature_intervals import FEATURE_SPANS
-from tailor.models.features.features import SPACES
 from tailor.models.features.intervals import Span
+from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import ZOO
 from tests.support.random_trees import Trees
 
@@ -28,7 +28,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A box of arguments: each wide, narrow or a point; often with the same place at both ends, or at rest."""
-    scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in SPACES[space].arguments])
+    scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in feature_space(space).arguments])
     lower = rng.uniform(-0.5, 0.5, 8) * scale
     if space != "joints":
         lower[[3, 7]] = rng.uniform(0, 0.5, 2)
@@ -52,7 +52,7 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
     rng = np.random.default_rng(seed)
     lower, upper = box(space, rng)
     spans = tuple(Span(np.full(SHAPE, a), np.full(SHAPE, b)) for a, b in zip(lower, upper, strict=True))
-    seen = SPACES[space](drawn(lower, upper, rng, 200))
+    seen = feature_space(space)(drawn(lower, upper, rng, 200))
     met = np.zeros(len(seen), bool)
     for case in FEATURE_SPANS[space](spans):
         if case.possible is None or case.possible.all():
@@ -111,7 +111,7 @@ def test_several_boxes_are_bounded_as_each_alone():
 @pytest.mark.parametrize("path", LEARNED, ids=lambda path: "/".join(path.parts[-3:]))
 def test_trees_read_from_a_learned_model_say_what_it_says(path):
     card = json.loads(card_path(path).read_text())
-    space, golden = SPACES[card["features"]], card["golden"]
+    space, golden = feature_space(card["features"]), card["golden"]
     boxes = tree_boxes(path.read_bytes(), len(space.features))
     assert boxes is not None
     said, spread = Trees(space.name, boxes).predict(np.array(golden["arguments"]))

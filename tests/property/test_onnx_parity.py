@@ -9,7 +9,9 @@ from tailor.models.export.onnx_export import export_duration, export_success
 from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
-from tailor.models.features.features import SPACES, joints, projective
+from tailor.models.features.joints import joints
+from tailor.models.features.planar import projective
+from tailor.models.features.spaces import feature_spaces
 from tailor.models.trees import cells
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 from tailor.models.trees.split_tree import LEAF
@@ -104,10 +106,10 @@ def test_probabilities_agree(learner, episodes) -> None:
     assert np.abs(success - learner.predict_proba(projective(rows))[:, 1]).max() <= 1e-5
 
 
-@pytest.mark.parametrize("name", SPACES)
+@pytest.mark.parametrize("name", feature_spaces())
 def test_every_feature_space_gives_the_same_bits_in_the_graph(name, examples) -> None:
     """A tree with a leaf every few rows shows any difference of a single bit."""
-    space = SPACES[name]
+    space = feature_spaces()[name]
     rows = awkward(20000)
     features = space(rows)
     tree = ModelTreeRegressor(min_rows=20, held_out=0.0, ridge=1e-3).fit(features, np.sin(9 * features).sum(axis=1))

@@ -10,7 +10,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.models.bounds.leaf_bounds import LeafBounds
 from tailor.models.bounds.model_bounds import ModelBounds
 from tailor.models.bounds.tree_boxes import TreeBoxes
-from tailor.models.features.features import SPACES
+from tailor.models.features.spaces import feature_space
 
 RANGES = {  # where the features of the spaces lie, for thresholds to fall within
     "projective": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],
@@ -48,7 +48,7 @@ class Trees:
         return ModelBounds(self.space, LeafBounds(self.boxes))
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
-        boxes, features = self.boxes, SPACES[self.space](arguments)
+        boxes, features = self.boxes, feature_space(self.space)(arguments)
         inside = np.ones((len(features), len(boxes.low)), bool)
         for j in range(features.shape[1]):
             inside &= (features[:, j, None] > boxes.lower[:, j]) & (features[:, j, None] <= boxes.upper[:, j])

@@ -23,7 +23,7 @@ from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.models.bounds.leaf_bounds import LeafBounds
 from tailor.models.bounds.model_bounds import ModelBounds
 from tailor.models.bounds.tree_boxes import TreeBoxes
-from tailor.models.features.features import SPACES
+from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import OnnxDuration
 from tailor.tools.benchmarks.refine_cases import Case
 
@@ -44,7 +44,7 @@ class OneTree:
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
         """Mean and a standard deviation of zero, each of shape (n,), for arguments of shape (n, k)."""
-        boxes, features = self.boxes, SPACES[self.space](arguments)
+        boxes, features = self.boxes, feature_space(self.space)(arguments)
         inside: NDArray[np.bool_] = np.ones((len(features), len(boxes.low)), bool)
         for j in range(features.shape[1]):
             inside &= (features[:, j, None] > boxes.lower[:, j]) & (features[:, j, None] <= boxes.upper[:, j])

@@ -14,7 +14,7 @@ from rich.table import Table
 from tailor.executive.interfaces.values import Array
 from tailor.models.cards.card import Card
 from tailor.models.export.onnx_export import export_duration
-from tailor.models.features.features import SPACES
+from tailor.models.features.planar import projective
 from tailor.models.rules.model_queries import random_arguments
 from tailor.models.runtime import load_robot, open_session
 from tailor.models.training import learners
@@ -73,7 +73,7 @@ def _runtime_alone(make: Callable[[], Any]) -> tuple[Predict, int]:
     """Call of a learner's graph without the checks of `tailor.models.runtime`, and its number of leaves."""
     features, seconds, groups = _examples(20_000)
     learner = make().fit(features, seconds, groups=groups)
-    session = open_session(export_duration(learner, SPACES["projective"], {}).SerializeToString())
+    session = open_session(export_duration(learner, projective, {}).SerializeToString())
     leaves = sum(tree.leaves for tree in learner.trees_)
     return lambda arguments: session.run(None, {"arguments": arguments}), leaves
 

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.examples import Examples
-from tailor.models.features.features import SPACES, FeatureSpace
+from tailor.models.features.features import FeatureSpace
+from tailor.models.features.joints import joints
+from tailor.models.features.planar import projective
 from tailor.models.runtime import OnnxDuration
 
 Array = NDArray[np.float64]
@@ -32,10 +34,8 @@ class Region:
     first_from_deg: float  # where the first angle begins
 
 
-POSES = Region(SPACES["projective"], "angle_at", f"dist {DIST_M} m, angle_to 0°, v = v_g = 0", "m", 0.0)
-JOINTS = Region(
-    SPACES["joints"], "angle_2", f"dist {STEP_RAD} rad along a, v = 0, v_g = {ARRIVING_RAD_S} rad/s", "rad", -180.0
-)
+POSES = Region(projective, "angle_at", f"dist {DIST_M} m, angle_to 0°, v = v_g = 0", "m", 0.0)
+JOINTS = Region(joints, "angle_2", f"dist {STEP_RAD} rad along a, v = 0, v_g = {ARRIVING_RAD_S} rad/s", "rad", -180.0)
 
 
 def region_of(card: Card) -> Region | None:

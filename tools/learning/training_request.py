@@ -82,14 +82,14 @@ def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder:
 
 def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> FeatureSpace:
     """The feature space of that name, or the default for an action's arguments."""
-    from tailor.models.features.features import SPACES
+    from tailor.models.features.spaces import feature_space, feature_spaces
 
-    fitting = [each for each, space in SPACES.items() if tuple(q.name for q in space.arguments) == arguments]
+    fitting = [each for each, space in feature_spaces().items() if tuple(q.name for q in space.arguments) == arguments]
     wanted = name or (DEFAULT_FEATURES if DEFAULT_FEATURES in fitting else next(iter(fitting), DEFAULT_FEATURES))
     if wanted not in fitting:
-        takes = " ".join(quantity.name for quantity in SPACES[wanted].arguments)
+        takes = " ".join(quantity.name for quantity in feature_space(wanted).arguments)
         raise UsageError(f"{folder}: arguments are {' '.join(arguments)}, expected {takes} by features '{wanted}'")
-    return SPACES[wanted]
+    return feature_space(wanted)
 
 
 def reproduction_command(

@@ -51,12 +51,12 @@ def checked(request: TrainingRequest) -> TrainingRequest:
     Raises:
       UsageError: There is no such learner or feature space.
     """
-    from tailor.models.features.features import SPACES
+    from tailor.models.features.spaces import feature_space
     from tailor.models.training.learners import learner_name
 
     for name in (request.features, request.energy_features):
-        if name is not None and name not in SPACES:
-            raise UsageError(f"no feature space '{name}' (expected one of: {', '.join(SPACES)})")
+        if name is not None:
+            feature_space(name)
     learner, failure_learner = request.learner, request.failure_learner
     return replace(
         request,

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from tailor.models.features.features import SPACES, joints, projective, projective_turn, relative
+from tailor.models.features.joints import joints
+from tailor.models.features.planar import projective, projective_turn, relative
+from tailor.models.features.spaces import feature_space, feature_spaces
 
 PI = np.pi
 
@@ -27,10 +29,11 @@ def test_projective_features_are_those_of_table_7() -> None:
     assert np.abs(projective(rows) - expected).max() < 2e-5
 
 
-@pytest.mark.parametrize("name", SPACES)
+@pytest.mark.parametrize("name", feature_spaces())
 def test_every_space_is_finite_and_wide_as_it_declares(name: str) -> None:
-    features = SPACES[name](poses(1000))
-    assert features.shape == (1000, len(SPACES[name].features))
+    space = feature_space(name)
+    features = space(poses(1000))
+    assert features.shape == (1000, len(space.features))
     assert features.dtype == np.float32
     assert np.isfinite(features).all()
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tailor.models.bounds.tree_boxes import TreeBoxes
-from tailor.models.features.features import SPACES, Quantity
+from tailor.models.features.features import Quantity
+from tailor.models.features.spaces import feature_space
 from tailor.models.rules.leaf_rules import applied_rule
 from tailor.models.runtime import load_model
 
@@ -40,6 +41,6 @@ def test_what_is_not_a_number_meets_no_rule() -> None:
 
 def test_a_shipped_model_has_a_rule_for_whatever_it_is_asked() -> None:
     model = load_model("agilo/goToPose/duration")
-    space = SPACES[model.card["features"]]
+    space = feature_space(model.card["features"])
     for row in space(np.array(model.card["golden"]["arguments"])):
         assert applied_rule(model.bounds.trees.boxes, row, space.features, "s").startswith("if ")

@@ -10,7 +10,7 @@ import pytest
 from tailor.executive.composition import load_models
 from tailor.models import runtime
 from tailor.models.cards.card import card_path, read_card, sha256_of, write_card
-from tailor.models.features.features import projective
+from tailor.models.features.planar import projective
 from tailor.schemas.errors import UsageError
 from tailor.tools.main import main
 

@@ -10,14 +10,12 @@ from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.episodes.regression_targets import ENERGY
 from tailor.models.export.publishing import Publication, publish
 from tailor.models.export.zoo_writer import write_model
-from tailor.models.features import features
+from tailor.models.features.planar import projective
 from tailor.models.training.training import Trained, train_duration, train_regression, train_success
 from tailor.schemas.errors import UsageError
 from tests.support import standin
 
-ARGUMENTS = [
-    {"name": q.name, "unit": q.unit, "lower": -4.0, "upper": 4.0} for q in features.SPACES["projective"].arguments
-]
+ARGUMENTS = [{"name": q.name, "unit": q.unit, "lower": -4.0, "upper": 4.0} for q in projective.arguments]
 
 
 def data_set(count: int, seed: int = 1) -> DataSet:
@@ -47,30 +45,30 @@ def data() -> DataSet:
 
 @pytest.fixture(scope="module")
 def duration(data: DataSet) -> Trained:
-    return train_duration(data.episodes, features.projective, "linear", seed=3)
+    return train_duration(data.episodes, projective, "linear", seed=3)
 
 
 def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
-    about = Publication("duration", "linear", features.projective, 3, "tailor train toy")
+    about = Publication("duration", "linear", projective, 3, "tailor train toy")
     model = runtime.load_model(publish(tmp_path, data, duration, about))
     arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
     mean, std = model.predict(arguments)
-    expected = duration.learner.predict_with_std(features.projective(arguments))
+    expected = duration.learner.predict_with_std(projective(arguments))
     assert np.abs(mean - expected[0]).max() <= 1e-4
     assert np.abs(std - expected[1]).max() <= 1e-4
     assert model.card["test"]["mae_s"] < 0.3 * model.card["test"]["mean_duration_s"]
 
 
 def test_training_twice_gives_the_same_bits(data, duration) -> None:
-    again = train_duration(data.episodes, features.projective, "linear", seed=3)
+    again = train_duration(data.episodes, projective, "linear", seed=3)
     assert again.test == duration.test
-    rows = features.projective(data.episodes[0].ticks)
+    rows = projective(data.episodes[0].ticks)
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
 
 
 def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
-    trained = train_success(data.episodes, features.projective, "tree", seed=3)
-    about = Publication("success", "tree", features.projective, 3, "tailor train toy")
+    trained = train_success(data.episodes, projective, "tree", seed=3)
+    about = Publication("success", "tree", projective, 3, "tailor train toy")
     model = runtime.load_model(publish(tmp_path, data, trained, about))
     fresh = data_set(300, seed=8)
     probability = model.probability(np.stack([e.ticks[0] for e in fresh.episodes]))
@@ -82,21 +80,21 @@ def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
 def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
     ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
     recorded = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
-    trained = train_regression(ENERGY, recorded, features.projective, "linear", seed=3)
-    about = Publication("energy", "linear", features.projective, 3, "tailor train toy")
+    trained = train_regression(ENERGY, recorded, projective, "linear", seed=3)
+    about = Publication("energy", "linear", projective, 3, "tailor train toy")
     publish(tmp_path, replace(data, episodes=recorded), trained, about)
     model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
     assert model.card["outputs"] == ["mean_j", "std_j"]
     assert model.card["test"]["mae_j"] < 0.3 * model.card["test"]["mean_energy_j"]
     arguments = np.stack([e.ticks[0] for e in recorded[:50]])
-    assert np.abs(model.predict(arguments)[0] - trained.learner.predict(features.projective(arguments))).max() <= 1e-4
+    assert np.abs(model.predict(arguments)[0] - trained.learner.predict(projective(arguments))).max() <= 1e-4
     with pytest.raises(UsageError, match="0 finished episodes, expected at least 40"):
-        train_regression(ENERGY, data.episodes, features.projective, "linear", seed=3)
+        train_regression(ENERGY, data.episodes, projective, "linear", seed=3)
 
 
 def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data) -> None:
     chosen = [replace(e, on_policy=e.number % 4 > 0) for e in data.episodes]
-    test = train_duration(chosen, features.projective, "linear", seed=3).test
+    test = train_duration(chosen, projective, "linear", seed=3).test
     assert test["interval90_on"] == "on-policy"
     assert test["interval90_n"] >= 30
     assert test["interval90_random_factor"] > 0
@@ -104,4 +102,4 @@ def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data)
 
 def test_too_few_episodes_are_told_not_trained_on(data) -> None:
     with pytest.raises(UsageError, match="10 finished episodes, expected at least 40"):
-        train_duration(data.episodes[:10], features.projective, "bag", seed=3)
+        train_duration(data.episodes[:10], projective, "bag", seed=3)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tailor.models import runtime
-from tailor.models.features.features import projective
+from tailor.models.features.planar import projective
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.models.trees.linear_tree import LinearTree

@@ -10,7 +10,7 @@ import numpy as np
 
 from tailor.models.episodes.examples import duration_examples
 from tailor.models.export.publishing import leaves
-from tailor.models.features.features import SPACES
+from tailor.models.features.planar import projective
 from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
@@ -43,7 +43,7 @@ def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
     train = duration_examples([episode for episode in gathered if episode.finished], arguments.ticks)
     unseen = fresh.evaluation(arguments.robot, action, arguments.episodes, *more).episodes
     test = duration_examples([episode for episode in unseen if episode.finished], 1)
-    space = SPACES["projective"]
+    space = projective
     rows = []
     for name in learners.DURATION_LEARNERS:
         started = time.perf_counter()

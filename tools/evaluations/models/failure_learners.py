@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tailor.models.episodes.examples import success_examples
-from tailor.models.features.features import SPACES
+from tailor.models.features.planar import projective
 from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     test = success_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
     if len(np.unique(train.targets)) < 2:
         raise UsageError(f"{arguments.action}: all training episodes ended alike, expected some failures to learn from")
-    space = SPACES["projective"]
+    space = projective
     observed = test.targets > 0.5
     rows = []
     for name in learners.SUCCESS_LEARNERS:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from tailor.models.episodes.examples import Examples, duration_examples
-from tailor.models.features.features import SPACES
+from tailor.models.features.planar import projective, relative
+from tailor.models.features.spaces import feature_space
 from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
@@ -35,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     test = duration_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
     rows: list[dict[str, Any]] = []
     for name in ORDER:
-        space = SPACES[name]
+        space = feature_space(name)
         learner = fit("duration", arguments.learner, train, space, arguments.seed)
         off = np.abs(learner.predict(space(test.arguments)) - test.targets)
         mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))
@@ -54,8 +55,8 @@ def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str
 
     columns: dict[str, Any] = {
         "direct: x [m]": test.arguments[:, 0],
-        "relative: dx [m]": SPACES["relative"](test.arguments)[:, 0],
-        "projective: dist [m]": SPACES["projective"](test.arguments)[:, 2],
+        "relative: dx [m]": relative(test.arguments)[:, 0],
+        "projective: dist [m]": projective(test.arguments)[:, 2],
     }
     names, errors, intervals = ([row[key] for row in rows] for key in ("space", "mae_s", "mae_ci95"))
     return {

@@ -12,7 +12,7 @@ import numpy as np
 
 from tailor.models.episodes.episodes import Episode, merge, read_data_set
 from tailor.models.episodes.examples import duration_examples, split
-from tailor.models.features.features import SPACES
+from tailor.models.features.planar import projective
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_POLICY_EPISODES
 from tailor.models.training.training import fit
@@ -93,7 +93,7 @@ class _Judges:
 
 def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Namespace) -> dict[str, Any]:
     """Errors on random episodes and on those of the optimiser's choices, and what intervals hold before and after."""
-    space = SPACES["projective"]
+    space = projective
     model = fit("duration", "bag", duration_examples(episodes, arguments.ticks), space, arguments.seed)
     figures: dict[str, Any] = {}
     before = scores.interval_factor(*_errors(model, judges.random), LEVEL)
@@ -115,7 +115,7 @@ def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Na
 
 def _errors(model: Any, episodes: Sequence[Episode]) -> tuple[Any, Any]:
     """Predicted minus observed seconds, and the model's spread, at the first ticks."""
-    space = SPACES["projective"]
+    space = projective
     rows = duration_examples([e for e in episodes if e.finished], 1)
     mean, spread = model.predict_with_std(space(rows.arguments))
     return mean - rows.targets, spread

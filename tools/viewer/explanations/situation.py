@@ -10,7 +10,8 @@ import numpy as np
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
 from tailor.models.cards.card import UNITS
-from tailor.models.features.features import SPACES, Quantity
+from tailor.models.features.features import Quantity
+from tailor.models.features.spaces import feature_spaces
 from tailor.models.rules.leaf_rules import applied_rule
 
 
@@ -40,7 +41,7 @@ def situations_of(
     for action in actions:
         model = models.durations[action.action.duration_model]
         card, bounds = getattr(model, "card", {}), getattr(model, "bounds", None)
-        space = SPACES.get(card.get("features", ""))
+        space = feature_spaces().get(card.get("features", ""))
         if space is not None:
             both = np.array([_parameters(action, sequence) for sequence in (chosen, greedy)])
             seen = space(action.action.arguments(both))

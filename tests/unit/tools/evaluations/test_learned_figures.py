@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tailor.models.features.features import SPACES
+from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import load_model
 from tailor.tools.figures.learned import flat_from
 from tailor.tools.figures.learned_regions import JOINTS, POSES, region_of, swept
@@ -28,7 +28,7 @@ def test_a_learning_curve_is_flat_from_where_no_error_leaves_the_last_one_s_inte
 @pytest.mark.parametrize("region", [POSES, JOINTS])
 def test_the_sweep_turns_the_angle_that_it_names_and_nothing_else(region) -> None:
     angle = np.linspace(-3.0, 3.0, 25)
-    features = SPACES[region.space.name](swept(region, angle))
+    features = feature_space(region.space.name)(swept(region, angle))
     names = [quantity.name for quantity in region.space.features]
     turned = names.index(region.swept)
     assert np.allclose(features[:, turned], angle, atol=1e-4)
