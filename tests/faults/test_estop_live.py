@@ -1,5 +1,6 @@
 """An e-stop gets through whatever others do: from the first call of a new session to zero at the guard."""
 
+import random
 import socket
 import sys
 import time
@@ -19,6 +20,7 @@ from tests.support.stalls import repeat_on_stall
 LIMIT_S = 0.2  # P38 of SAFETY.md
 SILENT = 110  # zenoh's own limit of connections that have sent nothing is 100
 MANY_SILENT = 1200
+PHASES = random.Random(0)
 OTHERS = tuple(name for name in TOPICS if name not in ("driver", "self_arm"))  # the one shows, the other takes the stop
 FLOODS = {
     "its key": [("people", "estop"), ("people", "estop:junk"), ("observer", "estop")],
@@ -32,6 +34,7 @@ def silent_connections(endpoint, count=MANY_SILENT):
     with ExitStack() as stack:
         for _ in range(count):
             stack.enter_context(socket.create_connection(address(endpoint)))
+        time.sleep(PHASES.uniform(0.0, 3.0))  # before, while and after the gateway closes them
         yield
 
 
