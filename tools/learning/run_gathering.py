@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -16,20 +16,21 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.core.context import Settings, make_context
+from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, Odometry, Subgoals
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
+from tailor.schemas.topics import TOPICS
 from tailor.tools.learning import gathering
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; disjoint from the seeds of evaluations
 CHUNK = 10  # runs whose episodes are written together
-READ = (Subgoals, ExecStatus, SoccerGroundTruth, JointState, Odometry, ActionFinished)
+READ = (Subgoals, ExecStatus, ActionFinished)  # besides sensors and ground truth
 MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
 UNPROVEN = RefinementSettings(certify_checks=0)  # certificates take time and do not change choices
 
@@ -96,7 +97,7 @@ def prepare(
             "action": action,
             "arguments": gathering.argument_ranges(loaded, action),
             "runs": len(runs),
-            "source_sha256": gathering.source_hash(loaded.robot, domain),
+            "source_sha256": gathering.source_hash(domain),
             "on_policy": True,
             **about,
         }
@@ -134,7 +135,8 @@ def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path
       UsageError: A file is not a recording of an executive's run, none holds a finished action, or the folder holds
         episodes already; nothing is written then.
     """
-    cut = [EpisodeExtractor(domains.load(domain)).read(_messages(path)) for path in recordings]
+    robot = domains.load(domain)
+    cut = [EpisodeExtractor(robot).read(_messages(path, _types_of(robot))) for path in recordings]
     if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
     about = {"source": "recordings", "recordings": [path.name for path in recordings]}
@@ -148,15 +150,21 @@ def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path
     return {action: counts[action] for action in modelled_actions(domain)}
 
 
-def _messages(path: Path) -> Iterator[Message]:
-    """Messages of the extractor's types, in the order in which they were published."""
+def _types_of(domain: Domain) -> frozenset[type[Message]]:
+    """Types of the messages that an extractor may read: the executive's, the robot's sensors, and ground truth."""
+    truth = (name for name, topic in TOPICS.items() if topic.source == "simulator")
+    return frozenset((*READ, *(TOPICS[name].type for name in (*domain.sensors, *truth))))
+
+
+def _messages(path: Path, types: Collection[type[Message]]) -> Iterator[Message]:
+    """Messages of the given types, in the order in which they were published."""
     from tailor.runtime.recordings.recording import open_recording
     from tailor.schemas.codec import decode
     from tailor.schemas.typesystem import type_of
 
     for recorded in sorted(open_recording(path).messages(), key=lambda m: m.publish_ns):
         kind = type_of(recorded.ros_type)
-        if kind in READ:
+        if kind is not None and kind in types:
             message = decode(kind, recorded.data)
             if isinstance(message, Rejected):
                 raise UsageError(f"{path}: {recorded.key} number {recorded.sequence}: {message.reason}")

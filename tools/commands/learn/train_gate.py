@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     add = parser.add_argument
     add("robot", help="name of the robot")
-    add("--scenario", default="approach-dribble", help="scenario to run (default: %(default)s)")
+    add("--scenario", default="", help="scenario to run (default: the first of the robot's domain)")
     add("--episodes", type=at_least(1, "--episodes"), default=1200, help="pairs of episodes (default: %(default)s)")
     add("--seed", type=at_least(0, "--seed"), default=DEFAULT_SEED,
         help="random seed of the first start (default: %(default)s)")  # fmt: skip
@@ -76,6 +76,7 @@ def train(arguments: argparse.Namespace, zoo: Path) -> tuple[Path, dict[str, Any
     Returns:
       The path of its ONNX file, and its test results.
     """
+    from tailor.executive import domains
     from tailor.executive.refinement.gate import SITUATION
     from tailor.models.export.gate_publishing import publish_gate
     from tailor.models.training.gate_training import check_learner, train_gate
@@ -85,12 +86,13 @@ def train(arguments: argparse.Namespace, zoo: Path) -> tuple[Path, dict[str, Any
 
     check_learner(arguments.learner, arguments.episodes)  # fails before an hour of runs, not after
     domain = gathering.domain_of(arguments.robot)
+    arguments.scenario = arguments.scenario or domains.scenarios(domain)[0]
     settings = RefinementSettings(gate=False)
     seeds = training_seeds(arguments.seed, arguments.episodes)
     task = Task(domain, arguments.scenario, zoo=_zoo_setting(zoo))
     gathered = gather_pairs(task, settings, seeds, arguments.jobs, arguments.store)
     trained = train_gate(gathered.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
-    provenance = _provenance(arguments, zoo, settings, gathered, gathering.source_hash(arguments.robot, domain))
+    provenance = _provenance(arguments, zoo, settings, gathered, gathering.source_hash(domain))
     return publish_gate(zoo, gathered.pairs, trained, provenance), dict(trained.test)
 
 

@@ -26,7 +26,7 @@ def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: P
     """
     domain = gathering.domain_of(robot)
     gathering.check_action(domain, action)
-    made_by = gathering.source_hash(robot, domain)[:12]  # changed controllers have other episodes
+    made_by = gathering.source_hash(domain)[:12]  # changed controllers have other episodes
     folder = store / "episodes" / f"{robot}-{action}-{made_by}-{stream}-{seed}-{count}"
     spec = DataSetSpec(domain, action, count, seed, folder, stream)
     gathering.prepare(spec, resume=True)

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _gathered(domain: str, seed: int, arguments: argparse.Namespace) -> Path:
     chooses = models_hash(arguments.robot, arguments.zoo)[:12]
-    made_by = gathering.source_hash(arguments.robot, domain)[:12]
+    made_by = gathering.source_hash(domain)[:12]
     folder = (
         arguments.store
         / "policy"

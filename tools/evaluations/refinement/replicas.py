@@ -52,7 +52,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
       store: Folder for all replicas; other controllers or bodies, other replicas.
       jobs: Processes.
     """
-    made_by = gathering.source_hash(recipe.robot, recipe.domain)[:12]
+    made_by = gathering.source_hash(recipe.domain)[:12]
     folder = store / "replicas" / f"{recipe.robot}-{recipe.episodes}-{recipe.runs}-{made_by}" / str(number)
     seed = FIRST_SEED + number
     _gather(recipe, seed, folder / "random", jobs)
