@@ -83,7 +83,7 @@ class Shell:
                 if stopping:
                     self._notifier.stopping()
                     return self._state
-                realtime.collect_young()
+                realtime.collect_garbage(self._state.tick)
         finally:
             self._planner.close()
 

@@ -17,6 +17,8 @@ from tailor.runtime.memory_lock import lock_memory
 PRIORITY = 50  # of SCHED_FIFO: above ordinary work, below the kernel's own threads
 BUS_PRIORITY = 40  # below the loop: a flood on the bus must not delay a tick
 DRIVER_PRIORITY = 45
+YOUNG, OLD = 1, 2  # generations of the garbage collector; an older one contains the younger ones
+OLD_TICKS = 100
 _BUS_THREAD = re.compile(r"(app|net|acc|tx|rx)-\d+")  # zenoh's runtimes
 
 
@@ -33,7 +35,7 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
     """
     gc.collect()
     gc.freeze()
-    gc.disable()  # the loop calls collect_young() in its slack time instead
+    gc.disable()  # the loop calls collect_garbage() in its slack time instead
     return {
         "gc": "frozen",
         "memory": lock_memory(),
@@ -43,9 +45,17 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
     }
 
 
-def collect_young() -> None:
-    """Collect young garbage. Call it after the work of a tick, so that no collection interrupts a tick."""
-    gc.collect(1)
+def collect_garbage(tick: int) -> None:
+    """Collect garbage. Call it after the work of each tick, so that no collection interrupts a tick.
+
+    Every tenth second also that of objects which have survived earlier collections: an abandoned search, whose
+    generator refers to itself, has lived for many ticks. What was loaded before `prepare` is frozen, so that this takes
+    milliseconds.
+
+    Args:
+      tick: Number of the tick.
+    """
+    gc.collect(OLD if tick % OLD_TICKS == 0 else YOUNG)
 
 
 def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:

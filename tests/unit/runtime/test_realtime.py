@@ -1,12 +1,15 @@
 """Privileges of a real-time process, in a process of its own."""
 
+import gc
 import json
 import os
 import subprocess
 import sys
+import weakref
 
 import pytest
 
+from tailor.runtime.realtime import OLD_TICKS, collect_garbage
 from tests.support.bus_system import free_endpoint
 
 REPORT = """
@@ -69,3 +72,28 @@ def test_a_routers_threads_are_not_starved_by_ordinary_work():
     if allowed.returncode:
         pytest.skip("SCHED_FIFO is not granted here")
     assert {policy for name, policy in policies.items() if name != "python"} == {os.SCHED_FIFO}
+
+
+def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds():
+    """Such as an abandoned search: its generator refers to itself."""
+
+    class Search:
+        def __init__(self):
+            self.work = self.steps()
+            next(self.work)
+
+        def steps(self):
+            yield self
+
+    gc.disable()
+    try:
+        search = Search()
+        for tick in range(1, 20):
+            collect_garbage(tick)
+        abandoned = weakref.ref(search)
+        del search
+        for tick in range(20, 20 + OLD_TICKS):
+            collect_garbage(tick)
+        assert abandoned() is None
+    finally:
+        gc.enable()
