@@ -85,12 +85,17 @@ def _run_all(mutants: Sequence[Mutant], trees: Sequence[Tree], console: Console)
     outcomes: dict[str, Outcome] = {}
     with Progress(console=console) as progress, ThreadPoolExecutor(len(trees)) as pool:
         task = progress.add_task("mutants", total=len(mutants))
-        started = {pool.submit(run, mutant): mutant for mutant in mutants}
-        for done in as_completed(started):
-            outcomes[started[done].name] = done.result()
-            if done.result().status != "killed":
-                progress.print(f"{started[done].name} {done.result().status}: {done.result().by}", markup=False)
-            progress.advance(task)
+        started = {pool.submit(run, mutant): mutant.name for mutant in mutants}
+        try:
+            for done in as_completed(started):
+                outcome = outcomes[started[done]] = done.result()
+                if outcome.status != "killed" or not console.is_terminal:  # a log has no progress bar
+                    line = f"{started[done]}: {outcome.status}: {outcome.by.strip()}"
+                    progress.print(line, markup=False, highlight=False, soft_wrap=True)
+                progress.advance(task)
+        except BaseException:  # e.g. Ctrl-C: do not run the rest
+            pool.shutdown(cancel_futures=True)
+            raise
     return outcomes
 
 

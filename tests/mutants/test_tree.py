@@ -6,6 +6,7 @@ import pytest
 
 from tests.mutants.mutant import Mutant
 from tests.mutants.tree import copied
+from tests.support.patience import gone
 
 CODE = "def is_small(x):\n    return x < 1\n"
 TESTS = """
@@ -59,3 +60,19 @@ def test_a_test_that_cannot_be_set_up_kills_nothing(tree):
         "import pytest\n\n@pytest.fixture\ndef x():\n    raise ValueError\n\ndef test_x(x):\n    pass\n"
     )
     assert tree.run(["test_it.py"], 60.0).status == "broken"
+
+
+LEAVING = """
+import subprocess
+
+def test_x():
+    child = subprocess.Popen(["sleep", "600"], start_new_session=True)
+    with open("pid", "w") as file:
+        file.write(str(child.pid))
+"""
+
+
+def test_processes_that_a_test_left_behind_are_ended(tree):
+    (tree.folder / "test_it.py").write_text(LEAVING)
+    assert tree.run(["test_it.py"], 60.0).status == "survived"
+    assert gone(int((tree.folder / "pid").read_text()))
