@@ -29,6 +29,13 @@ def driver_of(robot: str, file: str | None) -> DriverSpec:
 
 def check_driver(domain: Domain, driver: DriverSpec) -> None:
     """Raise UsageError with all mismatches in one line, unless the driver accepts every command of the domain."""
+    mismatches = mismatches_of(domain, driver)
+    if mismatches:
+        raise UsageError(f"domain {domain.name} and the driver of {domain.robot} do not match: {'; '.join(mismatches)}")
+
+
+def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
+    """All reasons why the driver would not accept every command of the domain."""
     mismatches = []
     if domain.command_topic != driver.command_topic:
         mismatches.append(f"the domain publishes {domain.command_topic}, the driver expects {driver.command_topic}")
@@ -42,5 +49,4 @@ def check_driver(domain: Domain, driver: DriverSpec) -> None:
             for axis, limit in zip(domain.axes, driver.limits, strict=True)
             if not (limit.lower <= axis.lower and axis.upper <= limit.upper)
         ]
-    if mismatches:
-        raise UsageError(f"domain {domain.name} and the driver of {domain.robot} do not match: {'; '.join(mismatches)}")
+    return mismatches

@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
+from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 
@@ -58,6 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
     name = gathering.domain_of(arguments.robot)
+    check_package(name)
     out = arguments.out or Path("data") / arguments.robot
     if arguments.recordings or arguments.on_policy:
         return _from_runs(arguments, name, out)

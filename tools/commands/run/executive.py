@@ -21,6 +21,7 @@ from tailor.tools.cli.endpoint import open_bus
 from tailor.tools.cli.sender_flag import checked_sender, configure_sender, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.package_check import check_package
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     stop, notifier = stop_on_signals(), Notifier.from_environment()
     deployment = deployment_from(arguments)
     config = executive_config(arguments.domain, deployment)
+    check_package(arguments.domain)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
     goal = _goal(context, arguments)

@@ -11,6 +11,7 @@ from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
 
@@ -38,6 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.letters:
         arguments.scenario = f"word-{arguments.letters.upper()}"
     deployment = deployment_from(arguments)
+    check_package(arguments.domain)
     config = LaunchConfig(
         executive_config(arguments.domain, deployment),
         with_hosting_flags(deployment.bus, arguments),

@@ -1,0 +1,101 @@
+"""A package whose parts do not hold together is refused at once, with all faults in one list."""
+
+import dataclasses
+
+import pytest
+
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import domain_names, spec_of
+from tailor.tools.launch import package_check
+from tailor.tools.launch.package_check import check_package, faults_of_package
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize("name", domain_names())
+def test_every_installed_package_holds_together(name):
+    assert check_package(name).name == name
+
+
+def changed(action="goToPose", parameter=None, **fields):
+    """The soccer domain with another action."""
+    soccer = domains.load("soccer")
+    old = soccer.actions[action]
+    if parameter:
+        fields["parameters"] = (dataclasses.replace(old.parameters[0], **parameter), *old.parameters[1:])
+    return dataclasses.replace(soccer, actions={**soccer.actions, action: dataclasses.replace(old, **fields)})
+
+
+def soccer(**fields):
+    return dataclasses.replace(domains.load("soccer"), **fields)
+
+
+FAULTS = {
+    "name is 'chess', expected 'soccer' by the spec": lambda: soccer(name="chess"),
+    "robot is 'hal', expected 'agilo' by the spec": lambda: soccer(robot="hal"),
+    "sensors: there is no topic 'lidar'": lambda: soccer(sensors=("odom", "lidar"), required=("odom",)),
+    "command_topic: there is no topic 'wings'": lambda: soccer(command_topic="wings"),
+    "the domain publishes wings, the driver expects cmd_vel": lambda: soccer(command_topic="wings"),
+    "required: 'currents' is none of sensors": lambda: soccer(required=("currents",)),
+    "pddl: ": lambda: soccer(pddl="(define"),
+    "executables: no action of the PDDL is 'fly'": lambda: soccer(executables={"fly": "goToPose"}),
+    " of the PDDL is missing": lambda: soccer(executables={}),
+    "which is none of actions": lambda: soccer(actions={}),
+    "has the argument 99, expected one of the": lambda: changed(parameter={"argument": 99}),
+    "actions['goToPose']: duration_model is '', expected": lambda: changed(duration_model=""),
+    "success_model is 'goToPose/luck'": lambda: changed(success_model="goToPose/luck"),
+    "subgoal_action is 'fly'": lambda: changed(subgoal_action="fly"),
+    "occurs twice": lambda: changed(parameter={"name": domains.load("soccer").actions["goToPose"].parameters[1].name}),
+    "ranges from nan to": lambda: changed(parameter={"lower": NAN}),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_each_fault_of_a_domain_is_named(fault):
+    found = list(faults_of_package(spec_of("soccer"), FAULTS[fault]()))
+    assert any(fault in each for each in found), found
+    assert all(each.startswith(("tailor.executive.domains.soccer:make: ", "tailor.simnodes.agilo:")) for each in found)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        ('robot = "agilo"', 'robot = "hal"', "driver.toml: robot is 'hal', expected 'agilo'"),
+        ("rate_hz = 50", "rate_hz = 20", "driver.toml: sensors.odom: rate_hz is 20, expected 50"),
+        ("ball =", "lidar =", "driver.toml: sensors: there is no topic 'lidar'"),
+        ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
+        ("timeout_s = 0.3", "", "driver.toml: 'timeout_s', expected the specification"),
+        ('robot = "agilo"', "robot = ", "driver.toml: Invalid value"),
+    ],
+)
+def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, fault):
+    text = package_check.file(spec_of("soccer"), "driver").read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "driver.toml"
+    path.write_text(text.replace(old, new, 1))
+    monkeypatch.setattr("tailor.simnodes.driver_spec.file", lambda *_: path)
+    monkeypatch.setattr(package_check, "file", lambda *_: path)
+    [found] = faults_of_package(spec_of("soccer"), domains.load("soccer"))
+    assert fault in found
+
+
+def test_scenarios_that_are_missing_or_no_toml_are_named(tmp_path, monkeypatch):
+    spec, soccer = spec_of("soccer"), domains.load("soccer")
+    monkeypatch.setattr(domains, "file", lambda *_: tmp_path)
+    assert list(faults_of_package(spec, soccer)) == [f"{spec.scenarios}: there is no scenario"]
+    (tmp_path / "a.toml").write_text("= 3")
+    assert "not TOML" in next(iter(faults_of_package(spec, soccer)))
+    monkeypatch.setattr(domains, "file", lambda *_: tmp_path / "none")
+    assert "no such folder" in next(iter(faults_of_package(spec, soccer)))
+
+
+def test_all_faults_stand_in_one_line(monkeypatch):
+    bad = soccer(name="chess", sensors=("lidar",), command_topic="wings")
+    monkeypatch.setattr(domains, "load", lambda _: bad)
+    with pytest.raises(UsageError) as refused:
+        check_package("soccer")
+    text = str(refused.value)
+    assert text.startswith("the package of soccer does not hold together: ")
+    assert text.count("; ") >= 4
+    assert "\n" not in text

@@ -1,0 +1,119 @@
+"""Checks that the parts of a robot's package hold together: spec, domain, PDDL, actions, scenarios, driver, topics.
+
+A package is refused before anything starts, with all its faults in one list; each names file and field.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterator
+
+from tailor.executive import domains, planning
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Domain
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import file, spec_of
+from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.topics import TOPICS
+from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.tools.launch.driver_check import mismatches_of
+
+
+def check_package(name: str) -> Domain:
+    """Load a domain whose package holds together.
+
+    Raises:
+      UsageError: There is no such domain, a part cannot be loaded, or parts do not match; all faults in one line.
+    """
+    spec, domain = spec_of(name), domains.load(name)
+    faults = list(faults_of_package(spec, domain))
+    if faults:
+        raise UsageError(f"the package of {name} does not hold together: {'; '.join(faults)}")
+    return domain
+
+
+def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
+    """All faults of a package, each with file and field."""
+    where = spec.domain
+    for field in ("name", "robot"):
+        if getattr(domain, field) != getattr(spec, field):
+            yield f"{where}: {field} is '{getattr(domain, field)}', expected '{getattr(spec, field)}' by the spec"
+    yield from (f"{where}: {fault}" for fault in _faults_of_topics(domain))
+    yield from (f"{where}: {fault}" for fault in _faults_of_pddl(domain))
+    for action_name, action in domain.actions.items():
+        yield from (f"{where}: actions['{action_name}']: {fault}" for fault in _faults_of_action(domain, action))
+    yield from _faults_of_scenarios(spec)
+    yield from (f"{spec.driver}: {fault}" for fault in _faults_of_driver(spec, domain))
+
+
+def _faults_of_topics(domain: Domain) -> Iterator[str]:
+    for field, names in (("command_topic", (domain.command_topic,)), ("sensors", domain.sensors)):
+        yield from (f"{field}: there is no topic '{name}'" for name in names if name not in TOPICS)
+    yield from (f"required: '{name}' is none of sensors" for name in domain.required if name not in domain.sensors)
+
+
+def _faults_of_pddl(domain: Domain) -> Iterator[str]:
+    try:
+        schemas = {schema.name: schema for schema in planning.parse_domain(domain.pddl).actions}
+    except planning.PddlError as error:
+        yield f"pddl: {error}"
+        return
+    yield from (f"executables: no action of the PDDL is '{name}'" for name in set(domain.executables) - set(schemas))
+    yield from (f"executables: '{name}' of the PDDL is missing" for name in set(schemas) - set(domain.executables))
+    for symbolic, executable in domain.executables.items():
+        if executable not in domain.actions:
+            yield f"executables['{symbolic}'] is '{executable}', which is none of actions"
+        elif symbolic in schemas:
+            count = len(schemas[symbolic].parameters)
+            for parameter in domain.actions[executable].parameters:
+                if not 0 <= parameter.argument < count:
+                    yield (
+                        f"actions['{executable}']: parameter '{parameter.name}' has the argument {parameter.argument}, "
+                        f"expected one of the {count} of '{symbolic}'"
+                    )
+
+
+def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
+    for kind, model in (("duration", action.duration_model), ("success", action.success_model)):
+        if not model.endswith(f"/{kind}") and (model or kind == "duration"):
+            yield f"{kind}_model is '{model}', expected ACTION/{kind}"
+    if action.subgoal_action and action.subgoal_action not in domain.actions:
+        yield f"subgoal_action is '{action.subgoal_action}', which is none of actions"
+    names = [parameter.name for parameter in action.parameters]
+    yield from (f"parameter '{name}' occurs twice" for name in sorted({n for n in names if names.count(n) > 1}))
+    for parameter in action.parameters:
+        if not (
+            math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower < parameter.upper
+        ):
+            yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
+
+
+def _faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
+    try:
+        names = domains.scenarios(spec.name)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        yield f"{spec.scenarios}: not TOML: {error}"
+        return
+    except UsageError as error:
+        yield str(error)
+        return
+    if not names:
+        yield f"{spec.generator or spec.scenarios}: there is no scenario"
+
+
+def _faults_of_driver(spec: DomainSpec, domain: Domain) -> Iterator[str]:
+    try:
+        declared = shipped_driver_spec(spec.robot)
+    except UsageError as error:
+        yield str(error)
+        return
+    yield from mismatches_of(domain, declared)
+    table = tomllib.loads(file(spec, "driver").read_text(encoding="utf-8"))
+    if table.get("robot", spec.robot) != spec.robot:
+        yield f"robot is '{table['robot']}', expected '{spec.robot}' by the spec"
+    for name, sensor in table.get("sensors", {}).items():
+        if name not in TOPICS:
+            yield f"sensors: there is no topic '{name}'"
+        elif sensor.get("rate_hz") != TOPICS[name].rate_hz:
+            yield f"sensors.{name}: rate_hz is {sensor.get('rate_hz')}, expected {TOPICS[name].rate_hz:g} by its topic"
