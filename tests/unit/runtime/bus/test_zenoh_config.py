@@ -115,6 +115,16 @@ def test_a_gateway_with_certificates_takes_roles_from_their_names_and_nobody_wit
     }
 
 
+@pytest.mark.parametrize("identity", [None, IDENTITY])
+def test_a_gateway_for_one_role_knows_no_other(folder, identity):
+    config = json.loads(zenoh_config.gateway("tls/host:7447", folder, identity, NAMES, ["people"]))
+    known = {"usernames": ["people"]} if identity is None else {"cert_common_names": ["phone", "tablet"]}
+    assert config["access_control"]["subjects"] == [
+        {"id": "people", **known},
+        {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]},
+    ]
+
+
 def test_a_client_proves_itself_with_the_password_of_its_role():
     config = json.loads(zenoh_config.client([ENDPOINT], password=Password("people", "x")))
     assert config["transport"]["auth"] == {"usrpwd": {"user": "people", "password": "x"}}
