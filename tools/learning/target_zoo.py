@@ -7,14 +7,16 @@ from pathlib import Path
 
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import models_folder, robot_names
 
 
-def target_zoo(zoo: Path | None, own: Path = ZOO) -> Path:
+def target_zoo(zoo: Path | None, robot: str, own: Path | None = None) -> Path:
     """Folder to write models to.
 
     Args:
       zoo: The folder that the user named, None if none was named.
-      own: The package's own zoo, the default in an editable checkout.
+      robot: Name of the robot.
+      own: Folder of the models of the robot's package, the default in an editable checkout; None: as its spec declares.
 
     Returns:
       `zoo` if named; otherwise `own`, if it lies in a checkout and is writable.
@@ -24,11 +26,12 @@ def target_zoo(zoo: Path | None, own: Path = ZOO) -> Path:
     """
     if zoo is not None:
         return zoo
-    if not _is_checkout(own.parents[1]) or not os.access(own, os.W_OK):
+    own = own or (models_folder(robot) if robot in robot_names() else ZOO)
+    if not _is_in_checkout(own) or not os.access(own if own.exists() else own.parent, os.W_OK):
         raise UsageError(f"models are not written into the installed package ({own}), expected --zoo DIR")
     return own
 
 
-def _is_checkout(root: Path) -> bool:
-    """Whether a folder is the root of the source tree; the folder above an installed package has no pyproject.toml."""
-    return (root / "pyproject.toml").is_file()
+def _is_in_checkout(folder: Path) -> bool:
+    """Whether a folder of models lies in a source tree: no folder above an installed package has this file."""
+    return any((root / "pyproject.toml").is_file() for root in folder.parents[:3])

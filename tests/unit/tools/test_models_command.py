@@ -14,6 +14,7 @@ from tailor.models.features.planar import projective
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.models.trees.linear_tree import LinearTree
+from tailor.schemas.errors import UsageError
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.main import main
 
@@ -155,9 +156,19 @@ def test_training_writes_to_the_zoo_of_a_checkout_or_to_the_one_named(tmp_path: 
     own = tmp_path / "models" / "zoo"
     own.mkdir(parents=True)
     (tmp_path / "pyproject.toml").touch()
-    assert target_zoo(None, own) == own
-    assert target_zoo(None) == runtime.ZOO
-    assert target_zoo(Path("other"), own) == Path("other")
+    assert target_zoo(None, "agilo", own) == own
+    assert target_zoo(None, "agilo") == runtime.ZOO
+    assert target_zoo(Path("other"), "agilo", own) == Path("other")
+
+
+@pytest.mark.parametrize("layout", ["courier_robot", "src/courier_robot"])
+def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package(tmp_path: Path, layout: str) -> None:
+    own = tmp_path / layout / "models"
+    own.parent.mkdir(parents=True)
+    with pytest.raises(UsageError, match="expected --zoo DIR"):
+        target_zoo(None, "pedelec", own)
+    (tmp_path / "pyproject.toml").touch()
+    assert target_zoo(None, "pedelec", own) == own
 
 
 CARDS = sorted(path for path in runtime.ZOO.glob("*/*/*.card.json") if path.parent.name != "refinement")

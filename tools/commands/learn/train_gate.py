@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.models.runtime import ZOO
+from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least, finite, processes
 from tailor.tools.learning.target_zoo import target_zoo
 
@@ -45,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="improvement to give up for fewer slowdowns, in percentage points (default: %(default)s)")  # fmt: skip
     add("--jobs", type=processes, default=2, help="number of processes (default: %(default)s)")
     add("--zoo", type=Path, metavar="DIR",
-        help="folder of the action models and of the gate (default: models/zoo of this checkout)")  # fmt: skip
+        help="folder of the action models and of the gate (default: that of the robot's package)")  # fmt: skip
     add("--store", type=Path, default=Path("out/evaluate"), help="folder of finished episodes (default: %(default)s)")
     add("--json", action="store_true", help="print the test results as JSON")
 
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather, train, publish, check; exit code 0."""
     from tailor.models.runtime import load_model
 
-    path, test = train(arguments, target_zoo(arguments.zoo))
+    path, test = train(arguments, target_zoo(arguments.zoo, arguments.robot))
     load_model(path)  # a model that fails its own checks must not ship
     if arguments.json:
         print(json.dumps(test))
@@ -89,16 +89,16 @@ def train(arguments: argparse.Namespace, zoo: Path) -> tuple[Path, dict[str, Any
     arguments.scenario = arguments.scenario or domains.scenarios(domain)[0]
     settings = RefinementSettings(gate=False)
     seeds = training_seeds(arguments.seed, arguments.episodes)
-    task = Task(domain, arguments.scenario, zoo=_zoo_setting(zoo))
+    task = Task(domain, arguments.scenario, zoo=_zoo_setting(arguments.robot, zoo))
     gathered = gather_pairs(task, settings, seeds, arguments.jobs, arguments.store)
     trained = train_gate(gathered.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
     provenance = _provenance(arguments, zoo, settings, gathered, gathering.source_hash(domain))
     return publish_gate(zoo, gathered.pairs, trained, provenance), dict(trained.test)
 
 
-def _zoo_setting(zoo: Path) -> str:
+def _zoo_setting(robot: str, zoo: Path) -> str:
     """The zoo as settings name it: empty for the package's own."""
-    return "" if zoo == ZOO else str(zoo)
+    return "" if zoo == models_folder(robot) else str(zoo)
 
 
 def _provenance(
@@ -113,7 +113,7 @@ def _provenance(
     from tailor.executive.refinement.gate import SITUATION
     from tailor.models.export.gate_publishing import GateProvenance
 
-    loaded: Any = load_models(arguments.robot, _zoo_setting(zoo))
+    loaded: Any = load_models(arguments.robot, _zoo_setting(arguments.robot, zoo))
     models = {**loaded.durations, **loaded.successes}
     episodes = {
         "scenario": arguments.scenario,
