@@ -97,6 +97,7 @@ class Driver:
             accepted=guard.accepted,
             refused_reasons=tuple(refused),
             refused_counts=tuple(refused.values()),
+            command_stamp_ns=guard.command_stamp_ns,
         )
 
     def _detail(self) -> str:

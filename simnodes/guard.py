@@ -49,6 +49,7 @@ class Guard:
       sender: The armed sender of commands; empty unless armed.
       accepted: Number of commands passed since the start.
       refused: Number of commands refused since the start, by reason.
+      command_stamp_ns: Stamp of the newest command passed since arming, by its sender's clock; 0: none, or unknown.
     """
 
     def __init__(self, limits: Sequence[Limit], epoch: int, timeout_ns: int = TIMEOUT_NS, leave: str = "") -> None:
@@ -67,6 +68,7 @@ class Guard:
         self.sender = ""
         self.accepted = 0
         self.refused: Counter[CommandRefusal] = Counter()
+        self.command_stamp_ns = 0
         self._leave = leave
         self._limits = tuple(limits)
         self._timeout_ns = timeout_ns
@@ -140,6 +142,7 @@ class Guard:
             return refusal
         self.accepted += 1
         self._sequences[sender] = sequence
+        self.command_stamp_ns = stamp_ns
         self._values = tuple(float(value) for value in values)
         self._valid_ns = max(self._valid_ns, now_ns)
         self._stamps = stamps
@@ -160,6 +163,7 @@ class Guard:
             return ArmRefusal.ESTOP_LATCHED if self.mode is Mode.ESTOPPED else ArmRefusal.PEOPLE_ONLY
         self.arming, self.reason, self.detail = following, Reason.NONE, ""
         self.sender, self._valid_ns, self._stamps = sender, now_ns, None
+        self.command_stamp_ns = 0
         return None
 
     def _refusal(self, sender: str, sequence: int, values: Sequence[float]) -> CommandRefusal | None:

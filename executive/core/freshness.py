@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tailor.schemas.messages import Sample
+from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.topics import TOPICS, key_of
 
 RATE_WINDOW_NS = 1_000_000_000
+MAX_ROUND_TRIP_NS = 750_000_000  # 300 ms each way, a period of the driver state, and 50 ms; below 800 ms one way
 MIN_RATE = 0.6  # of the nominal rate; half the rate is below it, a stall of 0.3 s in a second is above
 
 
@@ -31,6 +32,14 @@ def newest_arrivals(arrivals: Mapping[str, int], samples: tuple[Sample, ...]) ->
 def stale_topics(topics: tuple[str, ...], robot: str, arrivals: Mapping[str, int], now_ns: int) -> tuple[str, ...]:
     """Those of `topics` that are older than their limit in the table, or have never arrived."""
     return tuple(t for t in topics if _is_stale(t, arrivals.get(key_of(t, robot)), now_ns))
+
+
+def echo_age_ns(state: DriverState, arrival_ns: int, stamp_offset_ns: int) -> int:
+    """Age in ns of the newest command that a driver's state echoes, as the state arrives; 0 without one.
+
+    Both times come from this executive's clock. The age includes both ways and up to a period of the driver state.
+    """
+    return arrival_ns + stamp_offset_ns - state.command_stamp_ns if state.command_stamp_ns else 0
 
 
 def with_samples(streams: Mapping[str, Stream], samples: tuple[Sample, ...], now_ns: int) -> dict[str, Stream]:

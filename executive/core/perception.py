@@ -5,7 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive.core.context import Context
-from tailor.executive.core.freshness import newest_arrivals, slow_topics, stale_topics, with_samples
+from tailor.executive.core.freshness import (
+    MAX_ROUND_TRIP_NS,
+    echo_age_ns,
+    newest_arrivals,
+    slow_topics,
+    stale_topics,
+    with_samples,
+)
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Arming, Inputs, State, Task
@@ -67,7 +74,13 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
         if sample.key == key and isinstance(sample.message, DriverState):
             first = not arming.driver_sender and arming.driver is None
             if first or sample.sender == arming.driver_sender or _is_silent(arming, sample.arrival_ns):
-                arming = replace(arming, driver=sample.message, driver_sender=sample.sender, heard_ns=sample.arrival_ns)
+                arming = replace(
+                    arming,
+                    driver=sample.message,
+                    driver_sender=sample.sender,
+                    heard_ns=sample.arrival_ns,
+                    echo_age_ns=echo_age_ns(sample.message, sample.arrival_ns, context.stamp_offset_ns),
+                )
     return arming
 
 
@@ -101,6 +114,8 @@ def _hold(context: Context, state: State) -> Cause | None:
     stale = stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
     if stale:
         return Cause(Reason.INPUT_STALE, ", ".join(stale))
+    if (age_ns := state.arming.echo_age_ns) > MAX_ROUND_TRIP_NS:
+        return Cause(Reason.ROUND_TRIP, f"{age_ns / 1e6:.0f} ms, limit {MAX_ROUND_TRIP_NS / 1e6:.0f} ms")
     if not context.domain.ready(state.belief):
         return Cause(Reason.BELIEF_NOT_READY)
     if state.task.running is None and (slow := slow_inputs(context, state)) is not None:

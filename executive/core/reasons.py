@@ -22,6 +22,7 @@ class Reason(StrEnum):
     INPUT_STALE = "input stale"
     INPUT_SLOW = "input slow"
     BELIEF_NOT_READY = "belief not ready"
+    ROUND_TRIP = "round trip"
     OVERRUNS = "overruns"
     REPEATED_FAILURE = "repeated failure"
     CONTROLLER_FAILED = "controller failed"
@@ -61,6 +62,7 @@ REASONS: dict[Reason, Row] = {
     Reason.INPUT_STALE: Row(HOLDING, "a required sensor is stale or has never been received", "topics"),
     Reason.INPUT_SLOW: Row(HOLDING, "a required sensor is below 60 % of its rate: no action starts", "topics, rates"),
     Reason.BELIEF_NOT_READY: Row(HOLDING, "the belief does not yet suffice to act", ""),
+    Reason.ROUND_TRIP: Row(HOLDING, "command and driver state take too long, there and back", "age of the echo, limit"),
     Reason.OVERRUNS: Row(HOLDING, "too many ticks of the last second lost whole periods", "number of overruns"),
     Reason.REPEATED_FAILURE: Row(FAULT, "an action has failed repeatedly for one cause", "action and cause"),
     Reason.CONTROLLER_FAILED: Row(ACTION, "failed: the controller has given up", "text of the controller"),

@@ -44,6 +44,7 @@ class Arming:
     driver: DriverState | None = None
     driver_sender: str = ""  # of that state; "" before the first one: the first sender counts
     heard_ns: int | None = None  # arrival of that state; before the first one: the first tick
+    echo_age_ns: int = 0  # age of the newest command that it echoes, at its arrival; 0: none
     requested_epoch: int = 0  # 0: no request yet
     requested_ns: int = 0
 

@@ -64,3 +64,4 @@ class DriverState(Message):
     accepted: int  # commands since start
     refused_reasons: tuple[str, ...] = ()  # parallel to refused_counts
     refused_counts: tuple[int, ...] = ()
+    command_stamp_ns: int = 0  # of the newest command that passed since arming, by its sender's clock; 0: none

@@ -127,6 +127,7 @@ def test_the_stamp_of_a_command_lets_the_guard_refuse_a_delayed_one():
     ]
     driver.take([arm(A), *delayed[:2]], {}, 250 * MS)
     assert driver.guard.output(250 * MS) == (0.4, 0.0)
+    assert driver.state(250 * MS, 5).command_stamp_ns == 150 * MS
     driver.take(delayed[2:], {}, 511 * MS)
     assert driver.guard.output(511 * MS) == (0.4, 0.0)
     assert driver.guard.refused == {CommandRefusal.LATE: 1}

@@ -302,6 +302,20 @@ def test_a_delay_that_creeps_up_stops_the_robot():
     assert (guard.mode, guard.refused[CommandRefusal.LATE] > 0) == (Mode.STOPPED, True)
 
 
+@pytest.mark.promise("P13")
+def test_the_stamp_of_the_newest_command_since_arming_is_kept():
+    guard = armed()
+    assert guard.command_stamp_ns == 0
+    guard.command(0, A, 1, (0.4, 0.0), 1_000 * MS)
+    assert guard.command(100 * MS, A, 2, (0.4, 0.0), 1_100 * MS) is None
+    assert guard.command(110 * MS, A, 3, (0.4, 0.0), 800 * MS) is CommandRefusal.LATE
+    assert guard.command(110 * MS, "c" * 32, 3, (0.4, 0.0), 9_000 * MS) is CommandRefusal.OTHER_SENDER
+    assert guard.command_stamp_ns == 1_100 * MS, "refused ones do not count"
+    guard.disarm(Reason.DISARM_REQUEST)
+    assert guard.arm(200 * MS, A) is None
+    assert guard.command_stamp_ns == 0, "nor does one before arming"
+
+
 def test_a_command_without_a_stamp_is_judged_by_its_arrival_alone():
     guard = armed()
     assert guard.command(0, A, 1, (0.4, 0.0)) is None
