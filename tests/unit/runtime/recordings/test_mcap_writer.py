@@ -222,12 +222,12 @@ def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkey
         queue.put(odometry(sequence))
         recorder.step(sequence * S)
     steps = iter(range(31 * S, 10**6 * S, S))  # an error appears with the next flush
-    wait_until(lambda: recorder.step(next(steps)) or recorder.health.disk_error, "error of the disk")
+    wait_until(lambda: recorder.step(next(steps)) or recorder.health.disk_error, "error of the disk", 20.0)
     assert recorder.health.disk_error == "No space left on device"
     lost = recorder.health.drops["agilo/odom"]
     assert 0 < lost < 30
     monkeypatch.setattr(os, "write", real)
-    wait_until(lambda: recorder.step(next(steps)) or not recorder._writer.is_full, "a flush that succeeds")
+    wait_until(lambda: recorder.step(next(steps)) or not recorder._writer.is_full, "a flush that succeeds", 20.0)
     recorder.step(next(steps))
     assert recorder.health.disk_error == ""
     queue.put(odometry(31))
