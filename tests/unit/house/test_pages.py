@@ -45,7 +45,7 @@ def test_the_readme_lists_the_folders_of_the_table() -> None:
 
 def test_the_readme_links_every_page() -> None:
     links = LINK.findall((ROOT / "README.md").read_text())
-    assert set(PAGES) - {"README.md", "SAFETY.md"} <= set(links)
+    assert set(PAGES) - {"README.md"} <= set(links)
 
 
 def test_the_citation_names_the_version() -> None:

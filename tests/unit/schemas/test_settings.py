@@ -21,7 +21,10 @@ def test_nested_tables_become_nested_settings():
 @pytest.mark.parametrize(
     ("table", "expected"),
     [
-        ({"bus": {"endpont": "x"}}, "f.toml: unknown key 'bus.endpont' (expected one of: endpoint, security, remote, keys, key)"),
+        (
+            {"bus": {"endpont": "x"}},
+            "f.toml: unknown key 'bus.endpont' (expected one of: endpoint, security, remote, keys, key)",
+        ),
         ({"executive": {"seed": "x"}}, "f.toml: 'executive.seed' is 'x', expected int"),
         ({"executive": {"seed": True}}, "f.toml: 'executive.seed' is True, expected int"),
         ({"executive": {"refinement": {"horizon": 0}}}, "f.toml: refinement.horizon is 0, expected at least 1"),
