@@ -69,7 +69,7 @@ class Driver:
             elif not isinstance(message, EStop):
                 values, stamp_ns = command_values(message, self._axes), getattr(message, "stamp_ns", 0)
                 arrival_ns = sample.arrival_ns - guard_lag_ns
-                self.guard.command(arrival_ns, sample.sender, sample.sequence, values, stamp_ns)
+                self.guard.command(arrival_ns, sample.sender, sample.sequence, values, stamp_ns, guard_lag_ns)
         self._rejected = rejected
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:

@@ -120,7 +120,7 @@ class Guard:
         self._halt(Cause.STOP, Reason.DRIVER_FAULT, fault)
 
     def command(
-        self, now_ns: int, sender: str, sequence: int, values: Sequence[float], stamp_ns: int = 0
+        self, now_ns: int, sender: str, sequence: int, values: Sequence[float], stamp_ns: int = 0, lag_ns: int = 0
     ) -> CommandRefusal | None:
         """Accept or refuse a command.
 
@@ -130,13 +130,14 @@ class Guard:
           sequence: Its number, counted by the sender.
           values: Set-points in the order and units of the limits.
           stamp_ns: Time of its creation by the sender's clock; 0: unknown, it is not judged, see stamps.py.
+          lag_ns: `now_ns` is this much behind real time, in which stamps are judged, e.g. in a paused simulator.
 
         Returns:
           The reason for a refusal, which changes nothing but a count; None if the command is accepted.
         """
         self._expire(now_ns)
         stamps = self._stamps or Stamps()
-        refusal = self._refusal(sender, sequence, values) or stamps.refusal(now_ns, stamp_ns)
+        refusal = self._refusal(sender, sequence, values) or stamps.refusal(now_ns + lag_ns, stamp_ns)
         if refusal is not None:
             self.refused[refusal] += 1
             return refusal
@@ -146,7 +147,7 @@ class Guard:
         self._values = tuple(float(value) for value in values)
         self._valid_ns = max(self._valid_ns, now_ns)
         self._stamps = stamps
-        stamps.accept(now_ns, stamp_ns)
+        stamps.accept(now_ns + lag_ns, stamp_ns)
         return None
 
     def output(self, now_ns: int) -> tuple[float, ...]:

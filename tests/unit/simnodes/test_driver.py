@@ -179,3 +179,14 @@ def test_joint_commands_are_matched_by_name():
 
 def test_agilo_declares_its_limits_and_the_time_out():
     assert shipped_driver_spec("agilo") == DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
+
+
+def test_a_paused_simulator_takes_no_command_for_one_from_the_future():
+    """The guard's clock falls behind while the world stands; stamps are judged in real time."""
+    driver = Driver(SPEC, 7, leave=A)
+    driver.take([arm(A)], {}, 0)
+    for number in (*range(1, 30), *range(31, 41)):  # 4 s, paused after two; one command is lost
+        now_ns, lag_ns = number * 100 * MS, min(max(0, number - 20), 20) * 100 * MS
+        sample = Sample("agilo/cmd_vel", VelocityCommand(now_ns, 0.5, 0.0), now_ns, number, A)
+        driver.take([sample], {}, now_ns, lag_ns)
+    assert (driver.guard.accepted, dict(driver.guard.refused)) == (39, {})
