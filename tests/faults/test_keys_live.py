@@ -51,7 +51,9 @@ def heard(bus, *, publisher):
     _, local, _ = bus
     with open_client(local, role="recorder") as listener:
         queue, subscription = listener.subscribe_all("agilo/*")
-        publisher.publisher("cmd_vel", "agilo").publish(VelocityCommand(0, 0.5, 0.0))
+        commands = publisher.publisher("cmd_vel", "agilo")
+        time.sleep(STEP_S)  # both ends know of each other
+        commands.publish(VelocityCommand(0, 0.5, 0.0))
         time.sleep(STEP_S)
         subscription.undeclare()
         return [raw.key for raw in queue.drain()]
@@ -110,8 +112,10 @@ def test_an_endpoint_for_people_alone_takes_no_other_key(bus):
             queue, subscription = listener.subscribe_all("**")
             for name in ("driving", "stopping"):
                 with open_client(listen, identity=identity_in(str(folder / name))) as session:
-                    session.publisher("cmd_vel", "agilo").publish(VelocityCommand(0, 0.5, 0.0))
-                    session.publisher("estop", "").publish(EStop(True))
+                    commands, stops = session.publisher("cmd_vel", "agilo"), session.publisher("estop", "")
+                    time.sleep(STEP_S)  # both ends know of each other
+                    commands.publish(VelocityCommand(0, 0.5, 0.0))
+                    stops.publish(EStop(True))
                     time.sleep(STEP_S)
             subscription.undeclare()
             assert [raw.key for raw in queue.drain() if raw.key in ("agilo/cmd_vel", "estop")] == ["estop"]
