@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 
 from tailor.runtime.bus import access, zenoh_config
 from tailor.runtime.bus.credentials import Identity, Password
@@ -101,14 +101,12 @@ def _local_client(folder: RunFolder, role: Role, timeout_ms: int) -> str:
     return zenoh_config.client([folder.socket_endpoint], timeout_ms, credentials)
 
 
-@contextmanager
-def _router(config: str, listen: str) -> Iterator[Session]:
+def _router(config: str, listen: str) -> AbstractContextManager[Session]:
     def explain(cause: str) -> str:
         reason = "the port is in use" if "in use" in cause else "cannot listen there"
         return f"bus endpoint {listen}: {reason}; expected a free one, see --connect"
 
-    with _opened(config, explain) as session:
-        yield session
+    return _opened(config, explain)
 
 
 @contextmanager

@@ -25,9 +25,8 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
     Raises:
       UsageError: The bus runs already, or an endpoint is in use or malformed.
     """
-    for endpoint in (settings.remote if settings.security == "local" else settings.endpoint, settings.remote):
-        if endpoint:
-            _check_free(endpoint)
+    for endpoint in _endpoints(settings):
+        _check_free(endpoint)
     if settings.remote and not settings.remote.startswith("tls/"):
         raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
     if settings.remote and settings.security == "open":
@@ -42,12 +41,18 @@ def gateways(settings: BusSettings) -> list[ProcessSpec]:
     """Processes that let others in; apart from the router, so that floods and port scans end there."""
     name = ("--connect", settings.endpoint)
     specs = []
-    if settings.security != "local":
+    if settings.endpoint in _endpoints(settings):
         specs.append(ProcessSpec("gateway", tailor("gateway", *name), silence_ns=GATEWAY_SILENCE_NS))
     if settings.remote:
         remote = ("--listen", settings.remote, "--keys", settings.keys)
         specs.append(ProcessSpec("remote gateway", tailor("gateway", *name, *remote), silence_ns=GATEWAY_SILENCE_NS))
     return specs
+
+
+def _endpoints(settings: BusSettings) -> list[str]:
+    """Where others can reach the bus."""
+    own = [settings.endpoint] if settings.security != "local" else []
+    return own + ([settings.remote] if settings.remote else [])
 
 
 def free_endpoint() -> str:
