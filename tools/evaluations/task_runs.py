@@ -5,7 +5,6 @@ Scenario, seed and variant determine a run, so an interrupted evaluation resumes
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -21,6 +20,7 @@ from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
+from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
@@ -28,9 +28,6 @@ from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 
 PIN_STREAM = 4
-ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ("executive", "simnodes")
-SUFFIXES = (".py", ".pddl", ".toml", ".xml")
 
 
 def run_all(
@@ -125,13 +122,4 @@ def dependencies(task: Task, gated: bool = True) -> list[str]:
     models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
     loaded = [*models.durations.values(), *models.successes.values()]
     cards = [model.card["sha256"] for model in [*loaded, *([models.gate] if models.gate else [])]]
-    return [*sorted(cards), source_sha256()]
-
-
-@lru_cache(maxsize=1)
-def source_sha256() -> str:
-    """SHA-256 over the source of executive and body, so that runs of older code are not reused."""
-    digest = hashlib.sha256()
-    for path in sorted(path for name in SOURCES for path in (ROOT / name).rglob("*") if path.suffix in SUFFIXES):
-        digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
+    return [*sorted(cards), runs_sha256(task.domain)]

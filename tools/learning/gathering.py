@@ -6,13 +6,11 @@ order give the same bits, and evaluation never uses training episodes.
 
 from __future__ import annotations
 
-import hashlib
 import time
 import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +21,8 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import spec_of, spec_of_robot
-from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.installed import spec_of_robot
+from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
@@ -32,7 +30,6 @@ PART = 20  # episodes in a part: the most that a kill -9 loses, per process
 RANGE_DRAWS = 4096  # samples that determine the ranges of the controller's arguments
 COUNTS = ("episodes", "runs", "software")  # entries of a manifest that may differ when a data set is resumed
 RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
-ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +152,7 @@ def _manifest(spec: DataSetSpec) -> dict[str, Any]:
         "seed": spec.seed,
         "stream": spec.stream,
         "source": "lock-step, random arguments",
-        "source_sha256": source_hash(spec.domain),
+        "source_sha256": episodes_sha256(spec.domain),
         "on_policy": 0,
         "software": {name: version(name) for name in ("tailor", "mujoco", "numpy")},
     }
@@ -170,22 +167,6 @@ def argument_ranges(domain: Domain, action: str) -> list[dict[str, Any]]:
         {"name": p.name, "unit": p.unit, "lower": round(a * RANGE_STEP, 9), "upper": round(b * RANGE_STEP, 9)}
         for p, a, b in zip(domain.actions[action].parameters, low.tolist(), high.tolist(), strict=True)
     ]
-
-
-def source_hash(domain: str) -> str:
-    """Hash of the sources that decide on a robot's episodes: controllers, belief filters, domain and body."""
-    digest = hashlib.sha256()
-    for path in sorted(path for folder in _source_folders(spec_of(domain)) for path in folder.glob("*.py")):
-        shown = path.relative_to(ROOT if path.is_relative_to(ROOT) else path.parents[1])
-        digest.update(shown.as_posix().encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
-
-
-def _source_folders(spec: DomainSpec) -> Iterator[Path]:
-    yield from (ROOT / "executive" / "actions", ROOT / "executive" / "belief")
-    modules = {written.partition(":")[0] for written in (spec.domain, spec.body) if written}
-    origins = (found.origin for module in modules if (found := find_spec(module)) and found.origin)
-    yield from {Path(origin).resolve().parent for origin in origins}
 
 
 def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.installed import models_folder
+from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least, finite, processes
 from tailor.tools.learning.target_zoo import target_zoo
 
@@ -92,7 +93,7 @@ def train(arguments: argparse.Namespace, zoo: Path) -> tuple[Path, dict[str, Any
     task = Task(domain, arguments.scenario, zoo=_zoo_setting(arguments.robot, zoo))
     gathered = gather_pairs(task, settings, seeds, arguments.jobs, arguments.store)
     trained = train_gate(gathered.pairs, SITUATION, arguments.learner, arguments.seed, arguments.price)
-    provenance = _provenance(arguments, zoo, settings, gathered, gathering.source_hash(domain))
+    provenance = _provenance(arguments, zoo, settings, gathered, episodes_sha256(domain))
     return publish_gate(zoo, gathered.pairs, trained, provenance), dict(trained.test)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet, read_data_set
+from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, DataSetSpec
 from tailor.tools.lockstep import action_run
@@ -26,7 +27,7 @@ def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: P
     """
     domain = gathering.domain_of(robot)
     gathering.check_action(domain, action)
-    made_by = gathering.source_hash(domain)[:12]  # changed controllers have other episodes
+    made_by = episodes_sha256(domain)[:12]  # changed controllers have other episodes
     folder = store / "episodes" / f"{robot}-{action}-{made_by}-{stream}-{seed}-{count}"
     spec = DataSetSpec(domain, action, count, seed, folder, stream)
     gathering.prepare(spec, resume=True)

@@ -16,6 +16,7 @@ from tailor.models.features.planar import projective
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_POLICY_EPISODES
 from tailor.models.training.training import fit
+from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models.learned import configure_learned
 from tailor.tools.evaluations.report import Report, publish_report
@@ -52,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _gathered(domain: str, seed: int, arguments: argparse.Namespace) -> Path:
     chooses = models_hash(arguments.robot, arguments.zoo)[:12]
-    made_by = gathering.source_hash(domain)[:12]
+    made_by = episodes_sha256(domain)[:12]
     folder = (
         arguments.store
         / "policy"

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.progress import Progress
 from scipy import stats
 
+from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.learning import gathering, run_gathering
 from tailor.tools.learning.training_request import TrainingRequest
@@ -52,7 +53,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
       store: Folder for all replicas; other controllers or bodies, other replicas.
       jobs: Processes.
     """
-    made_by = gathering.source_hash(recipe.domain)[:12]
+    made_by = episodes_sha256(recipe.domain)[:12]
     folder = store / "replicas" / f"{recipe.robot}-{recipe.episodes}-{recipe.runs}-{made_by}" / str(number)
     seed = FIRST_SEED + number
     _gather(recipe, seed, folder / "random", jobs)

@@ -1,0 +1,50 @@
+"""Hashes of source: they change with behaviour, not with words, and only with the robot's own parts."""
+
+import pytest
+
+from tailor.schemas.installed import source, spec_of
+from tailor.schemas.installed.source import code_text, episodes_sha256, runs_sha256
+
+CODE = "def f(x):\n    return x + 1\n"
+
+
+@pytest.mark.parametrize("same", ["# why\n" + CODE, CODE.replace("return", '"""What."""\n    return'), CODE + "\n\n"])
+def test_words_and_layout_do_not_count(same):
+    assert code_text(same) == code_text(CODE)
+
+
+@pytest.mark.parametrize("other", [CODE.replace("+", "-"), CODE.replace("1", "1.0"), CODE.replace("(x)", "(x=0)")])
+def test_every_change_of_behaviour_counts(other):
+    assert code_text(other) != code_text(CODE)
+
+
+@pytest.fixture
+def altered(monkeypatch):
+    """Hashes as they were before, and after a file was altered."""
+
+    def alter(path, hashed, domain):
+        before = hashed(domain)
+        read = source.Path.read_text
+        monkeypatch.setattr(
+            source.Path, "read_text", lambda self, **how: read(self, **how) + "altered = 1\n" * str(self).endswith(path)
+        )
+        after = source._sha256(source.WHOLE if hashed is runs_sha256 else source.CONTROL, spec_of(domain))
+        return before != after
+
+    return alter
+
+
+@pytest.mark.parametrize(
+    ("path", "hashed", "domain", "counts"),
+    [
+        ("executive/actions/reach.py", episodes_sha256, "arm", True),
+        ("simnodes/powercube/body.py", episodes_sha256, "arm", True),
+        ("simnodes/agilo/body.py", episodes_sha256, "arm", False),
+        ("executive/refinement/refinement.py", episodes_sha256, "arm", False),
+        ("executive/refinement/refinement.py", runs_sha256, "arm", True),
+        ("simnodes/powercube/driver.toml", runs_sha256, "arm", True),
+        ("tools/viewer/page.py", runs_sha256, "arm", False),
+    ],
+)
+def test_only_what_determines_the_behaviour_counts(altered, path, hashed, domain, counts):
+    assert altered(path, hashed, domain) is counts
