@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import hashlib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
@@ -10,6 +9,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tailor.schemas.installed import file, spec_of
+from tailor.schemas.installed.episode_files import episode_files
+from tailor.schemas.installed.source_text import content_text
 from tailor.schemas.packages.spec import DomainSpec
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,7 +27,8 @@ def episodes_sha256(domain: str) -> str:
     Raises:
       UsageError: There is no such domain.
     """
-    return _sha256(CONTROL, spec_of(domain))
+    lines = (f"{name} {sha256}" for name, sha256 in episode_files(domain).items())
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
 @lru_cache(maxsize=8)
@@ -39,20 +41,11 @@ def runs_sha256(domain: str) -> str:
     return _sha256(WHOLE, spec_of(domain))
 
 
-def code_text(source: str) -> str:
-    """The syntax tree of Python source as text, without comments, docstrings and layout.
-
-    It is the same for every version of Python that can parse the source.
-    """
-    return _text(ast.parse(source))
-
-
 def _sha256(ours: Iterable[str], spec: DomainSpec) -> str:
     digest = hashlib.sha256()
     generic = (path for pattern in ours for path in ROOT.glob(pattern))
     for name, path in sorted((_name(path), path) for path in {*filter(_counts, generic), *_of_package(spec)}):
-        text = path.read_text(encoding="utf-8")
-        digest.update(f"{name}\0{code_text(text) if path.suffix == '.py' else text}\0".encode())
+        digest.update(f"{name}\0{content_text(path)}\0".encode())
     return digest.hexdigest()
 
 
@@ -72,18 +65,3 @@ def _counts(path: Path) -> bool:
 def _name(path: Path) -> str:
     """Path within Tailor, or within the folder that holds the package."""
     return path.relative_to(ROOT if path.is_relative_to(ROOT) else path.parents[1]).as_posix()
-
-
-def _text(node: object) -> str:
-    match node:
-        case ast.AST():
-            fields = (f"{name}={_text(value)}" for name, value in ast.iter_fields(node) if value not in (None, []))
-            return f"{type(node).__name__}({','.join(fields)})"
-        case list():
-            return f"[{','.join(_text(item) for item in node if not _is_docstring(item))}]"
-        case _:
-            return repr(node)
-
-
-def _is_docstring(node: object) -> bool:
-    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)

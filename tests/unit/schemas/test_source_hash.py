@@ -2,8 +2,9 @@
 
 import pytest
 
-from tailor.schemas.installed import source, spec_of
-from tailor.schemas.installed.source import code_text, episodes_sha256, runs_sha256
+from tailor.schemas.installed import source
+from tailor.schemas.installed.source import episodes_sha256, runs_sha256
+from tailor.schemas.installed.source_text import code_text
 
 CODE = "def f(x):\n    return x + 1\n"
 
@@ -28,8 +29,7 @@ def altered(monkeypatch):
         monkeypatch.setattr(
             source.Path, "read_text", lambda self, **how: read(self, **how) + "altered = 1\n" * str(self).endswith(path)
         )
-        after = source._sha256(source.WHOLE if hashed is runs_sha256 else source.CONTROL, spec_of(domain))
-        return before != after
+        return hashed.__wrapped__(domain) != before
 
     return alter
 

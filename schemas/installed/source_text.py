@@ -1,0 +1,52 @@
+"""What a source file means to the program that reads it, as text without comments, docstrings and layout."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+
+def content_sha256(path: Path) -> str:
+    """SHA-256 of a file's meaning."""
+    return hashlib.sha256(content_text(path).encode()).hexdigest()
+
+
+def content_text(path: Path) -> str:
+    """Meaning of a file of Python, TOML or XML; other files as they are."""
+    text = path.read_text(encoding="utf-8")
+    match path.suffix:
+        case ".py":
+            return code_text(text)
+        case ".toml":
+            return json.dumps(tomllib.loads(text), sort_keys=True, default=str)
+        case ".xml":
+            return ElementTree.canonicalize(text, strip_text=True)
+        case _:
+            return text
+
+
+def code_text(source: str) -> str:
+    """The syntax tree of Python source as text, without comments, docstrings and layout.
+
+    It is the same for every version of Python that can parse the source.
+    """
+    return _text(ast.parse(source))
+
+
+def _text(node: object) -> str:
+    match node:
+        case ast.AST():
+            fields = (f"{name}={_text(value)}" for name, value in ast.iter_fields(node) if value not in (None, []))
+            return f"{type(node).__name__}({','.join(fields)})"
+        case list():
+            return f"[{','.join(_text(item) for item in node if not _is_docstring(item))}]"
+        case _:
+            return repr(node)
+
+
+def _is_docstring(node: object) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
