@@ -170,7 +170,8 @@ def load_robot(
     folder = (zoo or ZOO) / robot
     if not folder.is_dir() or folder.parent != (zoo or ZOO):
         robots = ", ".join(sorted(p.name for p in (zoo or ZOO).glob("*") if p.is_dir())) or "none"
-        raise UsageError(f"no action models for robot '{robot}' in {zoo or ZOO} (robots there: {robots})")
+        make = f"`tailor gather {robot}` and `tailor train {robot}` make them"
+        raise UsageError(f"no action models for robot '{robot}' in {zoo or ZOO} (robots there: {robots}); {make}")
     durations: dict[str, OnnxDuration] = {}
     successes: dict[str, OnnxSuccess] = {}
     for name in _names(folder):

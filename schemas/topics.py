@@ -29,6 +29,7 @@ _SHIPPED: dict[str, Topic] = {
     "self_arm": Topic("{robot}/self_arm", m.ArmRequest, 0, "executive", priority="interactive_high"),  # by its leave
     "estop": Topic("estop", m.EStop, 0, "people", priority="real_time"),
     "clock": Topic("clock", m.Clock, 0, "player", recorded=False),  # of a replay
+    "planar_truth": Topic("{robot}/sim/pose", m.PlanarTruth, 10, "simulator"),
     "joint_truth": Topic("{robot}/sim/joints", m.JointState, 10, "simulator"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),

@@ -40,6 +40,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
     "view": ("tailor.tools.commands.look.view", "show a run in the browser, recorded or live"),
     "why": ("tailor.tools.commands.look.why", "explain the choice of subgoals, compared with greedy"),
+    "new": ("tailor.tools.commands.run.new", "write the package of a new robot"),
     "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, VHPOP-style"),
     "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and save the episodes"),
     "train": ("tailor.tools.commands.learn.train", "train action models from episodes"),

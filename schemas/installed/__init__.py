@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from importlib import import_module, resources
 from importlib.resources.abc import Traversable
@@ -95,9 +96,28 @@ def file(spec: DomainSpec, field: str) -> Traversable:
 
 
 def models_folder(robot: str) -> Path:
-    """Folder of the models that a robot's package ships.
+    """Folder of a robot's models: its package's own, else the user's, if it has models of that robot.
+
+    Raises:
+      UsageError: There is no such robot.
+    """
+    own, users = package_models_folder(robot), user_models_folder()
+    return users if (users / robot).is_dir() and not (own / robot).is_dir() else own
+
+
+def package_models_folder(robot: str) -> Path:
+    """Folder of the models that a robot's package ships; it may be missing.
 
     Raises:
       UsageError: There is no such robot.
     """
     return Path(str(file(spec_of_robot(robot), "models"))).resolve()
+
+
+def user_models_folder() -> Path:
+    """The user's own models, where `tailor train` writes those of an installed package that ships none.
+
+    It lies in the data folder of the XDG Base Directory Specification, which ignores a path that is not absolute.
+    """
+    base = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return (base if base.is_absolute() else Path.home() / ".local" / "share") / "tailor" / "models"

@@ -38,6 +38,20 @@ class PoseEstimate(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class PlanarTruth(Message):
+    """Exact state of a simulated robot on the plane; no belief reads it."""
+
+    FRAME_ID: ClassVar[str] = "map"
+
+    stamp_ns: int
+    x: float  # m
+    y: float  # m
+    phi: float  # rad
+    v: float  # m/s
+    omega: float  # rad/s
+
+
+@dataclass(frozen=True, slots=True)
 class JointState(Message):
     """State of named joints; all tuples have one length."""
 

@@ -19,7 +19,7 @@ from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
 
 LINKS = ("executive", "models", "robots", "runtime", "schemas", "simnodes", "tools")
-DATA_KINDS = {".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
+DATA_KINDS = {".template", ".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
 BUILD = "import sys; from setuptools import build_meta; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info")

@@ -100,7 +100,7 @@ def raw_delete(session, key):
     session._zenoh.delete(key)
 
 
-SENSORS = {"odom", "pose", "ball", "joint_states", "currents", "driver", "truth", "joint_truth"}
+SENSORS = {"odom", "pose", "ball", "joint_states", "currents", "driver", "truth", "joint_truth", "planar_truth"}
 REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "subgoals", "refinement", "tick", "provenance"
 }  # fmt: skip

@@ -1,4 +1,4 @@
-"""Chooses the folder that trained models are written to; never the folder of an installed package."""
+"""Chooses the folder that trained models are written to; never one of an installed package."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import models_folder, robot_names
+from tailor.schemas.installed import package_models_folder, robot_names, user_models_folder
 
 
 def target_zoo(zoo: Path | None, robot: str, own: Path | None = None) -> Path:
@@ -19,17 +19,20 @@ def target_zoo(zoo: Path | None, robot: str, own: Path | None = None) -> Path:
       own: Folder of the models of the robot's package, the default in an editable checkout; None: as its spec declares.
 
     Returns:
-      `zoo` if named; otherwise `own`, if it lies in a checkout and is writable.
+      `zoo` if named; otherwise `own`, if it lies in a checkout and is writable; otherwise the user's data folder.
 
     Raises:
-      UsageError: No folder is named and `own` is part of an installation.
+      UsageError: No folder is named, and `own` is part of an installation with models of the robot, which come before
+        those of the user.
     """
     if zoo is not None:
         return zoo
-    own = own or (models_folder(robot) if robot in robot_names() else ZOO)
-    if not _is_in_checkout(own) or not os.access(own if own.exists() else own.parent, os.W_OK):
+    own = own or (package_models_folder(robot) if robot in robot_names() else ZOO)
+    if _is_in_checkout(own) and os.access(own if own.exists() else own.parent, os.W_OK):
+        return own
+    if (own / robot).is_dir():
         raise UsageError(f"models are not written into the installed package ({own}), expected --zoo DIR")
-    return own
+    return user_models_folder()
 
 
 def _is_in_checkout(folder: Path) -> bool:

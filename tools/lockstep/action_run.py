@@ -5,6 +5,7 @@ They yield the random episodes that action models learn from (paper 5.1). `run.p
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -26,7 +27,8 @@ TIME_LIMIT_S = 40.0  # an action that takes longer has failed
 class TaskSampler(Protocol):
     """What a robot adds to the sampling of its actions and to the reading of its runs.
 
-    `arguments` are controller arguments, shape (k,); see `Action.arguments`.
+    `arguments` are controller arguments, shape (k,); see `Action.arguments`. A subclass needs the first four methods;
+    the others have defaults for a robot that has no objects around it and no model of its energy.
     """
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
@@ -47,11 +49,11 @@ class TaskSampler(Protocol):
 
     def work_j(self, before: Message, after: Message) -> float:
         """Return the work of the drives between two states of motion in joules; NaN for other messages."""
-        ...
+        return math.nan
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """Return the failure that the ground truth shows, or ""."""
-        ...
+        return ""
 
     def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
         """Return the belief values that start parameters stand for, where their names differ.
@@ -60,19 +62,19 @@ class TaskSampler(Protocol):
           action: An executable action of the domain.
           parameters: Values of its parameters, shape (p,).
         """
-        ...
+        return {}
 
     def motion(self, message: Message, newest: Message | None) -> Message | None:
         """Return the newest state of motion after a message: the ground truth, else what the sensors measured."""
-        ...
+        return newest
 
     def observed_start(self, message: Message) -> dict[str, float] | None:
         """Return what `failure` compares with, from the first ground truth of an action; None for other messages."""
-        ...
+        return None
 
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
         """Return how far an object was displaced before the first action that may disturb it had ended, metres."""
-        ...
+        return 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from tailor.models.features.planar import projective
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.models.trees.linear_tree import LinearTree
-from tailor.schemas.errors import UsageError
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.main import main
 
@@ -142,14 +141,14 @@ def test_bad_input_is_one_line_and_exit_code_2(words: list[str], message: str, c
 @pytest.mark.parametrize("command", ["train", "train-gate"])
 def test_training_never_writes_into_an_installation(command: str, monkeypatch, tmp_path: Path, capsys) -> None:
     installed = tmp_path / "site-packages" / "tailor" / "models" / "zoo"
-    installed.mkdir(parents=True)
+    (installed / "agilo").mkdir(parents=True)
     module = importlib.import_module(f"tailor.tools.commands.learn.{command.replace('-', '_')}")
     monkeypatch.setattr(module, "target_zoo", partial(target_zoo, own=installed))
     assert main([command, "agilo"]) == 2
     error = capsys.readouterr().err
     assert "expected --zoo DIR" in error
     assert error.count("\n") == 1
-    assert list(installed.iterdir()) == []
+    assert list(installed.rglob("*")) == [installed / "agilo"]
 
 
 def test_training_writes_to_the_zoo_of_a_checkout_or_to_the_one_named(tmp_path: Path) -> None:
@@ -162,11 +161,13 @@ def test_training_writes_to_the_zoo_of_a_checkout_or_to_the_one_named(tmp_path: 
 
 
 @pytest.mark.parametrize("layout", ["courier_robot", "src/courier_robot"])
-def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package(tmp_path: Path, layout: str) -> None:
+def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package(
+    tmp_path: Path, layout: str, monkeypatch
+) -> None:
     own = tmp_path / layout / "models"
     own.parent.mkdir(parents=True)
-    with pytest.raises(UsageError, match="expected --zoo DIR"):
-        target_zoo(None, "pedelec", own)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "share"))
+    assert target_zoo(None, "pedelec", own) == tmp_path / "share" / "tailor" / "models"
     (tmp_path / "pyproject.toml").touch()
     assert target_zoo(None, "pedelec", own) == own
 

@@ -16,6 +16,7 @@ from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
 from tailor.models.runtime import GATE, ZOO, OnnxGate, OnnxModel, load_model
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.terminal import table_console
 
 EPILOG = """\
@@ -39,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     verbs = "one line per model; its card; its rules; pictures; run all checks (exit code 1 if one fails)"
     parser.add_argument("verb", choices=VERBS, help=verbs)
     parser.add_argument("models", nargs="*", metavar="MODEL", help="models (default: all)")
-    parser.add_argument("--zoo", type=Path, default=ZOO, help="folder of models (default: the one that ships)")
+    parser.add_argument("--zoo", type=Path, help="folder of models (default: the one of the robot)")
     parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--of", metavar="TREE", help="rules: a single tree of the model, as bag:3 or forest:1")
@@ -52,6 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; exit code 0, or 1 if a check fails."""
+    arguments.zoo = arguments.zoo or _zoo_of(arguments.models)
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
         return _check(names, arguments)
@@ -88,6 +90,12 @@ def _gate_rules(card: Card) -> str:
     head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that approximate it"
     kept = f"above a risk of {100 * card['threshold']:.0f} % the greedy choice is kept"
     return "\n\n".join([f"{head}; {kept}", *card["rules"]])
+
+
+def _zoo_of(names: list[str]) -> Path:
+    """Folder of the models of the first named robot; the one that ships if none is named or known."""
+    robot = names[0].split("/")[0] if names else ""
+    return models_folder(robot) if robot in robot_names() else ZOO
 
 
 def _full(name: str, zoo: Path) -> list[str]:

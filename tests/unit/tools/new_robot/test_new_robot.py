@@ -1,0 +1,100 @@
+"""`tailor new robot` writes a complete package, refuses names that cannot be used, and overwrites nothing."""
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.main import main
+from tailor.tools.new_robot import templates
+from tailor.tools.new_robot.templates import kinds, rendered, write_robot
+
+KINDS = pytest.mark.parametrize("kind", kinds())
+ROOT = Path(__file__).resolve().parents[4]
+MYPY = ["mypy", "--strict", "--ignore-missing-imports", "cart"]
+
+
+@KINDS
+def test_a_package_has_every_part(kind: str) -> None:
+    files = rendered("two-arms", kind)
+    assert {"pyproject.toml", "README.md", "two_arms/__init__.py", "two_arms/scene.xml"} <= files.keys()
+    assert {"two_arms/domain.pddl", "two_arms/driver.toml", "two_arms/sampler.py", "two_arms/body.py"} <= files.keys()
+    assert any(path.startswith("tests/test_") for path in files)
+    project = tomllib.loads(files["pyproject.toml"])
+    assert project["project"]["entry-points"]["tailor.domains"] == {"two-arms": "two_arms:SPEC"}
+
+
+@KINDS
+def test_no_placeholder_is_left(kind: str) -> None:
+    assert [path for path, text in rendered("cart", kind).items() if "$" in path + text or "template" in path] == []
+
+
+@KINDS
+def test_what_is_written_has_the_style_and_the_types_of_our_own_code(kind: str, tmp_path: Path) -> None:
+    folder = write_robot("cart", kind, tmp_path)
+    config = ["--config", ROOT / "pyproject.toml"]
+    for command in (["ruff", "check", *config, "."], ["ruff", "format", "--check", *config, "."], MYPY):
+        done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, cwd=folder)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_a_package_stays_small(kind: str) -> None:
+    files = rendered("cart", kind)
+    assert {path: text.count("\n") for path, text in files.items() if text.count("\n") > 130} == {}
+    assert sum(text.count("\n") for text in files.values()) < 700
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("Cart", "expected lower-case letters"),
+        ("2carts", "expected lower-case letters"),
+        ("", "expected lower-case letters"),
+        ("../cart", "expected lower-case letters"),
+        ("class", "a word of Python"),
+        ("json", "a Python module 'json'"),
+        ("numpy", "a Python module 'numpy'"),
+        ("tailor", "a Python module 'tailor'"),
+        ("soccer", "has it already"),
+        ("agilo", "has it already"),
+    ],
+)
+def test_a_name_that_cannot_be_used_is_refused_in_one_line(name: str, reason: str, tmp_path: Path, capsys) -> None:
+    assert main(["new", "robot", name, "--into", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert reason in error
+    assert error.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("there", ["file", "folder", "dead link"])
+def test_nothing_is_overwritten(there: str, tmp_path: Path, capsys) -> None:
+    path = tmp_path / "cart"
+    if there == "file":
+        path.touch()
+    elif there == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to(tmp_path / "nowhere")
+    assert main(["new", "robot", "cart", "--into", str(tmp_path)]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_to_write_into_must_exist(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="expected an existing folder"):
+        write_robot("cart", "wheeled", tmp_path / "nowhere")
+
+
+def test_an_interrupted_command_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
+    def broken(name: str, kind: str) -> dict[str, str]:
+        return {"a": "text", "b": None}  # type: ignore[dict-item]
+
+    monkeypatch.setattr(templates, "rendered", broken)
+    with pytest.raises(TypeError):
+        write_robot("cart", "wheeled", tmp_path)
+    assert list(tmp_path.iterdir()) == []
