@@ -22,6 +22,7 @@ class PlannerCommand:
 
     command: str = ""
     limit_s: float = 10.0  # it is killed after that time
+    engine: planning.EngineName = "auto"  # of the built-in search
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.limit_s) and self.limit_s > 0):

@@ -123,4 +123,5 @@ def _bounded(context: Context, steps: int | None) -> planning.Settings:
     """The planner's settings, limited to `improve_plans` generated plans and to `steps` steps."""
     planner = context.settings.planner
     nodes = min(planner.node_limit, context.settings.improve_plans)
-    return replace(planner, node_limit=nodes, step_limit=planner.step_limit if steps is None else steps)
+    limit = planner.step_limit if steps is None else steps
+    return replace(planner, engine="pocl", node_limit=nodes, step_limit=limit)  # the other engine's plans are longer

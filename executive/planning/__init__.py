@@ -17,13 +17,14 @@ from tailor.executive.planning.plans.validator import validate
 from tailor.executive.planning.plans.vhpop_reader import PlanTextError, parse_plan
 from tailor.executive.planning.plans.vhpop_text import format_links, format_plan
 from tailor.executive.planning.search import GroundCache, Search
-from tailor.executive.planning.settings import DEFAULT, MATCHING, FlawOrder, Settings
+from tailor.executive.planning.settings import DEFAULT, MATCHING, EngineName, FlawOrder, Settings
 
 __all__ = [
     "DEFAULT",
     "GOAL",
     "MATCHING",
     "Domain",
+    "EngineName",
     "FlawOrder",
     "GroundCache",
     "Link",

@@ -1,4 +1,4 @@
-"""Resumable search for a plan: grounding, then plan-space search, with one budget check per refined plan."""
+"""Resumable search for a plan: grounding, then search, with one budget check per refined plan or evaluated state."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import numpy as np
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.deepening import Deepening
+from tailor.executive.planning.forward_engine import ForwardEngine
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
-from tailor.executive.planning.ground.ground_task import make_task
+from tailor.executive.planning.ground.ground_task import GroundTask, make_task
 from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, static_world
 from tailor.executive.planning.ground_space import GroundSpace
 from tailor.executive.planning.lifted.task import lifted_task
 from tailor.executive.planning.lifted_space import LiftedSpace
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plan_space import P, PlanSpace
+from tailor.executive.planning.plan_space import PlanSpace
 from tailor.executive.planning.plans.plan import Result
+from tailor.executive.planning.portfolio import Engine, Portfolio
 from tailor.executive.planning.settings import DEFAULT, Settings
 
 
@@ -49,14 +51,14 @@ class Search:
         self._problem = problem
         self._settings = settings
         self._cache = ground if ground is not None else GroundCache()
-        self._algorithm: BestFirst[Any] | Deepening[Any] | None = None
+        self._engine: Engine | None = None
         self._work = self._run()
         self._result: Result | None = None
 
     @property
     def counts(self) -> tuple[int, int]:
         """Numbers of plans generated and visited so far."""
-        return (self._algorithm.generated, self._algorithm.visited) if self._algorithm else (0, 0)
+        return (self._engine.generated, self._engine.visited) if self._engine else (0, 0)
 
     def advance(self, budget: Budget) -> Result | None:
         """Continues the search until it ends or the budget is spent.
@@ -64,7 +66,7 @@ class Search:
         Deterministic for equal problem and settings, however the work is divided among calls.
 
         Args:
-          budget: Checked once per refined plan, and once per 64 bindings while grounding.
+          budget: Checked once per refined plan or evaluated state, and once per 64 bindings while grounding.
 
         Returns:
           The result, and the same one at every later call; None if the budget was spent first: call again.
@@ -83,21 +85,29 @@ class Search:
             if settings.random_open_conditions:
                 grounded = shuffled(grounded, rng)
             task = make_task(self._problem, grounded, settings.action_cost)
-            if settings.ground:
-                yield from self._explore(GroundSpace(task, grounded.world, settings, rng))
-            else:
-                order = rng if settings.random_open_conditions else None
-                lifted = lifted_task(task, grounded.world, settings.action_cost, order)
-                yield from self._explore(LiftedSpace(lifted, settings, rng))
+            self._engine = self._make_engine(task, grounded, rng)
+            yield from self._engine.run()
         except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), *self.counts)
 
-    def _explore(self, space: PlanSpace[P]) -> Iterator[Result | None]:
-        algorithm = (
-            BestFirst(space, self._settings) if self._settings.search == "A" else Deepening(space, self._settings)
-        )
-        self._algorithm = algorithm
-        yield from algorithm.run()
+    def _make_engine(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
+        """The engine of the settings."""
+        settings = self._settings
+        forward = ForwardEngine(task, grounded, settings.node_limit, settings.step_limit)
+        if settings.engine == "forward":
+            return forward
+        partial = self._partial_order(task, grounded, rng)
+        if settings.engine == "pocl" or not forward.applies:
+            return partial
+        return Portfolio(partial, forward, forward.expected_steps)
+
+    def _partial_order(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
+        settings = self._settings
+        space: PlanSpace[Any] = GroundSpace(task, grounded.world, settings, rng)
+        if not settings.ground:
+            order = rng if settings.random_open_conditions else None
+            space = LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)
+        return BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
 
     def _ground(self) -> Iterator[None]:
         """Grounds the problem unless the cached grounding fits."""

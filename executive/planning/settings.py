@@ -10,6 +10,7 @@ from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.ranking import check_rankings
 from tailor.schemas.errors import UsageError
 
+EngineName = OneOf["auto", "pocl", "forward"]
 MIN_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
 
 
@@ -33,8 +34,10 @@ class Settings:
       ground: Plan with ground actions; False: with variables (lifted).
       weight: Weight of the heuristic against the cost of the steps, finite and at least 0.
       action_cost: Cost of a step: 1, its duration in seconds, or its duration relative to the shortest action.
-      node_limit: Maximum number of generated plans.
+      node_limit: Maximum number of generated plans, and of evaluated states.
       step_limit: Maximum number of steps in a plan.
+      engine: Partial-order search ("pocl"), search through states ("forward": no durations, disjunctions or
+        conditional effects), or both by turns ("auto").
       ground_limit: Maximum number of bindings that grounding tries.
       tolerance_s: One tick of a durative plan, in [1e-6, 1000] s.
       seed: Random seed, at least 0.
@@ -56,6 +59,7 @@ class Settings:
     tolerance_s: float = 0.01
     seed: int = 0
     random_open_conditions: bool = False
+    engine: EngineName = "auto"
 
     def __post_init__(self) -> None:
         if not self.flaw_orders:
@@ -77,7 +81,7 @@ class Settings:
 DEFAULT_RANKINGS = ("ADDR", "ADDR_WORK", "BUC", "LIFO")
 MAKESPAN_RANKINGS = ("ADDR", "MAKESPAN", "LIFO")
 DEFAULT = Settings()
-MATCHING = Settings(DEFAULT_RANKINGS, (FlawOrder("MW-Loc"),))  # the reference's `g-mwloc`
+MATCHING = Settings(DEFAULT_RANKINGS, (FlawOrder("MW-Loc"),), engine="pocl")  # the reference's `g-mwloc`
 
 
 def rankings_for(settings: Settings, metric: str) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Comparison with brute force on small random problems: plans are sound, and unsolvable problems have no plan."""
 
+from dataclasses import replace
 from itertools import product
 
 import pytest
@@ -85,9 +86,10 @@ def agrees(texts, options):
 
 
 OPTIONS = {
-    "round-robin": Settings(node_limit=400),
-    "IDA": Settings(node_limit=400, search="IDA", flaw_orders=(FlawOrder("UCPOP"),)),
-    "lifted": Settings(node_limit=300, ground=False),
+    "round-robin": Settings(node_limit=400, engine="pocl"),
+    "IDA": Settings(node_limit=400, engine="pocl", search="IDA", flaw_orders=(FlawOrder("UCPOP"),)),
+    "lifted": Settings(node_limit=300, ground=False, engine="pocl"),
+    "by-turns": Settings(node_limit=400),
 }
 RELAXED = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
@@ -109,3 +111,30 @@ def test_lifted_planning_of_plain_actions_agrees_with_brute_force():
         agrees(texts, OPTIONS["lifted"])
 
     check()
+
+
+# --- search through states -----------------------------------------------------------------------
+FORWARD = Settings(engine="forward", node_limit=400)
+
+
+@RELAXED
+@given(problems(SIMPLE, PLAIN_EFFECT, GOALS))
+def test_search_through_states_agrees_with_brute_force(texts):
+    agrees(texts, FORWARD)
+
+
+@RELAXED
+@given(problems(SIMPLE, PLAIN_EFFECT, st.lists(st.sampled_from(["(p a)", "(p b)", "(q a)", "(not (r))"]), min_size=3,
+                                               max_size=4).map(lambda goals: f"(and {' '.join(goals)})")),
+       st.randoms(use_true_random=False))  # fmt: skip
+def test_every_order_that_the_plan_leaves_open_is_sound(texts, random):
+    domain, problem = read(*texts)
+    plan = solve(domain, problem, FORWARD).plan
+    if plan is None:
+        return
+    waiting, order = {step.id: step for step in plan.steps}, []
+    while waiting:
+        ready = [i for i in waiting if not any(j in waiting for j, k in plan.orderings if k == i)]
+        order.append(waiting.pop(random.choice(ready)))
+    shuffled = tuple(replace(step, start=float(n)) for n, step in enumerate(order, 1))
+    assert validate(replace(plan, steps=shuffled), domain, problem) == ""

@@ -47,3 +47,14 @@ def reference(folder, config, status="solved"):
     with (folder / "reference.csv").open() as lines:
         rows = [row for row in csv.DictReader(lines) if row["config"] == config and status in ("", row["status"])]
     return {(row["domain"], row["problem"]): row for row in rows}
+
+
+def many_cups(cups):
+    """Kitchen domain, and a problem with n cups to carry from one table to another: 4 n steps."""
+    names = [f"cup{n}" for n in range(cups)]
+    initial = " ".join(f"(cup-at {name} table1)" for name in names)
+    goal = " ".join(f"(cup-at {name} table2)" for name in names)
+    problem = f"""(define (problem cups-{cups}) (:domain kitchen)
+      (:objects dock table1 table2 - place {" ".join(names)} - cup)
+      (:init (robot-at dock) (hand-empty) {initial}) (:goal (and {goal})))"""
+    return read((DATA / "own" / "kitchen-domain.pddl").read_text(), problem)

@@ -52,6 +52,7 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
 
     scenario = deployment.scenario or domains.scenarios(domain)[0]
     settings = deployment.executive
+    settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
     if deployment.planner.command:
         split_command(deployment.planner.command)
         settings = replace(settings, external=deployment.planner)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.ground.static_literals import static_literals
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
-from tailor.executive.planning.pddl.language import Action, And, Atom, Formula, Literal, Not
+from tailor.executive.planning.pddl.language import Action, And, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.structures.orderings import Orderings
@@ -111,19 +112,3 @@ def _static_guard(schema: Action, binding: Binding, achieved: Literal, world: St
                 if fact == achieved.fact and all((x.fact in world.facts) == x.positive for x in static):
                     return static
     return ()
-
-
-def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
-    """The static literals that a formula implies, disjunctions ignored; the last one first."""
-    literals: list[Literal] = []
-    pending = [formula]
-    while pending:
-        part = pending.pop()
-        inner, positive = (part.part, False) if isinstance(part, Not) else (part, True)
-        if isinstance(part, And):
-            pending += part.parts
-        elif isinstance(inner, Atom) and inner.predicate in world.static:
-            fact: Fact = (inner.predicate, *(binding.get(term, term) for term in inner.terms))
-            if Literal(fact, positive) not in literals:
-                literals.append(Literal(fact, positive))
-    return tuple(literals)

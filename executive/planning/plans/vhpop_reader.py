@@ -1,4 +1,4 @@
-"""Reads a plan in VHPOP's plain or causal-link form: from this planner, a recording or an external `vhpop`."""
+"""Reads a plan in VHPOP's plain or causal-link form, or as the competitions' sequence or timed list of actions."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ class _Draft:
 
 
 def parse_plan(text: str) -> Plan:
-    """The plan in a text.
+    """The plan in a text of this planner, a recording or an external planner.
 
-    The plain form has no initial state, links or orderings; its steps are numbered in their order. Start times and
+    The plain form, and the competitions' lines `(action args)` or `START: (action args) [DURATION]`, have no initial state, links or orderings; its steps are numbered in their order. Start times and
     durations of a durative causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has
     a line "tolerance = ...".
 
     Args:
-      text: Plain or causal-link form; "Initial  :" and the paper's "Initial 0 :" are both accepted.
+      text: One of the forms; "Initial  :" and the paper's "Initial 0 :" are both accepted.
 
     Returns:
       The plan, not validated.
@@ -122,6 +122,9 @@ def _read_step(line: str, draft: _Draft) -> None:
         duration = _number(match[3]) if match[3] else 1.0
         draft.durations += match[3] is not None
         draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), _number(match[1]), duration))
+    elif _FACT.fullmatch(line) and draft.consumer is None:
+        number = len(draft.plain) + 1
+        draft.plain.append(Step(number, _fact(line), float(number)))
     else:
         raise ValueError(f"expected a step, a causal link or a part's name, found '{line[:60]}'")
 

@@ -13,10 +13,11 @@ import sys
 import time
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from tailor.executive.planning import (
     Domain,
+    EngineName,
     FlawOrder,
     Problem,
     Result,
@@ -63,6 +64,8 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
     add("-h", "--heuristic", metavar="RANKING", default="",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
+    add("--engine", choices=get_args(EngineName), default="auto",
+        help="partial-order search, search through states, or both by turns (default auto)")  # fmt: skip
     add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
         help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
@@ -225,6 +228,7 @@ def settings_of(args: argparse.Namespace) -> Settings:
         tolerance_s=args.tolerance,
         seed=args.seed,
         random_open_conditions=args.random_open_conditions,
+        engine=args.engine,
         **chosen,
     )
 

@@ -27,6 +27,7 @@ IPC3 = Settings(
         FlawOrder("{n,s,u}LR/{l}LR"),
     ),
     node_limit=400_000,
+    engine="pocl",
 )
 
 

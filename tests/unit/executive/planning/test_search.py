@@ -76,7 +76,7 @@ def test_an_endless_search_ends_at_its_limit():
 
 
 def test_every_flaw_order_may_have_a_limit_of_its_own():
-    settings = Settings(flaw_orders=(FlawOrder("UCPOP", 50), FlawOrder("LCFR", 70)))
+    settings = Settings(flaw_orders=(FlawOrder("UCPOP", 50), FlawOrder("LCFR", 70)), engine="pocl")
     result = solve(*door("(in)"), settings)
     assert result.status == "limit"
     assert 100 <= result.generated <= 140
@@ -88,7 +88,7 @@ def test_goals_that_hold_already_need_no_step():
 
 
 def test_a_ranking_that_loves_long_plans_ends_at_their_longest():
-    result = solve(*door("(in)"), Settings(("LIFO",), step_limit=30, node_limit=3000))
+    result = solve(*door("(in)"), Settings(("LIFO",), step_limit=30, node_limit=3000, engine="pocl"))
     assert result.status == "limit"
 
 

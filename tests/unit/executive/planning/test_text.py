@@ -85,3 +85,17 @@ def test_bad_text_is_refused_with_its_line(text, message):
     with pytest.raises(PlanTextError) as caught:
         parse_plan(text)
     assert message in str(caught.value)
+
+
+def test_a_sequence_of_actions_is_a_plan():
+    plan = parse_plan("; cost = 2\n(navigate dock table1)\n(grip cup1 table1)\n")
+    assert [(step.id, step.action, step.start) for step in plan.steps] == [
+        (1, ("navigate", "dock", "table1"), 1.0),
+        (2, ("grip", "cup1", "table1"), 2.0),
+    ]
+
+
+def test_the_competitions_timed_form_is_a_plan():
+    plan = parse_plan("0.001: (navigate dock table1) [2.5]\n2.502: (grip cup1 table1) [1.0]\n")
+    assert [(step.start, step.duration) for step in plan.steps] == [(0.001, 2.5), (2.502, 1.0)]
+    assert plan.durative

@@ -1,0 +1,35 @@
+"""Leaves out the actions of a sequence that the goal does not need.
+
+Source: Fink & Yang, Formalizing plan justifications, 1992 (greedy justification): an action goes together with all
+later ones that lose a condition by that, if the rest still reaches the goal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask
+
+
+def justified(sequence: Sequence[StripsAction], strips: StripsTask) -> list[StripsAction]:
+    """The sequence without unnecessary actions, in the same order."""
+    kept = list(sequence)
+    first, state = 0, strips.initial
+    while first < len(kept):
+        rest = _without_first(kept[first:], state, strips.goal_mask)
+        if rest is None:
+            state = kept[first].after(state)
+            first += 1
+        else:
+            kept[first:] = rest
+    return kept
+
+
+def _without_first(actions: Sequence[StripsAction], state: int, goal_mask: int) -> list[StripsAction] | None:
+    """The later actions that remain applicable without the first; None if they miss the goal."""
+    kept = []
+    for action in actions[1:]:
+        if not action.needs_mask & ~state:
+            kept.append(action)
+            state = action.after(state)
+    return None if goal_mask & ~state else kept

@@ -1,0 +1,87 @@
+"""The FF heuristic: length of a plan that ignores what actions make false, and the actions it begins with.
+
+Sources: Hoffmann & Nebel, JAIR 14 (2001): relaxed plans and helpful actions. Each literal's supporter is its cheapest
+by the additive heuristic (Keyder & Geffner, ECAI 2008), not the first by level: relaxed plans become shorter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tailor.executive.planning.forward.strips_task import StripsTask, literals_of
+
+UNREACHED = 1 << 60  # cost of a literal
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Number of actions of a relaxed plan, and those of them that are applicable at once, by index."""
+
+    length: int
+    helpful: tuple[int, ...]
+
+
+class RelaxedPlans:
+    """Estimates of states of one task."""
+
+    def __init__(self, strips: StripsTask) -> None:
+        self._strips = strips
+        self._counts = [len(action.needs) for action in strips.actions]
+        self._free = [index for index, action in enumerate(strips.actions) if not action.needs]
+        self._users: list[list[int]] = [[] for _ in range(strips.literals)]
+        for index, action in enumerate(strips.actions):
+            for literal in action.needs:
+                self._users[literal].append(index)
+
+    def estimate(self, state: int) -> Estimate | None:
+        """The estimate of a state; None if not even a relaxed plan reaches the goal."""
+        supporters = self._supporters(state)
+        if supporters is None:
+            return None
+        actions, chosen = self._strips.actions, set[int]()
+        pending = list(self._strips.goal)
+        while pending:
+            supporter = supporters[pending.pop()]
+            if supporter >= 0 and supporter not in chosen:
+                chosen.add(supporter)
+                pending += actions[supporter].needs
+        helpful = sorted(index for index in chosen if actions[index].needs_mask & ~state == 0)
+        return Estimate(len(chosen), tuple(helpful))
+
+    def _supporters(self, state: int) -> list[int] | None:
+        """The cheapest action that makes each literal true, -1 where it holds; None if a literal of the goal has none.
+
+        Literals are closed in the order of their additive cost, bucket by bucket, until all of the goal are.
+        """
+        actions, users = self._strips.actions, self._users
+        costs, supporters = [UNREACHED] * self._strips.literals, [-1] * self._strips.literals
+        missing, sums = self._counts.copy(), [1] * len(actions)
+        buckets: list[list[int]] = [literals_of(state)]
+        for literal in buckets[0]:
+            costs[literal] = 0
+        unmet = self._strips.goal_mask & ~state
+
+        def fire(index: int) -> None:
+            cost = sums[index]
+            while len(buckets) <= cost:
+                buckets.append([])
+            for literal in actions[index].made:
+                if cost < costs[literal]:
+                    costs[literal], supporters[literal] = cost, index
+                    buckets[cost].append(literal)
+
+        for index in self._free:
+            fire(index)
+        for cost, bucket in enumerate(buckets):  # grows meanwhile
+            for literal in bucket:
+                if costs[literal] != cost:
+                    continue  # closed before at a lower cost
+                unmet &= ~(1 << literal)
+                for index in users[literal]:
+                    missing[index] -= 1
+                    sums[index] += cost
+                    if not missing[index]:
+                        fire(index)
+            if not unmet:
+                return supporters
+        return None

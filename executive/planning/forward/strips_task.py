@@ -1,0 +1,94 @@
+"""Ground actions and states as bit masks over literals, for search through states.
+
+Bit `l` of a state is set if literal `l` holds; of literals `2 * i` and `2 * i + 1` exactly one does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from tailor.executive.planning.ground.ground_action import GroundAction
+from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.ground.ground_task import GroundTask
+from tailor.executive.planning.structures.connectives import Conjunction
+
+
+class NotClassical(Exception):
+    """The task has what search through states does not cover; the message names it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StripsAction:
+    """A ground action: applicable where all of `needs` hold; then `made` holds, and its negations do not."""
+
+    ground: GroundAction
+    needs: tuple[int, ...]
+    made: tuple[int, ...]
+    needs_mask: int
+    made_mask: int
+    kept_mask: int  # all literals but the negations of `made`
+
+    def after(self, state: int) -> int:
+        """The state after the action, which must be applicable."""
+        return state & self.kept_mask | self.made_mask
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StripsTask:
+    """A task whose conditions are conjunctions of literals; actions that no relaxed plan reaches are left out."""
+
+    actions: tuple[StripsAction, ...]
+    literals: int  # number of them
+    initial: int
+    goal: tuple[int, ...]
+    goal_mask: int
+
+
+def strips_task(task: GroundTask, actions: Sequence[GroundAction]) -> StripsTask:
+    """The task for search through states, given all ground actions by number.
+
+    Raises:
+      NotClassical: It has durations, timed literals, disjunctions or conditional effects.
+    """
+    if task.temporal:
+        raise NotClassical("durations or timed literals")
+    literals = len(task.names)
+    reached = tuple(_strips_action(actions[number], literals) for number in sorted(task.estimates.reached))
+    goal = _literals(task.goal)
+    return StripsTask(reached, literals, mask_of(task.initial), goal, mask_of(goal))
+
+
+def mask_of(literals: Iterable[int]) -> int:
+    """The mask with the bits of some literals."""
+    mask = 0
+    for literal in literals:
+        mask |= 1 << literal
+    return mask
+
+
+def literals_of(mask: int) -> list[int]:
+    """The literals of a mask."""
+    return [literal for literal, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
+
+
+def _strips_action(action: GroundAction, literals: int) -> StripsAction:
+    if not action.simple:
+        raise NotClassical(f"conditional effects of {action}")
+    needs = _literals([condition for condition, _ in action.conditions])
+    made = tuple(dict.fromkeys(effect.literal for effect in action.effects))
+    kept = (1 << literals) - 1 & ~mask_of(literal ^ 1 for literal in made)
+    return StripsAction(action, needs, made, mask_of(needs), mask_of(made), kept)
+
+
+def _literals(conditions: Iterable[GroundCondition]) -> tuple[int, ...]:
+    """The literals of a conjunction of conditions."""
+    found: dict[int, None] = {}
+    for condition in conditions:
+        if isinstance(condition, int):
+            found.setdefault(condition)
+        elif isinstance(condition, Conjunction):
+            found.update(dict.fromkeys(_literals(condition.parts)))
+        else:
+            raise NotClassical("disjunctions")
+    return tuple(found)

@@ -1,0 +1,23 @@
+"""The static literals of a formula: grounding removes them, a finished plan links them."""
+
+from __future__ import annotations
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
+from tailor.executive.planning.pddl.language import And, Atom, Formula, Literal, Not
+
+
+def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
+    """The static literals that a formula implies, disjunctions ignored; the last one first."""
+    literals: list[Literal] = []
+    pending = [formula]
+    while pending:
+        part = pending.pop()
+        inner, positive = (part.part, False) if isinstance(part, Not) else (part, True)
+        if isinstance(part, And):
+            pending += part.parts
+        elif isinstance(inner, Atom) and inner.predicate in world.static:
+            fact: Fact = (inner.predicate, *(binding.get(term, term) for term in inner.terms))
+            if Literal(fact, positive) not in literals:
+                literals.append(Literal(fact, positive))
+    return tuple(literals)

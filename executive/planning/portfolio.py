@@ -1,0 +1,77 @@
+"""Partial-order search and the forward engine by turns: the first proof or plan counts."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import replace
+from typing import Protocol
+
+from tailor.executive.planning.plans.plan import Result
+
+SHORT_STEPS = 20  # partial-order search seldom solves problems with longer relaxed plans
+HEAD_START = 2000  # plans refined first where relaxed plans are short: what is found by then keeps its plan and counts
+SHARE = 4  # plans refined per evaluated state, which takes ten times as long as a plan
+
+
+class Engine(Protocol):
+    """A search for a plan, with its counts so far."""
+
+    @property
+    def generated(self) -> int:
+        """Number of plans or states generated."""
+        ...
+
+    @property
+    def visited(self) -> int:
+        """Number of plans refined, or states evaluated."""
+        ...
+
+    def run(self) -> Iterator[Result | None]:
+        """Advances by one plan or state per iteration; yields None until the result."""
+        ...
+
+
+class Portfolio:
+    """Runs both engines until one has a plan or a proof, or both have reached a limit; counts are sums."""
+
+    def __init__(self, partial: Engine, forward: Engine, expected_steps: int) -> None:
+        self._engines = (partial, forward)
+        self._head_start = HEAD_START if expected_steps <= SHORT_STEPS else SHARE
+
+    @property
+    def generated(self) -> int:
+        """See `Engine`."""
+        return sum(engine.generated for engine in self._engines)
+
+    @property
+    def visited(self) -> int:
+        """See `Engine`."""
+        return sum(engine.visited for engine in self._engines)
+
+    def run(self) -> Iterator[Result | None]:
+        """See `Engine`."""
+        partial, forward = (engine.run() for engine in self._engines)
+        reasons: list[str] = []
+        portions = [(partial, self._head_start), (forward, 1)]
+        while portions:
+            for work, portion in portions.copy():
+                result = yield from _advanced(work, portion)
+                if result is None:
+                    continue
+                if result.status in ("solved", "unsolvable"):
+                    yield replace(result, generated=self.generated, visited=self.visited)
+                    return
+                reasons += [result.reason] if result.status == "limit" else []
+                portions = [(other, n) for other, n in portions if other is not work]
+            portions = [(work, SHARE if work is partial else 1) for work, _ in portions]
+        yield Result("limit", None, "; ".join(reasons), self.generated, self.visited)
+
+
+def _advanced(work: Iterator[Result | None], portion: int) -> Generator[None, None, Result | None]:
+    """Advances an engine by so many plans or states; returns its result, if it has one by then."""
+    for _ in range(portion):
+        result = next(work)
+        if result is not None:
+            return result
+        yield None
+    return None

@@ -1,0 +1,95 @@
+"""The forward engine: long plans, few orderings, proofs, limits; by turns with partial-order search."""
+
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import GOAL, Search, Settings, format_links, validate
+from tests.support.planning_problems import OWN, many_cups, own, read, solve
+
+FORWARD = Settings(engine="forward")
+CLASSICAL = [name for name in OWN if "durative" not in name]
+
+
+@pytest.mark.parametrize("engine", ["forward", "auto"])
+def test_twelve_cups_need_four_steps_each(engine):
+    domain, problem = many_cups(12)
+    plan = solve(domain, problem, Settings(engine=engine)).plan
+    assert len(plan.steps) == 48
+    assert validate(plan, domain, problem) == ""
+
+
+def test_partial_order_search_alone_does_not_reach_that_far():
+    assert solve(*many_cups(6), Settings(engine="pocl", node_limit=3000)).status == "limit"
+
+
+@pytest.mark.parametrize("name", CLASSICAL)
+def test_every_classical_problem_gets_a_sound_plan_with_all_links(name):
+    domain, problem = own(name)
+    plan = solve(domain, problem, FORWARD).plan
+    assert validate(plan, domain, problem) == ""
+    conditions = solve(domain, problem, Settings(engine="pocl")).plan
+    linked = {link.literal.fact[0] for link in plan.links}
+    assert {link.literal.fact[0] for link in conditions.links_to(GOAL)} <= linked
+
+
+@pytest.mark.parametrize("name", ["soccer-typed-p3", "kitchen-s3"])
+def test_short_problems_keep_the_plan_of_the_partial_order_search(name):
+    alone, by_turns = (solve(*own(name), Settings(engine=engine)) for engine in ("pocl", "auto"))
+    assert by_turns == alone
+
+
+def test_independent_steps_stay_unordered():
+    domain, problem = read(
+        """(define (domain lamps) (:requirements :typing) (:types lamp) (:predicates (on ?l - lamp) (power))
+          (:action plug :parameters () :precondition () :effect (power))
+          (:action light :parameters (?l - lamp) :precondition (power) :effect (on ?l)))""",
+        "(define (problem p) (:domain lamps) (:objects a b c - lamp) (:init) (:goal (and (on a) (on b) (on c))))",
+    )
+    plan = solve(domain, problem, FORWARD).plan
+    plug = next(step.id for step in plan.steps if step.action == ("plug",))
+    assert set(plan.orderings) == {(plug, step.id) for step in plan.steps if step.id != plug}
+    assert [step.start for step in plan.steps] == [1, 2, 2, 2]
+
+
+def test_a_step_that_would_undo_a_link_stays_on_its_side():
+    domain, problem = read(
+        """(define (domain door) (:predicates (open) (in) (locked))
+          (:action enter :parameters () :precondition (open) :effect (in))
+          (:action lock :parameters () :precondition () :effect (and (locked) (not (open)))))""",
+        "(define (problem p) (:domain door) (:init (open)) (:goal (and (in) (locked))))",
+    )
+    plan = solve(domain, problem, FORWARD).plan
+    assert [step.action for step in plan.steps] == [("enter",), ("lock",)]
+    assert len(plan.orderings) == 1
+
+
+def test_an_exhausted_state_space_proves_that_there_is_no_plan():
+    domain, problem = own("kitchen-s3")
+    both_held = problem.with_goal("(and (holding cup1) (holding cup2))")
+    assert solve(domain, both_held, FORWARD).status == "unsolvable"
+    assert solve(domain, both_held, Settings(engine="auto")).status == "unsolvable"
+
+
+def test_the_limit_of_states_ends_the_search():
+    result = solve(*many_cups(8), Settings(engine="forward", node_limit=10))
+    assert (result.status, result.visited) == ("limit", 10)
+
+
+def test_durations_are_refused_by_name():
+    result = solve(*own("kitchen-durative-s1"), FORWARD)
+    assert result.status == "unsupported"
+    assert "durations" in result.reason
+
+
+def test_a_plan_beyond_the_limit_of_steps_is_none():
+    assert solve(*many_cups(3), Settings(engine="forward", step_limit=11)).status == "limit"
+
+
+def test_the_division_into_portions_changes_nothing():
+    domain, problem = many_cups(5)
+    whole = solve(domain, problem, Settings())
+    search = Search(domain, problem, Settings())
+    while (result := search.advance(CheckBudget(7))) is None:
+        pass
+    assert result == whole
+    assert format_links(result.plan) == format_links(whole.plan)
