@@ -50,9 +50,9 @@ class _Draft:
 def parse_plan(text: str) -> Plan:
     """The plan in a text of this planner, a recording or an external planner.
 
-    The plain form, and the competitions' lines `(action args)` or `START: (action args) [DURATION]`, have no initial state, links or orderings; its steps are numbered in their order. Start times and
-    durations of a durative causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has
-    a line "tolerance = ...".
+    The plain form, and the competitions' lines `(action args)` or `START: (action args) [DURATION]`, have no initial
+    state, links or orderings; their steps are numbered in their order. Start times and durations of a durative
+    causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has a line "tolerance = ...".
 
     Args:
       text: One of the forms; "Initial  :" and the paper's "Initial 0 :" are both accepted.
