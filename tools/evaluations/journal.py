@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 
 
@@ -52,8 +53,10 @@ class Journal:
 def _read(line: str) -> Outcome | None:
     """The outcome of a line; None for a truncated or damaged line, whose run is repeated."""
     try:
-        return Outcome(**{key: _frozen(value) for key, value in json.loads(line).items()})
-    except (ValueError, TypeError, AttributeError):
+        fields = json.loads(line)
+        costs = Costs(**{key: _frozen(value) for key, value in fields.pop("costs").items()})
+        return Outcome(**{key: _frozen(value) for key, value in fields.items()}, costs=costs)
+    except (ValueError, TypeError, AttributeError, KeyError):
         return None
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import RefinementReport, Subgoals
+from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
 
@@ -73,6 +74,7 @@ class Outcome:
       refined_cost_s: Objective of the refined values in the first choice.
       predicted_actions: Of the first choice: action, whether it was asserted, predicted seconds.
       situation: Features that a refinement gate receives of the first choice (tailor.executive.refinement.gate).
+      costs: Costs besides time.
     """
 
     seed: int
@@ -92,6 +94,7 @@ class Outcome:
     refined_cost_s: float = float("nan")
     predicted_actions: tuple[tuple[str, bool, float], ...] = ()
     situation: tuple[float, ...] = ()
+    costs: Costs = NO_COSTS
 
 
 def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
@@ -115,6 +118,7 @@ def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
         *_costs_s(run),
         _predicted_actions(run),
         _gate_situation(run),
+        costs_of(run, domain),
     )
 
 

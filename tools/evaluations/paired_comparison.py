@@ -1,7 +1,12 @@
-"""Paired comparison of durations as in the paper's Table 3, with intervals and a rank test."""
+"""Paired comparisons of two settings over the same starts: intervals over independent units, tests, shares.
+
+A unit is what was drawn independently: a start, or a whole scenario when several are judged together. The pairs of one
+unit count as one value, their mean.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,26 +17,34 @@ from scipy import stats
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
+Units = Sequence[str | int]
+P_THRESHOLD = 0.001  # smaller ones say nothing more
+RESAMPLES = 2000
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two settings over the same starts. Percentages are of the baseline; positive improvement is faster."""
+    """Durations under two settings. Percentages are of the baseline; positive improvement is faster."""
 
-    n: int
+    n: int  # pairs
+    units: int
     mean_baseline_s: float
     mean_s: float
-    improvement_pct: float  # mean over episodes of 1 - t / t_baseline (paper 6.3)
+    improvement_pct: float  # mean over pairs of 1 - t / t_baseline (paper 6.3)
     ci95: tuple[float, float]  # of the improvement, in percent
     p_value: float  # dependent t-test, two-sided
     p_wilcoxon: float
-    slower_pct: float  # share of episodes that took longer
+    slower_pct: float  # share of pairs that took longer
 
     @property
     def verdict(self) -> dict[str, Any]:
         """Columns of a table about the improvement, in order."""
         return {
-            name: getattr(self, name) for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")
+            "improvement_pct": self.improvement_pct,
+            "ci95": self.ci95,
+            "p_value": p_shown(self.p_value),
+            "p_wilcoxon": p_shown(self.p_wilcoxon),
+            "slower_pct": self.slower_pct,
         }
 
     @property
@@ -40,32 +53,94 @@ class Comparison:
         return 100 * (1 - self.mean_s / self.mean_baseline_s)
 
 
-def compare(baseline_s: ArrayLike, refined_s: ArrayLike) -> Comparison:
-    """Compare durations in seconds of the same starts, both of shape (n,), n >= 2.
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A cost under two settings, and the difference, second minus first."""
+
+    first: float
+    second: float
+    ci95: tuple[float, float]  # of the difference
+    p_value: float
+
+
+def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = None) -> Comparison:
+    """Compare durations in seconds.
+
+    Args:
+      baseline_s: Of the baseline, shape (n,), n >= 2.
+      refined_s: From the same starts, shape (n,).
+      units: Unit of each pair; None: every pair is one.
 
     Raises:
-      UsageError: Fewer than two pairs.
+      UsageError: Fewer than two units.
       ValueError: Different lengths.
     """
-    first, second = np.asarray(baseline_s, dtype=np.float64), np.asarray(refined_s, dtype=np.float64)
-    if first.shape != second.shape:
-        raise ValueError(f"{first.shape} against {second.shape} durations, expected as many")
-    if len(first) < 2:
-        raise UsageError(f"{len(first)} episodes to compare, expected two that end well both ways: more --episodes")
+    first, second = _paired(baseline_s, refined_s)
     ratio = 1 - second / first
-    mean = float(ratio.mean())
-    half = float(stats.t.ppf(0.975, len(ratio) - 1) * stats.sem(ratio))
-    same = bool(np.all(first == second))
+    ratios, firsts, seconds = (by_unit(values, units) for values in (ratio, first, second))
+    if len(ratios) < 2:
+        raise UsageError(f"{len(ratios)} episodes to compare, expected two that end well both ways: more --episodes")
+    low, high = mean_interval(ratios)
+    same = bool(np.all(firsts == seconds))
     return Comparison(
         len(first),
+        len(ratios),
         float(first.mean()),
         float(second.mean()),
-        100 * mean,
-        (100 * (mean - half), 100 * (mean + half)),
-        1.0 if same else float(stats.ttest_rel(first, second).pvalue),
-        1.0 if same else float(stats.wilcoxon(first, second).pvalue),
+        100 * float(ratios.mean()),
+        (100 * low, 100 * high),
+        1.0 if same else float(stats.ttest_rel(firsts, seconds).pvalue),
+        1.0 if same else float(stats.wilcoxon(firsts, seconds).pvalue),
         100 * float(np.mean(second > first)),
     )
+
+
+def compare_means(first: ArrayLike, second: ArrayLike, units: Units | None = None) -> Difference:
+    """Compare a cost of at least two units by the dependent t-test; shapes (n,)."""
+    one, other = (by_unit(values, units) for values in _paired(first, second))
+    same = bool(np.all(one == other)) or len(one) < 2
+    p_value = 1.0 if same else float(stats.ttest_rel(one, other).pvalue)
+    return Difference(float(one.mean()), float(other.mean()), mean_interval(other - one), p_value)
+
+
+def compare_shares(first: ArrayLike, second: ArrayLike, units: Units | None = None) -> Difference:
+    """Compare how often something happened, in percent, by McNemar's exact test; boolean, shapes (n,).
+
+    The interval is the adjusted Wald interval of Bonett and Price (2012). With units of several pairs, both are those
+    of `compare_means` over the units' shares.
+    """
+    one, other = _paired(first, second)
+    if units is not None:
+        return compare_means(100 * one, 100 * other, units)
+    n, lost, gained = len(one), int(np.sum(one > other)), int(np.sum(other > one))
+    p_value = float(stats.binomtest(gained, lost + gained).pvalue) if lost + gained else 1.0
+    p10, p01 = (lost + 1) / (n + 2), (gained + 1) / (n + 2)
+    half = float(stats.norm.ppf(0.975)) * np.sqrt((p10 + p01 - (p01 - p10) ** 2) / (n + 2))
+    interval = (100 * float(p01 - p10 - half), 100 * float(p01 - p10 + half))
+    return Difference(100 * float(one.mean()), 100 * float(other.mean()), interval, p_value)
+
+
+def by_unit(values: Array, units: Units | None) -> Array:
+    """Mean of each unit's values, in the order of first appearance; the values themselves without units."""
+    if units is None:
+        return values
+    names = np.array(units)
+    return np.array([values[names == name].mean() for name in dict.fromkeys(units)])
+
+
+def mean_interval(values: Array) -> tuple[float, float]:
+    """95 % t-interval of the mean of independent values, shape (n,)."""
+    if len(values) < 2:
+        return -np.inf, np.inf
+    half = float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
+    return float(values.mean()) - half, float(values.mean()) + half
+
+
+def ratio_interval(parts: Array, wholes: Array) -> tuple[float, float]:
+    """95 % bootstrap interval over units of sum(parts) / sum(wholes); shapes (n,)."""
+    drawn = np.random.default_rng(0).integers(len(parts), size=(RESAMPLES, len(parts)))
+    low, high = np.percentile(parts[drawn].sum(axis=1) / wholes[drawn].sum(axis=1), [2.5, 97.5])
+    return float(low), float(high)
 
 
 def share_interval(count: int, n: int) -> tuple[float, float]:
@@ -74,3 +149,15 @@ def share_interval(count: int, n: int) -> tuple[float, float]:
         return 0.0, 100.0
     interval = stats.binomtest(count, n).proportion_ci(0.95, method="wilson")
     return 100 * float(interval.low), 100 * float(interval.high)
+
+
+def p_shown(p_value: float) -> float | str:
+    """A p-value for a table: three decimals, or that it is below the threshold."""
+    return f"< {P_THRESHOLD}" if p_value < P_THRESHOLD else round(p_value, 3)
+
+
+def _paired(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
+    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    if one.shape != other.shape:
+        raise ValueError(f"{one.shape} against {other.shape} values, expected as many")
+    return one, other

@@ -7,18 +7,20 @@ import html
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.figures.report_page import image, page, table
 
 Row = Mapping[str, Any]
 MAX_COLUMNS = 9  # that fit a screen
+LAST_SEED = 2_000_000_000  # of evaluations; gathered runs have larger ones
 MIN_WIDTH = 120  # characters; files and pipes have no width
 
 
@@ -31,6 +33,7 @@ class Report:
     rows: Sequence[Row]
     remarks: Sequence[str] = ()
     plots: Mapping[str, Path] = field(default_factory=dict)  # description -> PNG
+    provenance: Mapping[str, Any] = field(default_factory=dict)  # seeds, and hashes of what was evaluated
 
 
 def configure_report(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +44,8 @@ def configure_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),
                         help="store finished runs in DIR and resume from them (default %(default)s)")  # fmt: skip
     parser.add_argument("--zoo", default="", help="folder of action models (default: the shipped ones)")
+    parser.add_argument("--seed", type=_seed, default=None, metavar="N",
+                        help="first seed, for debugging (default: from the hash of source and models)")  # fmt: skip
     parser.add_argument("--domain", default="", help="run the evaluation only if it is of this domain, e.g. soccer")
 
 
@@ -52,8 +57,9 @@ def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
       as_json: Print JSON instead of a table.
       folder: Of pages; created if missing.
     """
+    report = _with_seeds(report)
     content = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
-    text = json.dumps({**content, "remarks": list(report.remarks)}, indent=1)
+    text = json.dumps({**content, "remarks": list(report.remarks), "provenance": dict(report.provenance)}, indent=1)
     if as_json:
         print(text)
     else:
@@ -67,6 +73,16 @@ def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
         (folder / f"{report.name}.json").write_text(text + "\n")  # last: marks a complete page
 
 
+def _with_seeds(report: Report) -> Report:
+    """The report with a remark on its seeds."""
+    if "first_seed" not in report.provenance:
+        return report
+    first, source = report.provenance["first_seed"], str(report.provenance["source_sha256"])[:12]
+    derived = f"derived from source {source} and models {str(report.provenance['models_sha256'])[:12]}"
+    how = derived if report.provenance["seed_derived"] else "chosen by --seed, for debugging: not a fresh evaluation"
+    return replace(report, remarks=[*report.remarks, f"seeds from {first}, {how}"])
+
+
 def shown(value: object) -> str:
     """A cell as text; numbers with significant digits."""
     if isinstance(value, float):
@@ -78,6 +94,12 @@ def shown(value: object) -> str:
     if isinstance(value, tuple | list):
         return " .. ".join(shown(part) for part in value)
     return str(value)
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal() or int(text) >= LAST_SEED:
+        raise UsageError(f"--seed is '{text}', expected a whole number from 0 to {LAST_SEED - 1}")
+    return int(text)
 
 
 def _print(report: Report) -> None:

@@ -72,6 +72,23 @@ class TaskSampler(Protocol):
         """Return what `failure` compares with, from the first ground truth of an action; None for other messages."""
         return None
 
+    def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
+        """Return the number of contacts in a run that should not have happened, e.g. collisions."""
+        return 0
+
+    def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
+        """Return the deviation of the true state from the goal at the end of an action; empty if it is not known.
+
+        Args:
+          action: An executable action of the domain.
+          arguments: Its controller arguments, shape (k,).
+          truth: Ground truth at its end.
+
+        Returns:
+          Errors by name with unit, e.g. {"position_m": 0.03, "heading_rad": -0.1}; their absolute values count.
+        """
+        return {}
+
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
         """Return how far an object was displaced before the first action that may disturb it had ended, metres."""
         return 0.0

@@ -115,7 +115,7 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         ),
         (["train-gate", "agilo", "--learner", "magic"], "learner 'magic' is unknown for the refinement gate"),
         (["train-gate", "agilo", "--episodes", "3"], "3 pairs of episodes, expected at least 100"),
-        (["evaluate", "table1", "--episodes", "0"], "--episodes is 0, expected at least 2"),
+        (["evaluate", "table1", "--episodes", "0"], "--episodes is 0, expected at least 6"),
         (["evaluate", "table3", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
         (["evaluate", "energy", "--weights", "nan", "1"], "--weights is 'nan', expected a number, at least 0"),
         (["evaluate", "feature-spaces", "--action", "fly"], "no action 'fly' in soccer"),
@@ -125,7 +125,9 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         ),
         (["evaluate", "table9"], "evaluation 'table9' is unknown"),
         (["evaluate"], "no evaluation named"),
-        (["evaluate", "table1", "--robot", "r2d2"], "no action models for robot 'r2d2'"),
+        (["evaluate", "models", "--domain", "r2d2"], "no domain 'r2d2'"),
+        (["evaluate", "refinement"], "no domain named, expected --domain NAME"),
+        (["evaluate", "refinement", "--domain", "soccer", "--seed", "x"], "--seed is 'x', expected a whole number"),
         (["gather", "agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
         (["gather", "agilo", "--on-policy", "chess"], "no scenario 'chess'"),
     ],
@@ -187,12 +189,13 @@ def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) 
     """Both predict an amount, and both are loaded together."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "tailor.tools.evaluations.models.fresh.noise_floor", lambda *_: {"mae_s": 0.1}
+        "tailor.tools.evaluations.models.fresh.noise_floor", lambda *_: {"mae_s": 0.1, "accuracy_pct": 99.0}
     )  # takes half a minute
     main(["evaluate", "table1", "--episodes", "12", "--jobs", "1", "--json"])
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert sorted(row["action"] for row in rows) == ["approachBall", "dribbleBall", "goToPose"]
     assert all(row["relative_pct"] < 25 for row in rows)
-    promised = {"robot", "action", "episodes", "mean_duration_s", "mae_s", "mae_ci95", "paper_mae_s"}
-    assert all(promised <= row.keys() for row in rows)  # null where the paper has none
+    promised = {"domain", "action", "episodes", "mean_duration_s", "mae_s", "mae_ci95", "noise_floor_s", "coverage_pct"}
+    assert all(promised <= row.keys() for row in rows)
     assert [row["paper_mae_s"] for row in rows if row["action"] == "goToPose"] == [0.22]
+    assert [row["action"] for row in rows if "missed_failures_pct" in row] == ["approachBall"]

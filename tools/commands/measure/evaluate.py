@@ -14,6 +14,10 @@ from tailor.tools.evaluations.overview import page_is_there, write_overview
 
 # name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 EVALUATIONS: dict[str, tuple[str, str]] = {
+    "models": (
+        "tailor.tools.evaluations.models.models",
+        "any domain: errors of the action models on fresh episodes, coverage of their intervals",
+    ),
     "table1": (
         "tailor.tools.evaluations.models.table1",
         "duration models: episodes, mean duration, error on new episodes",
@@ -31,6 +35,10 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "on-policy": (
         "tailor.tools.evaluations.models.on_policy",
         "change by one round of training on the optimiser's own choices",
+    ),
+    "refinement": (
+        "tailor.tools.evaluations.refinement.refinement",
+        "any domain: refined against greedy, with every cost in its column",
     ),
     "table3": ("tailor.tools.evaluations.refinement.table3", "refined against greedy subgoals, paired by start"),
     "letters": ("tailor.tools.evaluations.arm.letters", "letters by the arm (Table 3): stopping, greedy and refined"),
@@ -58,6 +66,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "live runs over the bus against lock-step runs from the same starts",
     ),
 }
+FOR_ANY_DOMAIN = ("refinement", "models")  # those that the paper's tables are names for
 ALL = "all"
 RESUME = "--resume"
 STOPPED = 130
@@ -66,6 +75,7 @@ EPILOG = """
 --resume: skip evaluations with a page in the report's folder. Finished episodes are kept in any case.
 
 examples:
+  tailor evaluate refinement --domain soccer --scenario approach-dribble --json
   tailor evaluate table3 table4 figure16 --domain soccer --report out/report
   tailor evaluate all --report out/report --resume
 """
@@ -77,7 +87,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     rows = [f"  {name:<{width}}  {text}" for name, (_, text) in EVALUATIONS.items()]
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.usage = "tailor evaluate NAME [NAME ...] [--json] [--report DIR [--resume]] [...]"
-    parser.epilog = "\n".join(["evaluations:", *rows, f"  {ALL:<{width}}  all of them", EPILOG])
+    parser.epilog = "\n".join(["evaluations:", *rows, f"  {ALL:<{width}}  all of the paper's", EPILOG])
     parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME", help="evaluations, then their flags")
 
 
@@ -115,7 +125,7 @@ def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: b
 def _names_and_flags(words: list[str]) -> tuple[list[str], list[str]]:
     """Leading names of evaluations, and all words after them."""
     leading = list(itertools.takewhile(lambda word: word == ALL or word in EVALUATIONS, words))
-    names = list(EVALUATIONS) if ALL in leading else leading
+    names = [name for name in EVALUATIONS if name not in FOR_ANY_DOMAIN] if ALL in leading else leading
     if not names:
         problem = f"evaluation '{words[0]}' is unknown" if words else "no evaluation named"
         raise UsageError(f"{problem}, expected some of: {', '.join(EVALUATIONS)}, {ALL}")
@@ -135,7 +145,7 @@ def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[
     chosen = []
     for name, module, settings, _ in parsed:
         domains_of = getattr(module, "DOMAINS", ("soccer",))
-        if not settings.domain or settings.domain in domains_of:
+        if not settings.domain or name in FOR_ANY_DOMAIN or settings.domain in domains_of:
             chosen.append((name, module, settings))
         elif not everything:
             raise UsageError(f"--domain {settings.domain}: {name} has: {', '.join(domains_of)}")

@@ -104,39 +104,6 @@ def _rows(found: Found) -> list[dict[str, Any]]:
     return rows
 
 
-def table3_row(arguments: argparse.Namespace) -> tuple[dict[str, Any], tuple[list[float], list[float]]]:
-    """The arm's row of Table 3 in that table's columns, over about as many letters as it has `episodes`.
-
-    With it the durations of greedy and refined letters.
-    """
-    seeds = max(1, arguments.episodes // len(font()))
-    settings = argparse.Namespace(
-        seeds=seeds, no_oracle=not arguments.oracle, jobs=arguments.jobs, zoo=arguments.zoo, report=None
-    )
-    found = _write_all(settings)
-    rows = {row["mode"]: row for row in _rows(found)}
-    greedy, refined = rows["greedy"], rows["refined"]
-    row = {
-        "scenario": "arm",
-        "horizon": BASE.horizon,
-        "n": refined["n"],
-        "mean_greedy_s": greedy["mean_s"],
-        "mean_refined_s": refined["mean_s"],
-        **{name: refined[name] for name in ("improvement_pct", "ci95", "p_value", "p_wilcoxon", "slower_pct")},
-        "failed_greedy": greedy["failed"],
-        "failed_refined": refined["failed"],
-        "bias_greedy_s": greedy["bias_s"],
-        "bias_refined_s": refined["bias_s"],
-    }
-    if arguments.oracle:
-        best = rows["oracle, all ahead"]
-        row |= {"oracle_n": best["n"], "oracle_pct": best["improvement_pct"], "oracle_s": best["mean_s"]}
-    greedy_s, refined_s = (
-        [found[hand][key].duration_s for key in _both_achieved("refined", found)] for hand in ("greedy", "refined")
-    )
-    return row, (greedy_s, refined_s)
-
-
 def _both_achieved(name: str, found: Found) -> list[Key]:
     return [key for key, figures in found[name].items() if figures.achieved and found["greedy"][key].achieved]
 

@@ -18,9 +18,10 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_task, succeeded, variants
 from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
-from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import share_interval
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run
 
@@ -49,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run, draw and publish the report; 0 if more approaches succeed with their subgoals than without."""
     task = assertion_task(arguments.zoo)
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
     found = run_all(task, variants(), seeds, arguments.jobs, arguments.store, "figure 15")
     asserted = [seed for seed in seeds if found["asserted"][seed].asserted]
     if not asserted:
@@ -63,7 +64,11 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure15-{seed}.png"
             plots[f"search space of the subgoal and both runs, start {seed}"] = _draw(task, seed, ground, path)
     title = "Figure 15: the search space of an asserted subgoal"
-    publish_report(Report("figure15", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("figure15", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
+        arguments.json,
+        arguments.report,
+    )
     return 0 if rows[0]["success_after_pct"] > rows[0]["success_before_pct"] else 1
 
 

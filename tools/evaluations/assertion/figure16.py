@@ -11,10 +11,11 @@ from typing import Any
 from tailor.executive.core.reasons import Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.plots import draw_shares
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
 
@@ -38,14 +39,18 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         plots["success of approaches"] = draw_shares(row, arguments.report / "figure16.png")
     publish_report(
-        Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots), arguments.json, arguments.report
+        Report(
+            "figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots, seeds_of("soccer", arguments).provenance
+        ),
+        arguments.json,
+        arguments.report,
     )
     return 0 if row["success_after_pct"] >= 98 and row["needless_pct"] <= 10 else 1
 
 
 def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
     """The row of figures: every approach once as it is and once with assertion."""
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of("soccer", arguments).starts(arguments.episodes)
     task = assertion_task(arguments.zoo)
     found = run_all(task, variants(settings), seeds, arguments.jobs, arguments.store, "figure 16")
     return summary(found["blind"], found["asserted"])

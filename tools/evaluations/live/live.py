@@ -28,8 +28,9 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
-from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import dependencies, run_all
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
@@ -78,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
       0 if live runs end like those in lock-step and neither test finds a difference, 130 if interrupted, else 1.
     """
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
     repeats = _lockstep(task, arguments, seeds)
     repeated = {seed: some.pop() for seed, some in repeats.items()}
     stop = stop_on_signals()
@@ -91,7 +92,11 @@ def run(arguments: argparse.Namespace) -> int:
         starts = {name: starts_of(runs, repeats) for name, runs in found.items()}
         plots["durations and differences"] = draw_agreement(starts, MARGIN_PCT, arguments.report / "live.png")
     title = f"Live over the bus against lock-step: {arguments.scenario}"
-    publish_report(Report("live", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("live", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
+        arguments.json,
+        arguments.report,
+    )
     live = rows[0]
     alike = min(live["p_value"], live["p_rank"]) > 0.05
     return 0 if alike and live["achieved_pct"] >= live["achieved_lockstep_pct"] - 5 else 1

@@ -15,7 +15,7 @@ from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh, weka
-from tailor.tools.evaluations.models.learned import configure_learned, configure_train
+from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
 from tailor.tools.evaluations.report import Report, publish_report
 
 
@@ -31,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; exit code 0."""
+    arguments = seeded(arguments)
     rows = [row for action in arguments.actions for row in _rows(action, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
     publish_report(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)

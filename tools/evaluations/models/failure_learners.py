@@ -13,7 +13,7 @@ from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh, weka
-from tailor.tools.evaluations.models.learned import configure_learned, configure_train
+from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
 from tailor.tools.evaluations.report import Report, publish_report
 
 
@@ -26,6 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; exit code 0."""
+    arguments = seeded(arguments)
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
     train = success_examples(fresh.training(*common, arguments.train, *more).episodes, 1)

@@ -14,7 +14,7 @@ from tailor.models.features.spaces import feature_space
 from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
-from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned
+from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, seeded
 from tailor.tools.evaluations.report import Report, publish_report
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
@@ -30,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if the order is the paper's: direct, relative, projective."""
+    arguments = seeded(arguments)
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
     train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)

@@ -6,6 +6,8 @@ import argparse
 
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.report import configure_report
+from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.learning import gathering
 
 PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 
@@ -21,12 +23,15 @@ def configure_train(parser: argparse.ArgumentParser) -> None:
 
 
 def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
-    """Declare robot, number of fresh episodes, seed, and the flags of the report."""
+    """Declare robot, number of fresh episodes, and the flags of the report."""
     parser.add_argument("--robot", default="agilo", help="whose models (default %(default)s)")
     parser.add_argument(
         "--episodes", type=at_least(2, "--episodes"), default=episodes, help="fresh episodes (default %(default)s)"
     )
-    parser.add_argument(
-        "--seed", type=at_least(0, "--seed"), default=1, help="draws the fresh episodes (default %(default)s)"
-    )
     configure_report(parser)
+
+
+def seeded(arguments: argparse.Namespace) -> argparse.Namespace:
+    """The arguments with the first seed of the robot's evaluations, and `provenance`, where it comes from."""
+    seeds = seeds_of(gathering.domain_of(arguments.robot), arguments)
+    return argparse.Namespace(**{**vars(arguments), "seed": seeds.first, "provenance": seeds.provenance})

@@ -18,7 +18,7 @@ from tailor.models.training.calibration import MIN_POLICY_EPISODES
 from tailor.models.training.training import fit
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.models.learned import configure_learned
+from tailor.tools.evaluations.models.learned import configure_learned, seeded
 from tailor.tools.evaluations.report import Report, publish_report
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import Policy, modelled_actions, models_hash, run_policy
@@ -40,6 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Gather both rounds, compare and publish the report; exit code 0."""
+    arguments = seeded(arguments)
     domain = gathering.domain_of(arguments.robot)
     folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
     rows = [row for action in modelled_actions(domain) for row in _rows(action, folders, arguments)]

@@ -5,21 +5,24 @@ An improvement over a poor greedy choice looks large; the ceiling puts it into p
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.paired_comparison import ratio_interval
 from tailor.tools.evaluations.refinement.oracle import Oracle
 
 Outcomes = Mapping[int, Outcome]  # by seed
 
 
-def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes) -> dict[str, float | int]:
+def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes) -> dict[str, Any]:
     """Baselines over the starts that the oracle simulated: mean durations, and improvements over the greedy model.
 
     `oracle_pct` is of the fastest simulated runs (the ceiling), which is biased by noise; `oracle_again_pct` is of the
-    same choices with other noise.
+    same choices with other noise. `share_of_oracle_pct` is of the sums of seconds; its interval is a bootstrap over
+    starts.
     """
     usable = [o for o in judged if np.isfinite(o.ceiling_s) and greedy[o.seed].achieved and refined[o.seed].achieved]
     greedy_s = np.array([greedy[o.seed].duration_s for o in usable])
@@ -32,6 +35,7 @@ def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes
         "oracle_again_pct": 100 * float(np.nanmean(1 - again_s / greedy_s)) if np.isfinite(again_s).any() else np.nan,
         "refined_same_starts_pct": 100 * float(np.mean(1 - refined_s / greedy_s)),
         "share_of_oracle_pct": 100 * float((greedy_s - refined_s).sum() / (greedy_s - ceiling_s).sum()),
+        "share_of_oracle_ci95": ratio_interval(100 * (greedy_s - refined_s), greedy_s - ceiling_s),
         "oracle_s": float(ceiling_s.mean()),
         "oracle_again_s": _mean(again_s),
         "refined_same_starts_s": float(refined_s.mean()),
@@ -41,11 +45,11 @@ def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes
     }
 
 
-def bias_s(outcomes: Outcomes) -> float:
+def bias_s(outcomes: Iterable[Outcome]) -> float:
     """Mean of predicted minus actual duration over all successful actions."""
     errors = [
         predicted - actual
-        for outcome in outcomes.values()
+        for outcome in outcomes
         for predicted, actual, how in zip(outcome.predicted_s, outcome.actual_s, outcome.outcomes, strict=True)
         if how == "done"
     ]

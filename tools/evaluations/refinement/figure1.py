@@ -15,9 +15,10 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.traced_runs import TracedRun, trace_all
 from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.track import Track
@@ -43,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, draw and publish the report; 0 if refined runs are faster in the mean."""
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of("soccer", arguments).starts(arguments.episodes)
     task = Task("soccer", "approach-dribble", "", arguments.zoo)
     variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]
     found = trace_all(task, variants, seeds, arguments.jobs, "figure 1")
@@ -57,7 +58,9 @@ def run(arguments: argparse.Namespace) -> int:
         f"slow_s: time at less than {SLOW_MPS} m/s between the first and the last action",
     ]
     publish_report(
-        Report("figure1", "Figure 1: greedy and refined", rows, remarks, plots),
+        Report(
+            "figure1", "Figure 1: greedy and refined", rows, remarks, plots, seeds_of("soccer", arguments).provenance
+        ),
         arguments.json,
         arguments.report,
     )

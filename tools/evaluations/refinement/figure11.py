@@ -16,10 +16,11 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.sweep import Sweep, sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run
 
@@ -56,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep, draw and publish the report; 0 if the model's best angle is faster than greedy's in simulation."""
     task = Task(*TASK, "", arguments.zoo)
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
     sweeps = [sweep for seed in seeds if (sweep := _swept(task, seed, arguments)) is not None]
     rows = [_row(sweep) for sweep in sweeps]
     rows.append(_mean(rows))
@@ -66,7 +67,11 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure11-{sweep.seed}.png"
             plots[f"predicted and simulated durations, start {sweep.seed}"] = _draw(task, sweep, path)
     title = "Figure 11: durations over the angle of approach"
-    publish_report(Report("figure11", title, rows, REMARKS, plots), arguments.json, arguments.report)
+    publish_report(
+        Report("figure11", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
+        arguments.json,
+        arguments.report,
+    )
     return 0 if rows[-1]["simulated_at_model_best_s"] < rows[-1]["simulated_at_greedy_s"] else 1
 
 

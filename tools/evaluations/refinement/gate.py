@@ -17,10 +17,11 @@ from tailor.executive.interfaces.models import RefinementGate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.outcome import FIRST_SEED, Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.refinement.gate_ceiling import ceiling_of
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.learning import gathering
 
@@ -46,7 +47,11 @@ def run(arguments: argparse.Namespace) -> int:
     remarks = [PAPER, "right: kept greedy where refining was slower, refined where not; perfect: always right"]
     if arguments.repeated_starts:
         remarks.append("ceiling: predicted from four runs of the same start with other noise")
-    publish_report(Report("gate", "When not to refine", [row], remarks), arguments.json, arguments.report)
+    publish_report(
+        Report("gate", "When not to refine", [row], remarks, {}, seeds_of("soccer", arguments).provenance),
+        arguments.json,
+        arguments.report,
+    )
     better = row["gated_pct"] >= row["improvement_pct"] and row["gated_slower_pct"] <= row["slower_pct"]
     return 0 if better else 1
 
@@ -68,7 +73,7 @@ def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None 
         Variant("gated", replace(base, horizon=2, gate=True)),
     ]
     task = Task(gathering.domain_of(ROBOT), SCENARIO, "", arguments.zoo)
-    seeds = range(FIRST_SEED, FIRST_SEED + arguments.episodes)
+    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "gate")
     starts = [(found["h1"][seed], found["h2"][seed], found["gated"][seed]) for seed in seeds]
     ceiling = {}

@@ -6,6 +6,7 @@ action, "zero" the choice of all zeros.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.task_runs import run_all
@@ -54,7 +56,8 @@ def simulate_choices(
       settings: Of the executive; its horizon is set to one, because nothing is left to look ahead for.
     """
     alone = replace(settings, horizon=1)
-    grid = list(product(*(_values(parameter, points) for parameter in free)))
+    periodic = {p.quantity for a in domains.load(task.domain).actions.values() for p in a.parameters if p.periodic}
+    grid = list(product(*(_values(parameter, points, parameter[1] in periodic) for parameter in free)))
     pins = [tuple((f[0], f[1], float(v)) for f, v in zip(free, choice, strict=True)) for choice in grid]
     zeros = tuple((f[0], f[1], float(np.clip(0.0, f[2], f[3]))) for f in free)
     variants = [Variant(_name(one), alone, one) for one in dict.fromkeys([*pins, zeros])]
@@ -86,13 +89,14 @@ def _judged(seed: int, outcomes: Sequence[Outcome], zero: Outcome) -> Oracle:
 
 def _first_action_s(outcome: Outcome) -> float:
     """Seconds until the first action of the plan is done, asserted subgoals included; inf if it failed at first."""
-    end = next((i for i, name in enumerate(outcome.actions) if name != "goToPose" or not outcome.asserted), 0)
+    before = itertools.takewhile(lambda predicted: predicted[1], outcome.predicted_actions)
+    end = min(sum(1 for _ in before), len(outcome.actions) - 1)
     return sum(outcome.actual_s[: end + 1]) if outcome.outcomes[end] == "done" else float("inf")
 
 
-def _values(parameter: Free, points: int) -> list[float]:
-    _, quantity, lower, upper = parameter
-    if quantity == "phi":
+def _values(parameter: Free, points: int, periodic: bool) -> list[float]:
+    *_, lower, upper = parameter
+    if periodic:
         return list(np.linspace(lower, upper, points, endpoint=False))
     return list(np.linspace(lower, upper, max(3, points // 6)))
 

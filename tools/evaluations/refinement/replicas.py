@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,24 +13,37 @@ from rich.console import Console
 from rich.progress import Progress
 from scipy import stats
 
+from tailor.executive import domains
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
 from tailor.tools.learning import gathering, run_gathering
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.learning.training_run import train_models
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
-SCENARIOS = {"soccer": ("approach-dribble", "waypoints")}  # of the on-policy round, where it helps
 
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """How a replica is made. `runs` is the on-policy round's, a scenario; 0: none."""
+    """How a replica is made.
+
+    Attributes:
+      domain: Name of the domain.
+      scenarios: Of the on-policy round.
+      episodes: Random ones of each action.
+      runs: Of the on-policy round, a scenario; 0: none.
+    """
 
     domain: str
-    robot: str
-    episodes: int  # of each action
+    scenarios: tuple[str, ...]
+    episodes: int
     runs: int
+
+    @property
+    def robot(self) -> str:
+        """Name of the domain's robot."""
+        return domains.load(self.domain).robot
 
 
 def configure_replicas(parser: argparse.ArgumentParser) -> None:
@@ -54,14 +68,18 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
       jobs: Processes.
     """
     made_by = episodes_sha256(recipe.domain)[:12]
-    folder = store / "replicas" / f"{recipe.robot}-{recipe.episodes}-{recipe.runs}-{made_by}" / str(number)
+    folder = (
+        store
+        / "replicas"
+        / "-".join([recipe.robot, *recipe.scenarios, str(recipe.episodes), str(recipe.runs), made_by])
+        / str(number)
+    )
     seed = FIRST_SEED + number
     _gather(recipe, seed, folder / "random", jobs)
     zoo = _trained(recipe, seed, folder / "zoo-random", [folder / "random"])
-    scenarios = SCENARIOS.get(recipe.domain, ())
-    if not recipe.runs or not scenarios:
+    if not recipe.runs:
         return zoo
-    policy = run_gathering.Policy(recipe.domain, scenarios, recipe.runs, seed, str(zoo), folder / "policy")
+    policy = run_gathering.Policy(recipe.domain, recipe.scenarios, recipe.runs, seed, str(zoo), folder / "policy")
     _finish(run_gathering.run_policy(policy, jobs), f"model {number}: on-policy")
     return _trained(recipe, seed, folder / "zoo", [folder / "random", folder / "policy"])
 
@@ -89,24 +107,32 @@ def _trained(recipe: Recipe, seed: int, zoo: Path, data: list[Path]) -> Path:
     return zoo
 
 
-def over_models(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The row over several models: the mean of theirs, with a 95 % interval between models.
+def over_models(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each scenario and horizon over several models, each judged from starts of its own.
 
-    The interval covers other trainings; each model's own interval covers other starts.
+    Its unit is the set of models: the mean of their improvements, with a 95 % interval over them.
     """
+    groups: dict[tuple[str, int], list[dict[str, Any]]] = {}
+    for row in rows:
+        groups.setdefault((row["scenario"], row["horizon"]), []).append(row)
+    return [_over(some) for some in groups.values() if len(some) > 1]
+
+
+def _over(rows: list[dict[str, Any]]) -> dict[str, Any]:
     gains = np.array([row["improvement_pct"] for row in rows])
-    half = float(stats.t.ppf(0.975, len(gains) - 1) * stats.sem(gains)) if len(gains) > 1 else float("nan")
-    mean = float(gains.mean())
-    means = ("mean_greedy_s", "mean_refined_s", "slower_pct", "bias_greedy_s", "bias_refined_s")
+    means = [key for key in rows[0] if key.startswith("mean_") or key.endswith(("_greedy", "_refined"))]
     return {
         "scenario": rows[0]["scenario"],
-        "model": f"{len(rows)} models",
+        "model": f"{len(rows)} sets of models",
         "horizon": rows[0]["horizon"],
         "n": sum(row["n"] for row in rows),
-        "improvement_pct": mean,
-        "ci95": (mean - half, mean + half),
-        "p_value": float(stats.ttest_1samp(gains, 0.0).pvalue) if len(gains) > 1 else float("nan"),
+        "unit": "set of models",
+        "units": len(rows),
+        "improvement_pct": float(gains.mean()),
+        "ci95": mean_interval(gains),
+        "p_value": p_shown(float(stats.ttest_1samp(gains, 0.0).pvalue)),
         "least_pct": float(gains.min()),
         "most_pct": float(gains.max()),
+        "slower_pct": float(np.mean([row["slower_pct"] for row in rows])),
         **{key: float(np.mean([row[key] for row in rows])) for key in means},
     }

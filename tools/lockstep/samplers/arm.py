@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.predicates import named
@@ -75,6 +76,21 @@ class ArmSampler:
     def observed_start(self, message: Message) -> dict[str, float] | None:
         """None: no failure depends on the start."""
         return None
+
+    def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
+        """0: there are no objects."""
+        return 0
+
+    def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
+        """Errors of the joints' angles (rad) and velocities (rad/s); a reach ends one period before its waypoint."""
+        if not isinstance(truth, JointState):
+            return {}
+        velocities = np.array(truth.velocities)
+        angles = np.array(truth.positions) + velocities * PERIOD_S
+        return {
+            "position_rad": float(np.linalg.norm(angles - arguments[[AG, BG]])),
+            "speed_radps": float(np.linalg.norm(velocities - arguments[[WAG, WBG]])),
+        }
 
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
         """0: there are no objects."""

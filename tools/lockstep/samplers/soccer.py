@@ -129,6 +129,20 @@ class SoccerSampler:
         """The ball's position in a ground truth, metres."""
         return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
 
+    def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
+        """1 if the ball was displaced before the end of the first approach, else 0."""
+        return int(self.disturbance_m(finished, truth) > COLLIDED_M)
+
+    def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
+        """Errors of the axle's position (m) and heading (rad), and of the speed (m/s)."""
+        if not isinstance(truth, SoccerGroundTruth):
+            return {}
+        return {
+            "position_m": math.hypot(truth.x - arguments[XG], truth.y - arguments[YG]),
+            "heading_rad": difference(truth.phi, float(arguments[PHIG])),
+            "speed_mps": truth.v - float(arguments[VG]),
+        }
+
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
         """Largest displacement of the ball before the end of the first approach, metres; 0 without an approach."""
         ended_ns = [action.stamp_ns for action in finished if action.action == "approachBall"]

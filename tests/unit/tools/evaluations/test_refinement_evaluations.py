@@ -14,6 +14,7 @@ from tailor.executive.interfaces.values import Interval
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.assertion import figure15, figure16
+from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
@@ -40,11 +41,13 @@ DONE = Outcome(
     bound=(("pos1", "x", 0.0),),
     greedy_cost_s=11.0,
     refined_cost_s=10.0,
+    costs=Costs(0, 5.0, (("position_m", 0.05),)),
 )
 
 
 def test_improvement_is_the_mean_of_the_paired_ratios():
     said = compare([10.0, 20.0, 10.0, 10.0], [9.0, 10.0, 11.0, 10.0])
+    assert (said.n, said.units) == (4, 4)
     assert said.improvement_pct == pytest.approx(100 * np.mean([0.1, 0.5, -0.1, 0.0]))
     assert said.gain_of_means_pct == pytest.approx(100 * (1 - 40 / 50))
     assert said.slower_pct == 25.0
@@ -133,8 +136,8 @@ def test_oracle_tells_ceiling_greedy_and_zero_apart():
 
 def test_oracle_chooses_for_the_plan_not_for_subgoals():
     assert subgoal_parameters(DONE) == [("pos2", "phi", -3.0, 3.0)]
-    assert len(_values(("pos2", "phi", -np.pi, np.pi), 12)) == 12
-    assert _values(("pos2", "v", 0.0, 0.3), 12) == pytest.approx([0.0, 0.15, 0.3])
+    assert len(_values(("pos2", "phi", -np.pi, np.pi), 12, True)) == 12
+    assert _values(("pos2", "v", 0.0, 0.3), 12, False) == pytest.approx([0.0, 0.15, 0.3])
 
 
 def test_assertion_is_counted_as_the_paper_counts_it():
@@ -171,21 +174,30 @@ def test_unknown_scenario_is_a_usage_error(module):
     parser = argparse.ArgumentParser()
     module.configure(parser)
     with pytest.raises(UsageError, match="chess"):
-        module.run(parser.parse_args(["chess"]))
+        module.run(parser.parse_args(["--scenario", "chess"]))
 
 
 def test_the_row_over_models_has_an_interval_between_models():
     row = {"scenario": "soccer", "horizon": 2, "n": 100, "mean_greedy_s": 12.0, "mean_refined_s": 11.0}
-    row |= {"slower_pct": 10.0, "bias_greedy_s": 0.1, "bias_refined_s": 0.3}
-    over = replicas.over_models([{**row, "improvement_pct": gain} for gain in (8.0, 9.0, 10.0)])
+    row |= {"slower_pct": 10.0, "contacts_pct_refined": 1.0}
+    (over,) = replicas.over_models([{**row, "improvement_pct": gain} for gain in (8.0, 9.0, 10.0)])
     assert (over["n"], over["improvement_pct"], over["least_pct"], over["most_pct"]) == (300, 9.0, 8.0, 10.0)
     assert over["ci95"] == pytest.approx((9 - 4.303 / np.sqrt(3), 9 + 4.303 / np.sqrt(3)), abs=0.01)
-    assert over["p_value"] < 0.01
+    assert (over["unit"], over["units"], over["contacts_pct_refined"]) == ("set of models", 3, 1.0)
+    assert over["p_value"] == 0.004
+
+
+def test_scenarios_and_horizons_have_rows_of_their_own_over_models():
+    row = {"n": 5, "slower_pct": 0.0, "improvement_pct": 9.0}
+    kinds = [{**row, "scenario": s, "horizon": h} for s in ("a", "b") for h in (2, 3)]
+    better = [{**kind, "improvement_pct": 10.0} for kind in kinds]
+    assert len(replicas.over_models([*kinds, *better])) == 4
+    assert replicas.over_models(kinds) == []
 
 
 @pytest.mark.slow
 def test_a_model_trained_anew_is_made_once_and_is_another_than_the_next(tmp_path):
-    recipe = replicas.Recipe("soccer", "agilo", 60, 0)
+    recipe = replicas.Recipe("soccer", (), 60, 0)
     first, second = (replicas.replica(recipe, number, tmp_path, 2) for number in (1, 2))
     sums = [json.loads((zoo / "agilo/goToPose/duration.card.json").read_text())["sha256"] for zoo in (first, second)]
     assert sums[0] != sums[1]

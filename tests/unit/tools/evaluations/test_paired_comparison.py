@@ -1,0 +1,119 @@
+"""Paired statistics: independent units, tests of shares, intervals of ratios, thresholds for p."""
+
+import argparse
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from tailor.executive import domains
+from tailor.schemas.messages import ActionFinished, InstantiatedAction, Parameter, Subgoals
+from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.tools.evaluations import seeds
+from tailor.tools.evaluations.costs import costs_of
+from tailor.tools.evaluations.outcome import FIRST_SEED
+from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, ratio_interval
+from tailor.tools.lockstep.run import Run
+
+
+def test_repeats_of_one_unit_do_not_narrow_the_interval():
+    rng = np.random.default_rng(1)
+    greedy = rng.uniform(9, 11, 12)
+    refined = greedy * rng.uniform(0.8, 1.0, 12)
+    once = compare(greedy, refined)
+    repeated = compare(np.repeat(greedy, 5), np.repeat(refined, 5), np.repeat(range(12), 5).tolist())
+    assert (repeated.n, repeated.units) == (60, 12)
+    assert repeated.ci95 == pytest.approx(once.ci95)
+    assert repeated.p_value == pytest.approx(once.p_value)
+
+
+def test_shares_are_compared_by_the_pairs_that_differ():
+    first = np.array([0] * 90 + [1] * 10, bool)
+    second = np.array([0] * 80 + [1] * 20, bool)
+    found = compare_shares(first, second)
+    assert (found.first, found.second) == (10.0, 20.0)
+    assert found.p_value == pytest.approx(stats.binomtest(10, 10).pvalue)
+    assert found.ci95[0] < 10.0 < found.ci95[1]
+
+
+def test_an_interval_of_a_share_is_not_empty_where_nothing_happened():
+    nothing = np.zeros(100, bool)
+    found = compare_shares(nothing, nothing)
+    assert found.p_value == 1.0
+    assert found.ci95[0] < 0.0 < found.ci95[1]
+    assert found.ci95[1] < 5.0
+
+
+def test_the_interval_of_shares_covers_the_truth_as_often_as_it_promises():
+    rng = np.random.default_rng(3)
+    held = 0
+    for _ in range(400):
+        drawn = rng.random((200, 2)) < (0.02, 0.06)
+        low, high = compare_shares(drawn[:, 0], drawn[:, 1]).ci95
+        held += low <= 4.0 <= high
+    assert 0.92 <= held / 400 <= 0.99
+
+
+def test_means_are_compared_pair_by_pair():
+    first = np.arange(10.0) * 100
+    found = compare_means(first, first + 1 + 0.1 * np.sin(first))
+    assert found.p_value < 0.001
+    assert found.ci95[0] < 1.0 < found.ci95[1]
+    assert found.ci95[1] - found.ci95[0] < 0.2
+
+
+def test_the_interval_of_a_ratio_holds_it_and_narrows_with_more_starts():
+    rng = np.random.default_rng(2)
+    wholes = rng.uniform(1, 3, 400)
+    parts = wholes * rng.uniform(0.5, 1.0, 400)
+    wide, narrow = ratio_interval(parts[:20], wholes[:20]), ratio_interval(parts, wholes)
+    assert narrow[0] < 0.75 < narrow[1]
+    assert narrow[1] - narrow[0] < wide[1] - wide[0]
+
+
+def test_p_values_below_the_threshold_are_not_told_apart():
+    assert [p_shown(p) for p in (0.0, 9e-54, 0.0099, 0.5)] == ["< 0.001", "< 0.001", 0.01, 0.5]
+
+
+@pytest.fixture
+def first_seed(monkeypatch):
+    def first(source="a", models="b", seed=None):
+        monkeypatch.setattr(seeds, "runs_sha256", lambda domain: source)
+        monkeypatch.setattr(seeds, "models_hash", lambda robot, zoo: models)
+        return seeds.seeds_of("soccer", argparse.Namespace(zoo="", seed=seed))
+
+    return first
+
+
+def test_seeds_follow_from_source_and_models_alone(first_seed):
+    assert first_seed() == first_seed()
+    assert len({first_seed().first, first_seed(source="c").first, first_seed(models="c").first}) == 3
+    assert FIRST_SEED <= first_seed().first < 2_000_000_000 - 100_000
+    assert first_seed().provenance["seed_derived"]
+
+
+def test_a_chosen_seed_is_stated(first_seed):
+    chosen = first_seed(seed=7)
+    assert (chosen.first, chosen.provenance["first_seed"], chosen.provenance["seed_derived"]) == (7, 7, False)
+    assert list(chosen.starts(3)) == [7, 8, 9]
+
+
+def test_costs_are_those_of_the_ground_truth():
+    """An approach that pushes the ball away, and ends 0.1 m beside its goal."""
+    action = domains.load("soccer").actions["goToPose"]
+    goal = {"xg": 2.0, "yg": 1.0, "phig": 0.5, "vg": 0.2}
+    parameters = [
+        Parameter(p.name, k, "pos", p.unit, True, p.lower, p.upper, goal.get(p.name, 0.0))
+        for k, p in enumerate(action.parameters)
+    ]
+    subgoals = Subgoals(0, 0, 2, (InstantiatedAction("goToPose", 1, False, 1.0, 0.1, tuple(parameters)),))
+    truth = [
+        SoccerGroundTruth(0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0),
+        SoccerGroundTruth(900_000_000, 2.0, 1.1, 0.4, 0.5, 0.0, 3.0, 0.0, 0.0, 0.0),
+    ]
+    done = ActionFinished(1_000_000_000, 10, "goToPose", 0, "done", "", 1.0, 1.0)
+    run = Run("achieved", 0.0, 1.0, [done], [subgoals], truth, [], [subgoals, *truth, done])
+    costs = costs_of(run, domains.load("soccer"))
+    assert costs.contacts == 0
+    assert dict(costs.arrival) == pytest.approx({"position_m": 0.1, "heading_rad": 0.1, "speed_mps": 0.3})
+    assert costs.energy_j > 0.1

@@ -1,0 +1,101 @@
+"""Columns of a table that compares two settings from the same starts: time, and every other cost, with paired tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.paired_comparison import (
+    Difference,
+    Units,
+    compare,
+    compare_means,
+    compare_shares,
+    p_shown,
+)
+from tailor.tools.evaluations.refinement.baselines import bias_s
+
+Outcomes = Mapping[int, Outcome]  # by seed
+Start = tuple[str, int]  # scenario, seed
+Pair = tuple[Outcome, Outcome]  # from one start: the baseline, and the setting that is judged
+MAX_MORE_POINTS = 0.5  # of failures or contacts, that count as no more
+
+
+def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
+    """Columns of a row.
+
+    Durations, arrivals and energy are of the pairs in which both achieved the goal; failures and contacts are of all.
+
+    Args:
+      pairs: Outcomes by start.
+      unit: "start", or "scenario": the starts of a scenario are one unit.
+
+    Raises:
+      UsageError: Fewer than two units in which both achieved the goal.
+    """
+    kept = {start: pair for start, pair in pairs.items() if pair[0].achieved and pair[1].achieved}
+    units = None if unit == "start" else [scenario for scenario, _ in kept]
+    every = None if unit == "start" else [scenario for scenario, _ in pairs]
+    both = list(kept.values())
+    times = compare([greedy.duration_s for greedy, _ in both], [refined.duration_s for _, refined in both], units)
+    return {
+        "n": times.n,
+        "unit": unit,
+        "units": times.units,
+        "mean_greedy_s": times.mean_baseline_s,
+        "mean_refined_s": times.mean_s,
+        **times.verdict,
+        "failed": len(pairs) - len(kept),
+        **_shares("failures_pct", pairs.values(), every, lambda outcome: not outcome.achieved),
+        **_shares("contacts_pct", pairs.values(), every, lambda outcome: outcome.costs.contacts > 0),
+        **_means("energy_j", both, units, lambda outcome: outcome.costs.energy_j),
+        **_arrivals(both, units),
+        "bias_greedy_s": bias_s(pair[0] for pair in both),
+        "bias_refined_s": bias_s(pair[1] for pair in both),
+    }
+
+
+def costs_no_more(row: Mapping[str, Any]) -> bool:
+    """Whether a row's failures and contacts are at most MAX_MORE_POINTS above the baseline's."""
+    return all(
+        row[f"{cost}_refined"] - row[f"{cost}_greedy"] <= MAX_MORE_POINTS for cost in ("failures_pct", "contacts_pct")
+    )
+
+
+def _arrivals(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
+    names = sorted({name for pair in pairs for outcome in pair for name, _ in outcome.costs.arrival})
+    found: dict[str, Any] = {}
+    for name in names:
+        found |= _means(f"arrival_{name}", pairs, units, partial(_arrival, name))
+    return found
+
+
+def _arrival(name: str, outcome: Outcome) -> float:
+    return dict(outcome.costs.arrival).get(name, float("nan"))
+
+
+def _means(name: str, pairs: Sequence[Pair], units: Units | None, cost: Callable[[Outcome], float]) -> dict[str, Any]:
+    first, second = (np.array([cost(pair[side]) for pair in pairs]) for side in (0, 1))
+    known = np.isfinite(first) & np.isfinite(second)
+    if not known.any():
+        return {}
+    kept = None if units is None else [unit for unit, there in zip(units, known, strict=True) if there]
+    return _shown(name, compare_means(first[known], second[known], kept))
+
+
+def _shares(name: str, pairs: Any, units: Units | None, happened: Callable[[Outcome], bool]) -> dict[str, Any]:
+    first, second = (np.array([happened(pair[side]) for pair in pairs]) for side in (0, 1))
+    return _shown(name, compare_shares(first, second, units))
+
+
+def _shown(name: str, difference: Difference) -> dict[str, Any]:
+    return {
+        f"{name}_greedy": difference.first,
+        f"{name}_refined": difference.second,
+        f"{name}_more_ci95": difference.ci95,
+        f"{name}_p": p_shown(difference.p_value),
+    }

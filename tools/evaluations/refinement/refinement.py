@@ -1,0 +1,124 @@
+"""Refined against greedy for any domain: pairs of runs from the same starts, with every cost in its column.
+
+The paper's Tables 3 and 4 and its letters are this evaluation over the paper's scenarios.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.bodies import body_of
+from tailor.tools.evaluations.plots import draw_pairs
+from tailor.tools.evaluations.refinement.paired_outcomes import costs_no_more
+from tailor.tools.evaluations.refinement.refinement_rows import rows_of
+from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
+
+REMARKS = (
+    "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "
+    "failures and contacts: share of all runs; arrival: mean error at the ends of the actions, by the ground truth",
+    "ci95: of the improvement, over independent units; more_ci95: of the difference, refined minus greedy; p: paired "
+    "t-test, for shares McNemar's exact test; bias: predicted minus actual duration of an action",
+)
+ORACLE_REMARK = (
+    "oracle: the best of all simulated choices, the ceiling; oracle_again: its choices with other noise; "
+    "share_of_oracle: of the ceiling's gain; oracle_greedy: the choice whose first action ends soonest; zero: all free "
+    "parameters zero"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Preset:
+    """A name for this evaluation with a paper's scenarios.
+
+    Attributes:
+      name: Of the evaluation.
+      title: Of its report.
+      scenarios: Names by domain; those of other domains cannot be evaluated. None: all scenarios of any domain.
+      paper: What the paper reports, by domain.
+    """
+
+    name: str = "refinement"
+    title: str = "Refined against greedy"
+    scenarios: Mapping[str, Sequence[str]] | None = None
+    paper: Mapping[str, str] | None = None
+
+
+def configure(
+    parser: argparse.ArgumentParser, episodes: int = 200, horizons: Sequence[int] = (2,), oracle: int = 0
+) -> None:
+    """Flags of `tailor evaluate refinement`, and of its names for the paper's tables."""
+    parser.add_argument("--scenario", nargs="+", metavar="S", help="scenarios of the domain (default: all)")
+    parser.add_argument("--horizon", nargs="+", type=at_least(2, "--horizon"), default=list(horizons), metavar="H",
+                        help="horizons of refinement, at least 2 (default %(default)s)")  # fmt: skip
+    parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=episodes,
+                        help="pairs of each scenario (default %(default)s)")  # fmt: skip
+    parser.add_argument("--profile", default="", help="profile of the body, e.g. degraded (default: as trained on)")
+    parser.add_argument("--oracle", type=at_least(0, "--oracle"), default=oracle, metavar="N",
+                        help="starts at which every choice is simulated (default %(default)s)")  # fmt: skip
+    parser.add_argument("--points", type=at_least(2, "--points"), default=18,
+                        help="angles that the oracle tries (default %(default)s)")  # fmt: skip
+    configure_replicas(parser)
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
+    """Evaluate and publish the report; 0 if every row is faster (95 %) at no more failures and contacts."""
+    named = preset or Preset()
+    domain, scenarios = _scenarios(arguments, named)
+    body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
+    rows, plots = [], {}
+    seeds = seeds_of(domain, arguments)
+    for number, zoo in enumerate([arguments.zoo, *_other_models(domain, scenarios, arguments)]):
+        model = {"model": f"trained anew, {number}" if number else "as shipped"} if arguments.models else {}
+        settings = argparse.Namespace(**{**vars(arguments), "zoo": zoo, "oracle": 0 if number else arguments.oracle})
+        made, pairs = rows_of(domain, scenarios, seeds_of(domain, settings), settings)
+        rows += [{**model, **row} for row in made]
+        if arguments.report is not None and not number:
+            path = arguments.report / f"{named.name}.png"
+            both = [pair for pair in pairs.values() if pair[0].achieved and pair[1].achieved]
+            greedy_s, refined_s = ([pair[side].duration_s for pair in both] for side in (0, 1))
+            plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
+    remarks = [*_paper(named, domain), *REMARKS, *([ORACLE_REMARK] if arguments.oracle else [])]
+    over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
+    report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)
+    publish_report(report, arguments.json, arguments.report)
+    return 0 if all(row["ci95"][0] > 0 and costs_no_more(row) for row in rows) else 1
+
+
+def _scenarios(arguments: argparse.Namespace, preset: Preset) -> tuple[str, list[str]]:
+    """Domain and scenarios to evaluate.
+
+    Raises:
+      UsageError: No or an unknown domain, or an unknown scenario.
+    """
+    named = preset.scenarios
+    domain = arguments.domain or (next(iter(named)) if named else "")
+    if not domain:
+        raise UsageError("no domain named, expected --domain NAME")
+    known = domains.scenarios(domain)
+    wanted = arguments.scenario or (list(named[domain]) if named else known)
+    unknown = [name for name in wanted if name not in known]
+    if unknown:
+        raise UsageError(f"unknown scenario '{unknown[0]}' of {domain}, expected some of: {', '.join(known)}")
+    return domain, list(dict.fromkeys(wanted))
+
+
+def _other_models(domain: str, scenarios: Sequence[str], arguments: argparse.Namespace) -> list[str]:
+    """Zoos of models that are trained anew."""
+    recipe = Recipe(domain, tuple(scenarios), arguments.model_episodes, arguments.model_runs)
+    return [
+        str(Path(replica(recipe, number, arguments.store, arguments.jobs))) for number in range(1, arguments.models + 1)
+    ]
+
+
+def _paper(preset: Preset, domain: str) -> list[str]:
+    reported = (preset.paper or {}).get(domain)
+    return [f"paper: {reported}"] if reported else []

@@ -1,0 +1,75 @@
+"""Rows of the comparison of refined and greedy runs: one for each scenario and horizon, one over all scenarios."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.refinement.baselines import against_oracle
+from tailor.tools.evaluations.refinement.oracle import simulate_choices, subgoal_parameters
+from tailor.tools.evaluations.refinement.paired_outcomes import Pair, Start, columns
+from tailor.tools.evaluations.seeds import Seeds
+from tailor.tools.evaluations.task_runs import run_all
+
+GREEDY = 1  # horizon of greedy choices (paper 6.3)
+Found = Mapping[str, Mapping[int, Outcome]]  # by name of the variant, by seed
+
+
+def rows_of(
+    domain: str, scenarios: Sequence[str], seeds: Seeds, arguments: argparse.Namespace
+) -> tuple[list[dict[str, Any]], dict[Start, Pair]]:
+    """Rows for each scenario and horizon, one over all scenarios; and the pairs of the shortest horizon."""
+    found = {scenario: _run(Task(domain, scenario, arguments.profile, arguments.zoo), seeds, arguments)
+             for scenario in scenarios}  # fmt: skip
+    rows: list[dict[str, Any]] = []
+    first: dict[Start, Pair] = {}
+    for horizon in arguments.horizon:
+        pairs = {scenario: _pairs(scenario, some, GREEDY, horizon) for scenario, some in found.items()}
+        shorter = max([h for h in arguments.horizon if h < horizon], default=GREEDY)
+        for scenario in scenarios:
+            row = {"scenario": scenario, "horizon": horizon, **columns(pairs[scenario])}
+            rows.append(row | _over_shorter(scenario, found[scenario], shorter, horizon))
+            if arguments.oracle and horizon == arguments.horizon[0]:
+                rows[-1] |= _oracle(scenario, domain, seeds, found[scenario], arguments)
+        together = {start: pair for some in pairs.values() for start, pair in some.items()}
+        if len(scenarios) > 1:
+            rows.append({"scenario": "all", "horizon": horizon, **columns(together, "scenario")})
+        first = first or together
+    return rows, first
+
+
+def _run(task: Task, seeds: Seeds, arguments: argparse.Namespace) -> Found:
+    base = RefinementSettings()
+    variants = [Variant(f"h{h}", replace(base, horizon=h)) for h in (GREEDY, *arguments.horizon)]
+    return run_all(task, variants, seeds.starts(arguments.episodes), arguments.jobs, arguments.store, task.scenario)
+
+
+def _pairs(scenario: str, found: Found, baseline: int, horizon: int) -> dict[Start, Pair]:
+    one, other = found[f"h{baseline}"], found[f"h{horizon}"]
+    return {(scenario, seed): (one[seed], other[seed]) for seed in sorted(one)}
+
+
+def _over_shorter(scenario: str, found: Found, shorter: int, horizon: int) -> dict[str, Any]:
+    """Improvement over the next shorter horizon; empty for the shortest one, where that is greedy."""
+    if shorter == GREEDY:
+        return {}
+    row = columns(_pairs(scenario, found, shorter, horizon))
+    return {"over_shorter_pct": row["improvement_pct"], "over_shorter_ci95": row["ci95"]}
+
+
+def _oracle(scenario: str, domain: str, seeds: Seeds, found: Found, arguments: argparse.Namespace) -> dict[str, Any]:
+    greedy, refined = found[f"h{GREEDY}"], found[f"h{arguments.horizon[0]}"]
+    task = Task(domain, scenario, arguments.profile, arguments.zoo)
+    example = next((outcome for outcome in greedy.values() if outcome.achieved), None)
+    free = [] if example is None else subgoal_parameters(example)
+    if not free:
+        return {}
+    starts = seeds.starts(min(arguments.oracle, arguments.episodes))
+    judged = simulate_choices(
+        task, free, starts, RefinementSettings(), arguments.points, arguments.jobs, arguments.store
+    )
+    return against_oracle(judged, greedy, refined)
