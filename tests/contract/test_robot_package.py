@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tailor.schemas.installed import file, spec_of
-from tests.unit.schemas.robot_package import install, run_with
+from tests.support.robots.robot_package import install, run_with
 
 SPEC = """
 from tailor.schemas.packages.spec import DomainSpec

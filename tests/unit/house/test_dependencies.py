@@ -30,7 +30,7 @@ def declared(requirements: list[str]) -> set[str]:
 RUN = declared(PROJECT["dependencies"])
 TEST = declared(PROJECT["optional-dependencies"]["test"])
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
-OPTIONAL = {"cma"}  # `tailor bench refine` leaves CMA-ES out where it is not installed
+OPTIONAL = {"cma", "pytest"}  # `tailor bench refine` leaves CMA-ES out where it is not installed; pytest's plug-in
 
 
 def imported_distributions(paths: list[str]) -> dict[str, str]:

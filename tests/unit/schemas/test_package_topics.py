@@ -11,7 +11,7 @@ from tailor.schemas.packages.package_topics import add_topics
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.packages.topic import Topic
 from tailor.schemas.topics import TOPICS
-from tests.unit.schemas.robot_package import MESSAGES, SPEC, install, run_with
+from tests.support.robots.robot_package import MESSAGES, SPEC, install, run_with
 
 USE = """
 import json

@@ -1,0 +1,242 @@
+"""Each clause of the contract can fail: for each there is a robot that breaks it, and no other one."""
+
+import dataclasses
+import math
+import random
+import shutil
+from itertools import chain
+
+import pytest
+
+from tailor.executive.interfaces.domain import Conflict
+from tailor.executive.interfaces.values import Interval
+from tailor.schemas.installed import models_folder
+from tailor.tools.contract.subject import Subject
+from tailor.tools.contract.suite import CLAUSES, cases, faults
+from tailor.tools.new_robot.templates import kinds
+from tests.support.robots.known_robot import known_robot
+
+
+@pytest.fixture(scope="module")
+def cart(tmp_path_factory):
+    with known_robot("cart", "wheeled", tmp_path_factory.mktemp("robots")):
+        yield
+
+
+@pytest.fixture
+def subject(cart):
+    made = Subject("cart", runs=1)
+    made.scenarios = made.scenarios[:1]
+    yield made
+    shutil.rmtree(models_folder("cart"), ignore_errors=True)  # of the robot with bad models
+
+
+def broken(subject):
+    """Names of the clauses that a package breaks."""
+    return {clause.name for clause, case in cases(subject) if list(faults(clause, subject, case))}
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_a_new_robot_keeps_every_clause(kind, tmp_path):
+    with known_robot("trolley", kind, tmp_path):
+        subject = Subject("trolley", runs=2)
+        assert broken(subject) == set()
+        assert {clause.name for clause, _ in cases(subject)} == set(CLAUSES)
+
+
+def with_action(subject, **changes):
+    domain = subject.domain
+    domain.actions = {"drive": dataclasses.replace(domain.actions["drive"], **changes)}
+
+
+def with_controller(subject, change):
+    plain = subject.domain.actions["drive"].controller
+
+    def controller(state, now_ns, belief, arguments):
+        return change(plain(state, now_ns, belief, arguments), now_ns)
+
+    with_action(subject, controller=controller)
+
+
+def with_readings(subject, change):
+    plain = subject.body.advance
+    subject.body.advance = lambda ns: list(chain.from_iterable(map(change, plain(ns))))
+
+
+def with_scenario(subject, change):
+    plain = subject.scenario
+    subject.scenario = lambda name, seed: change(*plain(name, seed))
+
+
+BAD = {}
+
+
+def breaks(robot):
+    BAD[robot.__name__] = robot
+    return robot
+
+
+@breaks
+def holds_together(subject):
+    with_action(subject, duration_model="drive/luck")
+
+
+@breaks
+def axes_contain_rest(subject):
+    v, omega = subject.domain.axes
+    subject.domain.axes = (dataclasses.replace(v, unit=""), omega)
+
+
+@breaks
+def parameters_have_units(subject):
+    first, *others = subject.domain.actions["drive"].parameters
+    with_action(subject, parameters=(dataclasses.replace(first, unit=""), *others))
+
+
+@breaks
+def command_becomes_a_message(subject):
+    plain = subject.domain.message
+    subject.domain.message = lambda command, stamp_ns: plain(command, 0)
+
+
+@breaks
+def not_ready_before_a_percept(subject):
+    subject.domain.ready = lambda belief: True
+
+
+@breaks
+def belief_values_have_units(subject):
+    subject.domain.belief_names = ("x", "y (m)", "phi (rad)", "v (m/s)", "omega (rad/s)")
+
+
+@breaks
+def models_fit_the_actions(subject):
+    folder = models_folder("cart") / "cart" / "drive"
+    folder.mkdir(parents=True)
+    (folder / "duration.card.json").write_text("{}")
+
+
+@breaks
+def samples_are_finite_and_vary(subject):
+    always = subject.sample("drive", 1)
+    subject.sample = lambda action, seed: always
+
+
+@breaks
+def samples_follow_the_seed(subject):
+    plain = subject.sample
+    subject.sample = lambda action, seed: plain(action, random.getrandbits(32))
+
+
+@breaks
+def batches_are_rows(subject):
+    with_action(subject, arguments=lambda values: values - values.mean(axis=0))
+
+
+@breaks
+def runs_follow_the_seed(subject):
+    def wobble(control, now_ns):
+        v, omega = control.command
+        return dataclasses.replace(control, command=(v * random.uniform(0.95, 1.0), omega))
+
+    with_controller(subject, wobble)
+
+
+@breaks
+def commands_are_within_the_axes(subject):
+    with_controller(subject, lambda c, now_ns: c if now_ns else dataclasses.replace(c, command=(5.0, 0.0)))
+
+
+@breaks
+def goals_are_reached(subject):
+    with_controller(subject, lambda c, now_ns: c if now_ns < 1e9 else dataclasses.replace(c, outcome="failed"))
+
+
+@breaks
+def scenarios_follow_the_seed(subject):
+    with_scenario(subject, lambda drawn, start: (drawn, {**start, "x": start["x"] + random.random()}))
+
+
+@breaks
+def scenarios_are_finite(subject):
+    def lost(drawn, start):
+        return dataclasses.replace(drawn, places={**drawn.places, "nowhere": {"x": math.nan}}), start
+
+    with_scenario(subject, lost)
+
+
+@breaks
+def belief_becomes_ready(subject):
+    subject.domain.ready = lambda belief: False
+
+
+@breaks
+def belief_values_are_finite(subject):
+    subject.domain.belief_values = lambda belief: (0.0, 0.0, math.inf, 0.0, 0.0)
+
+
+@breaks
+def scenarios_can_be_planned(subject):
+    def unreachable(drawn, start):
+        return dataclasses.replace(drawn, problem=drawn.problem.replace("(visited s1)", "(visited home)")), start
+
+    with_scenario(subject, unreachable)
+
+
+@breaks
+def plans_can_be_instantiated(subject):
+    def value(query):
+        raise Conflict("unknown")
+
+    subject.domain.value = value
+
+
+@breaks
+def something_is_free(subject):
+    subject.domain.value = lambda query: Interval(0.0, 0.0)
+
+
+@breaks
+def body_names_its_robot(subject):
+    subject.body.robot = "hal"
+
+
+@breaks
+def sensors_keep_their_rates(subject):
+    with_readings(subject, lambda reading: [reading] * (2 if reading.topic == "odom" else 1))
+
+
+@breaks
+def readings_are_in_order(subject):
+    def late(reading):
+        early = reading.time_ns - 50_000_000 * (reading.topic == "planar_truth")
+        return [dataclasses.replace(reading, time_ns=early)]
+
+    with_readings(subject, late)
+
+
+@breaks
+def body_follows_the_seed(subject):
+    def noisy(reading):
+        if reading.topic == "planar_truth":
+            return [dataclasses.replace(reading, message=dataclasses.replace(reading.message, x=random.random()))]
+        return [reading]
+
+    with_readings(subject, noisy)
+
+
+@breaks
+def repeated_set_points_change_nothing(subject):
+    plain = subject.body.command
+
+    def nudging(values):
+        plain(values)
+        subject.body._robot.qpos[0] += 1e-4
+
+    subject.body.command = nudging
+
+
+@pytest.mark.parametrize("name", CLAUSES)
+def test_a_robot_that_breaks_a_clause_breaks_it_alone(name, subject):
+    BAD[name](subject)
+    assert broken(subject) == {name}
