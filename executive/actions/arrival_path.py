@@ -17,9 +17,9 @@ NO_BEND = 1e-6  # rad short of a full circle: a bend of zero length with roundin
 
 @dataclass(frozen=True, slots=True)
 class ArrivalPath:
-    """Plans ways into a goal; where it is quicker, one that stops there and turns on the spot.
+    """Plans ways into a goal.
 
-    Right before the goal no bend may fit: the way is then the goal's line, though the robot is a little beside it.
+    Right before it no bend may fit: the way is then the goal's line, though the robot is a little beside it.
     """
 
     v_max_mps: float
@@ -31,10 +31,8 @@ class ArrivalPath:
     # for the choice among ways: bends cost more than driving them, there is braking before them
     bend_worth_radps: float = 0.9
     facing_radps: float = 1.3
-    spot_radps: float = 1.6
     beside_m: float = 0.12  # right before its goal the robot may go on so far beside the goal's line,
     aside_s_per_m: float = 20.0  # where else it would lose as much
-    stop_s: float = math.inf  # what it costs to stop at the goal, beyond turning; endless: it never does
 
     def radius(self, vg: float) -> float:
         """Of the bend (m) into a goal that is passed at `vg` (m/s): the faster, the wider."""
@@ -49,9 +47,8 @@ class ArrivalPath:
         """
         x, y, heading = start
         radius = self.radius(vg)
-        straight = DubinsPath((x, y, math.atan2(-y, -x)), radius, ((0, math.hypot(x, y)),))
         along = DubinsPath((x, 0.0, 0.0), radius, ((0, 0.0), (1, 0.0), (0, max(0.0, -x))))
-        paths = (self._bent(x, y, 1, radius), self._bent(x, y, -1, radius), straight)
+        paths = (self._bent(x, y, 1, radius), self._bent(x, y, -1, radius))
         best_s, best = min(((self._roughly_s(path, heading), path) for path in paths), key=lambda found: found[0])
         along_s = self._roughly_s(along, heading) + self.aside_s_per_m * abs(y)
         return along if x < 0.0 and abs(y) < self.beside_m and along_s < best_s else best
@@ -72,15 +69,7 @@ class ArrivalPath:
         return DubinsPath((x - self.run_in_m, y, side * heading), radius, pieces)
 
     def _roughly_s(self, path: DubinsPath, heading: float) -> float:
-        """Approximate time (s) to turn towards the path, drive it and turn at its end."""
+        """Approximate time (s) to turn towards the path and drive it."""
         facing = abs(difference(path.start[2], heading)) / self.facing_radps
-        if stops(path):
-            turning = self.stop_s + abs(path.start[2]) / self.spot_radps
-            return facing + path.length / (0.85 * self.v_max_mps) + turning
         (_, straight), (_, bend), (_, run_in) = path.pieces
         return facing + (straight + run_in) / (0.85 * self.v_max_mps) + bend / (self.bend_worth_radps * path.radius)
-
-
-def stops(path: DubinsPath) -> bool:
-    """Whether a way has no bend into the goal: the robot stops there and turns."""
-    return len(path.pieces) == 1

@@ -46,10 +46,10 @@ class DribbleBall:
     fetch: FetchBall
     grip: RailGrip
     v_max_mps: float = 0.75
-    bend_radps: float = 0.60  # planned in bends
+    bend_push_rad: float = 0.945  # planned in bends: direction in which the rail pushes
     omega_max_radps: float = 0.66  # the difference is for corrections; the rail holds 0.75 permanently
     yaw_radps2: float = 1.0  # so that the ball follows
-    tightest_per_m: float = 2.0  # highest omega / v: slower than that the ball rolls out aside
+    tightest_per_m: float = 3.0  # highest omega / v: slower than that the ball rolls out aside
     speeding_up_mps2: float = 0.5
     braking_mps2: float = 0.35  # the ball must not roll out of the rail: it slows by 0.53 by itself
     bend_braking_mps2: float = 0.20  # in a bend most of that force is needed to turn the ball
@@ -91,7 +91,9 @@ class DribbleBall:
         return self._push(state, belief, ball, goal)
 
     def _plan(self, pose: Pose, v: float, goal: tuple[float, ...]) -> Progress:
-        paths = DribblePath(self.v_max_mps, self.bend_radps, self.grip.in_rail_m, self.braking_mps2)
+        paths = DribblePath(
+            self.v_max_mps, self._bend_mps, self.grip.in_rail_m, self.speeding_up_mps2, self.braking_mps2
+        )
         return Progress(paths.quickest(pose, v, goal), 0.0)
 
     def _push(self, state: Pushing, belief: BallBelief, ball: BallTrack, goal: tuple[float, ...]) -> Control:
@@ -106,6 +108,9 @@ class DribbleBall:
         limit = speed_limit(progress, goal[3], pace)
         speed = max(belief.v, 0.1)
         omega = speed * tracking_curvature(progress, off, speed * self.preview_s, self.settle_m)
+        creeping = self._creeping(ball, omega)
+        limit = min(self.v_max_mps, limit + creeping * self.catch_up_mps)
+        omega *= 1.0 - creeping
         if slipping:
             limit = min(self.v_max_mps, limit + self.catch_up_mps)
             omega = self.chase_radps * math.atan2(ball.left, ball.ahead)
@@ -116,6 +121,11 @@ class DribbleBall:
             omega = self._turn(state, (state.v - v) / TICK_S, omega)
         return Control(Pushing(progress, v, omega, slipping), (v, omega))
 
+    def _creeping(self, ball: BallTrack, omega: float) -> float:
+        """How far the ball has crept to the outside of the turn: 0 at the bottom of the rail, 1 where it slips out."""
+        outside = math.copysign(ball.left, -omega * ball.left) - self.seated_again_m
+        return max(0.0, min(1.0, outside / (self.slip_aside_m - self.seated_again_m)))
+
     def _slips(self, ball: BallTrack, before: bool) -> bool:
         """Whether the ball is leaving the rail, or was and is not yet back at the bottom."""
         ahead, aside = ball.ahead - self.grip.in_rail_m, abs(ball.left)
@@ -123,8 +133,11 @@ class DribbleBall:
             return aside > self.seated_again_m or ahead > self.slip_ahead_m
         return aside > self.slip_aside_m or ahead > self.slip_ahead_m
 
+    def _bend_mps(self, radius: float) -> float:
+        return self.grip.bend_mps(radius, self.bend_push_rad)
+
     def _pace(self, radius: float) -> Pace:
-        return Pace(self.v_max_mps, self.bend_radps * radius, self.braking_mps2, self.bend_braking_mps2)
+        return Pace(self.v_max_mps, self._bend_mps(radius), self.braking_mps2, self.bend_braking_mps2)
 
     def _ramp(self, state: Pushing, limit: float) -> float:
         """The next commanded speed: towards the limit within the ball's acceleration limits."""

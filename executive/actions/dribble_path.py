@@ -8,9 +8,11 @@ would show in the duration.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from tailor.executive.actions.dubins import DubinsPath, Pose2, shortest, straight_on
+from tailor.executive.actions.path_follower import BEND_RESERVE_M
 from tailor.executive.belief.planar_ekf import Pose
 
 
@@ -19,35 +21,80 @@ class DribblePath:
     """Plans paths of bounded curvature that begin and end straight."""
 
     v_max_mps: float
-    bend_radps: float  # how fast bends are driven
+    bend_mps: Callable[[float], float]  # speed in a bend of a radius (m)
     ahead_m: float  # axle to ball
-    braking_mps2: float  # on the run-in
-    radii_m: tuple[float, ...] = (0.48, 0.65)  # of bends: the tighter, the slower
+    speeding_up_mps2: float
+    braking_mps2: float  # on straights
+    radii_m: tuple[float, ...] = (0.36, 0.42, 0.48, 0.56, 0.65)  # of bends: the tighter, the slower
     run_in_m: float = 0.12  # the ball is to lie in the rail before the first bend
     run_out_m: float = 0.15
-    slants_rad: tuple[float, ...] = (0.0, 0.3, -0.3, 0.6, -0.6)  # a path may end so far off the goal's heading
+    slants_rad: tuple[float, ...] = (
+        0.0,
+        0.15,
+        -0.15,
+        0.3,
+        -0.3,
+        0.45,
+        -0.45,
+        0.6,
+        -0.6,
+    )  # a path may end so far off the goal's heading
     asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
     slant_s_per_rad: float = 2.0  # if it is quicker by as much
     aside_s_per_m: float = 4.0
+    _ends: tuple[tuple[float, float, float], ...] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Sort the ends by what they cost (s): penalty, slant, aside."""
+        ends = [
+            (self.slant_s_per_rad * abs(slant) + self.aside_s_per_m * abs(aside), slant, aside)
+            for slant in self.slants_rad
+            for aside in self.asides_m
+        ]
+        object.__setattr__(self, "_ends", tuple(sorted(ends, key=lambda end: end[0])))
 
     def quickest(self, pose: Pose, v: float, goal: tuple[float, ...]) -> DubinsPath:
         """The best path that can be driven from a pose at speed v (m/s) to a goal (x, y, phi, ...)."""
         start = straight_on((pose.x, pose.y, pose.phi), self.run_in_m)
-        tightest = math.sqrt(max(0.0, v * v - 2.0 * self.run_in_m * self.braking_mps2)) / self.bend_radps
-        radii = [radius for radius in self.radii_m if radius >= tightest] or [tightest]
-        candidates = []
-        for slant in self.slants_rad:
-            for aside in self.asides_m:
-                penalty_s = self.slant_s_per_rad * abs(slant) + self.aside_s_per_m * abs(aside)
-                end = self._end(goal, slant, aside)
-                candidates += [(shortest(start, end, radius), penalty_s) for radius in radii]
-        best, _ = min(candidates, key=lambda path: self.driving_s(path[0]) + path[1])
+        radii = self._radii(v)
+        best, best_s = None, math.inf
+        for penalty_s, slant, aside in self._ends:
+            end = self._end(goal, slant, aside)
+            if penalty_s + math.dist(start[:2], end[:2]) / self.v_max_mps > best_s:
+                continue  # no path there can be the best: most ends, and planning takes a tenth of an episode's time
+            for radius in radii:
+                path = shortest(start, end, radius)
+                cost_s = self.driving_s(path, v, goal[3]) + penalty_s
+                if cost_s < best_s:
+                    best, best_s = path, cost_s
+        assert best is not None  # the first end has a path
         return best.between(self.run_in_m, self.run_out_m)
 
-    def driving_s(self, path: DubinsPath) -> float:
-        """Approximate time to drive a path, s."""
-        bend, straight = self.bend_radps * path.radius, 0.85 * self.v_max_mps
-        return sum(length / (bend if turn else straight) for turn, length in path.pieces)
+    def _radii(self, v: float) -> list[float]:
+        """The radii (m) of bends that a robot at speed v (m/s) can brake for; if none, the tightest wider one."""
+        slowest = math.sqrt(max(0.0, v * v - 2.0 * self.run_in_m * self.braking_mps2))
+        radii = [radius for radius in self.radii_m if self.bend_mps(radius) >= slowest]
+        wider = max(self.radii_m)
+        while self.bend_mps(wider) < slowest:
+            wider *= 1.05
+        return radii or [wider]
+
+    def driving_s(self, path: DubinsPath, v: float, vg: float) -> float:
+        """Approximate time to drive a path, s, from speed v to vg (m/s)."""
+        bend = self.bend_mps(path.radius)
+        (_, first), (turn, middle), (_, last) = path.pieces
+        if turn:
+            return (first + middle + last + BEND_RESERVE_M) / bend
+        straight = self._straight_s(middle, bend if first else max(v, 0.1), bend if last else vg)
+        return (first + last + BEND_RESERVE_M) / bend + straight
+
+    def _straight_s(self, length: float, v: float, v_end: float) -> float:
+        """Time (s) on a straight line between two speeds (m/s)."""
+        up, down = self.speeding_up_mps2, self.braking_mps2
+        peak = math.sqrt((2.0 * up * down * length + down * v * v + up * v_end * v_end) / (up + down))
+        peak = max(v, v_end, min(self.v_max_mps, peak))
+        changing = (peak * peak - v * v) / (2.0 * up) + (peak * peak - v_end * v_end) / (2.0 * down)
+        return (peak - v) / up + (peak - v_end) / down + max(0.0, length - changing) / peak
 
     def _end(self, goal: tuple[float, ...], slant: float, aside: float) -> Pose2:
         """Start pose of the run-out: the ball ends at its place at the goal, or beside it."""

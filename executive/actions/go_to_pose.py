@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from tailor.executive.actions.arrival_path import ArrivalPath, stops
+from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.path_follower import Deviation, Pace, Progress, project, speed_limit, tracking_curvature
 from tailor.executive.actions.planar import VG, XG, PlanarBelief
 from tailor.executive.belief.angles import difference
@@ -19,7 +19,7 @@ ALIGN = "align"  # controller state while the robot turns on the spot at its goa
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Turns towards the path into the goal, follows it, and turns on the spot only if planned or after a miss.
+    """Turns towards the path into the goal, follows it, and turns on the spot only after a miss.
 
     The path is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
     deviations decay over `settle_m`. With a new path near the goal, a few centimetres of noise beside it would swing
@@ -42,7 +42,6 @@ class GoToPose:
     off_path_m: float = 0.25  # beyond, a new path is planned
     off_path_rad: float = 0.8
     past_m: float = 0.10
-    stopping_m: float = 0.10  # before a goal where it stops
     near_m: float = 0.15  # within this distance of the goal only the heading is corrected
     stay_m: float = 0.30  # maximum drift while turning on the spot
     reached_m: float = 0.03  # along the goal's heading
@@ -79,8 +78,6 @@ class GoToPose:
         way, off = project(way, pose, 0.3)
         if abs(off.aside_m) > self.off_path_m or abs(off.turned) > self.off_path_rad or way.remaining_m < -self.past_m:
             return None
-        if stops(way.path) and way.remaining_m < self.stopping_m:
-            return Control(ALIGN, (0.0, self._turn(-pose.phi)))
         swing = self.swing_s * (belief.omega - belief.v * way.path.at(way.s)[3])
         v = max(belief.v, self.crawl_mps)
         off = Deviation(off.aside_m, off.turned + swing)
@@ -90,7 +87,7 @@ class GoToPose:
     def _speed(self, way: Progress, vg: float) -> float:
         bend_mps = self.ways.bend_radps * way.path.radius
         pace = Pace(self.v_max_mps, bend_mps, self.braking_mps2, self.braking_mps2)
-        return max(self.crawl_mps, speed_limit(way, 0.0 if stops(way.path) else vg, pace))
+        return max(self.crawl_mps, speed_limit(way, vg, pace))
 
     def _aligns(self, state: Any, pose: Pose) -> bool:
         """Whether the robot is at its goal, or past it, with a wrong heading; with hysteresis against noise."""

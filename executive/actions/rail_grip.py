@@ -19,6 +19,13 @@ class RailGrip:
     rolling_mps2: float  # by which the free ball slows down
     steepest_rad: float = 1.0  # angle of the push off straight ahead; the tips stand at 1.33, it slips out from 1.15 on
 
+    def bend_mps(self, radius_m: float, push_rad: float) -> float:
+        """Constant speed (m/s) in a bend at which the push points `push_rad` off straight ahead; >= 0."""
+        curvature, slope = 1.0 / radius_m, math.tan(push_rad)
+        across = self.in_rail_m * curvature  # speed of the ball across, relative to ahead
+        resistance = self.rolling_mps2 / math.hypot(1.0, across)
+        return math.sqrt(max(0.0, resistance * (slope - across) / (curvature * (1.0 + slope * across))))
+
     def braking_mps2(self, v: float, omega: float) -> float:
         """Maximum braking (m/s²) at v (m/s) and omega (rad/s), neither changing direction; >= 0."""
         ahead, aside = self._push(v, omega)

@@ -7,7 +7,6 @@ position and phi the robot's heading there; controllers and models take poses of
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from tailor.executive.actions.approach_ball import ApproachBall
 from tailor.executive.actions.arrival_path import ArrivalPath
@@ -48,8 +47,6 @@ behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
 _ways = ArrivalPath(robot.V_MAX_MPS)
 _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways)
-# From before the ball it is quicker to stop and turn behind it, which sweeps it away: half of random approaches do
-_approach = replace(_go, ways=replace(_ways, radius_m=0.33, stop_s=1.0))
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 
@@ -57,7 +54,7 @@ GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPos
 APPROACH_BALL = Action(
     "approachBall",
     _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
-    ApproachBall(_approach, robot.BEHIND_BALL_M, BALL_MOVED_M),
+    ApproachBall(_go, robot.BEHIND_BALL_M, BALL_MOVED_M),
     "approachBall/duration",
     "approachBall/success",
     subgoal_action="goToPose",

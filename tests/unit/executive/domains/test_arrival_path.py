@@ -1,7 +1,6 @@
 """Ways into a goal: they begin at the robot, end on the goal's line along its heading, bend little."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +8,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tailor.executive import domains
-from tailor.executive.actions.arrival_path import ArrivalPath, stops
+from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
 
 WAYS = ArrivalPath(v_max_mps=0.9)
-STOPPING = replace(WAYS, stop_s=1.0)
 places = st.tuples(st.floats(-4.0, 4.0), st.floats(-4.0, 4.0), st.floats(-math.pi, math.pi))
 speeds = st.floats(0.0, 0.6)
 
@@ -56,16 +54,6 @@ def test_mirrored_starts_have_mirrored_ways(start):
     path, mirrored = WAYS.quickest(start, 0.3), WAYS.quickest((start[0], -start[1], -start[2]), 0.3)
     assert mirrored.length == pytest.approx(path.length)
     assert mirrored.start[2] == pytest.approx(-path.start[2])
-
-
-@given(places, speeds)
-def test_way_never_stops_unless_that_has_a_price(start, vg):
-    assert not stops(WAYS.quickest(start, vg))
-
-
-@pytest.mark.parametrize(("x", "y", "stopping"), [(-2.0, 0.5, False), (-1.0, -1.0, False), (2.0, 0.5, True)])
-def test_stopping_pays_where_the_robot_would_have_to_go_round_its_goal(x, y, stopping):
-    assert stops(STOPPING.quickest((x, y, math.atan2(-y, -x)), 0.2)) is stopping
 
 
 @given(places, st.floats(0.0, 1.0), speeds)

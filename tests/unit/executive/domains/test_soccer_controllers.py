@@ -61,7 +61,7 @@ def test_ball_arrives_at_its_target_in_the_rail(number):
 
 
 def test_approach_that_sweeps_over_the_ball_is_a_collision_but_still_arrives():
-    start = np.array([0.0, 0.0, math.pi, 0.0, 2.0, 0.0, math.pi, 0.0])  # the ball lies before the goal
+    start = np.array([0.0, 0.0, 0.0, 0.6, 0.91, 0.0, math.pi, 0.0])  # at full speed, the ball half a metre ahead
     episode = run_action(BODY, SOCCER, "approachBall", start, np.random.default_rng(1))
     assert (episode.success, episode.failure, episode.done) == (False, "collision", True)
     straight = np.array([0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0])
