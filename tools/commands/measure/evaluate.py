@@ -43,6 +43,10 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
     "table3": ("tailor.tools.evaluations.refinement.table3", "refined against greedy subgoals, paired by start"),
     "letters": ("tailor.tools.evaluations.arm.letters", "letters by the arm (Table 3): stopping, greedy and refined"),
     "table4": ("tailor.tools.evaluations.refinement.table4", "refinement with horizons 1 to 4 over four waypoints"),
+    "ablations": (
+        "tailor.tools.evaluations.refinement.ablations",
+        "refinement with one part off at a time, paired with the default",
+    ),
     "gate": ("tailor.tools.evaluations.refinement.gate", "the refinement gate: accuracy of its predicted slowdowns"),
     "energy": (
         "tailor.tools.evaluations.refinement.energy",
@@ -66,7 +70,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "live runs over the bus against lock-step runs from the same starts",
     ),
 }
-FOR_ANY_DOMAIN = ("refinement", "models")  # those that the paper's tables are names for
+FOR_ANY_DOMAIN = ("refinement", "models", "ablations")  # those that the paper's tables are names for
 ALL = "all"
 RESUME = "--resume"
 STOPPED = 130

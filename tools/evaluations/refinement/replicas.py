@@ -21,6 +21,7 @@ from tailor.tools.learning import gathering, run_gathering
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.learning.training_run import train_models
 
+RANDOM_ZOO = "zoo-random"  # models before the on-policy round, beside those after it
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 
 
@@ -76,7 +77,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
     )
     seed = FIRST_SEED + number
     _gather(recipe, seed, folder / "random", jobs)
-    zoo = _trained(recipe, seed, folder / "zoo-random", [folder / "random"])
+    zoo = _trained(recipe, seed, folder / RANDOM_ZOO, [folder / "random"])
     if not recipe.runs:
         return zoo
     policy = run_gathering.Policy(recipe.domain, recipe.scenarios, recipe.runs, seed, str(zoo), folder / "policy")

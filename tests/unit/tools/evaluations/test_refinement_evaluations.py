@@ -20,7 +20,7 @@ from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.evaluations.refinement import figure1, figure11, gate, oracle, replicas, table3, table4
+from tailor.tools.evaluations.refinement import ablations, figure1, figure11, gate, oracle, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.oracle import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.task_runs import paired
@@ -237,3 +237,17 @@ def test_greedy_by_the_oracle_does_not_count_an_approach_that_failed_soon():
         actual_s=(1.0, 4.0, 6.0), duration_s=20.0,
     )  # fmt: skip
     assert _judged(1, [DONE, failed_soon], DONE).greedy_s == DONE.duration_s
+
+
+def test_an_ablation_is_compared_with_the_default_pair_by_pair():
+    def runs(*durations_s):
+        return {seed: replace(DONE, seed=seed, duration_s=d) for seed, d in enumerate(durations_s)}
+
+    greedy, default = runs(10.0, 20.0, 10.0), runs(9.0, 16.0, 8.0)
+    row = ablations.row("x", ablations.Judged(greedy, default, runs(9.5, 18.0, 11.0)))
+    assert row["improvement_pct"] == pytest.approx(np.mean([5.0, 10.0, -10.0]))
+    assert row["improvement_more_points"] == pytest.approx(np.mean([-5.0, -10.0, -30.0]))
+    assert row["improvement_more_ci95"][0] < row["improvement_more_points"] < row["improvement_more_ci95"][1]
+    assert (row["slower_pct"], row["lost_s"]) == (pytest.approx(100 / 3), pytest.approx(1 / 3))
+    same = ablations.row("default", ablations.Judged(greedy, default, default))
+    assert (same["improvement_more_points"], same["improvement_more_p"]) == (0.0, 1.0)
