@@ -1,11 +1,13 @@
-"""Topics of the soccer robot alone."""
+"""Topics of the soccer robot alone. Those of opponents carry messages only where there are any."""
 
 from __future__ import annotations
 
-from tailor.schemas.messages.soccer import BallPercept, SoccerGroundTruth
+from tailor.schemas.messages.soccer import BallPercept, OpponentPercepts, OpponentsTruth, SoccerGroundTruth
 from tailor.schemas.packages.topic import Topic
 
 TOPICS = {
     "ball": Topic("{robot}/ball", BallPercept, 12.5, "driver"),
+    "opponents": Topic("{robot}/opponents", OpponentPercepts, 12.5, "driver"),
     "truth": Topic("{robot}/sim/truth", SoccerGroundTruth, 10, "simulator"),
+    "opponents_truth": Topic("{robot}/sim/opponents", OpponentsTruth, 10, "simulator"),
 }

@@ -117,7 +117,10 @@ class Domain(Protocol):
         ...
 
     def belief_values(self, belief: Belief) -> tuple[float, ...]:
-        """State variables of the belief for telemetry (Table 5): finite, in the order of `belief_names`."""
+        """State variables of the belief for telemetry (Table 5): finite, in the order of `belief_names`.
+
+        The last ones may be left out while there is nothing that they describe.
+        """
         ...
 
     def anchor(self, belief: Belief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:

@@ -1,4 +1,4 @@
-"""Messages of the soccer robot alone: its view of the ball, and the ground truth of its simulator."""
+"""Messages of the soccer robot alone: its view of ball and opponents, and the ground truth of its simulator."""
 
 from __future__ import annotations
 
@@ -38,3 +38,45 @@ class SoccerGroundTruth(Message):
     ball_y: float  # m
     ball_vx: float  # m/s
     ball_vy: float  # m/s
+
+
+@dataclass(frozen=True, slots=True)
+class OpponentPercept:
+    """One opponent as the camera measures it: centre and radius of a standing cylinder, in base_link."""
+
+    x: float  # m
+    y: float  # m
+    radius_m: float
+    var_x: float  # m^2
+    var_y: float  # m^2
+    cov_xy: float  # m^2
+
+
+@dataclass(frozen=True, slots=True)
+class OpponentPercepts(Message):
+    """All opponents that the camera found in one picture; none is a measurement, too."""
+
+    FRAME_ID: ClassVar[str] = "base_link"
+
+    stamp_ns: int
+    opponents: tuple[OpponentPercept, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Opponent:
+    """A standing cylinder on the field."""
+
+    x: float  # m
+    y: float  # m
+    radius_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class OpponentsTruth(Message):
+    """True places of the opponents in the simulator, map frame; the executive never reads them."""
+
+    FRAME_ID: ClassVar[str] = "map"
+
+    stamp_ns: int
+    touched: bool  # the robot touched one since the last message
+    opponents: tuple[Opponent, ...] = ()

@@ -11,6 +11,7 @@ import numpy as np
 
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.simnodes.agilo import firmware as fw
+from tailor.simnodes.agilo.opponents import NAMES, Opponents
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 from tailor.simnodes.agilo.scene import load_scene
 from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
@@ -18,13 +19,15 @@ from tailor.simnodes.body import Reading
 
 TRUTH_PERIOD_NS = 100_000_000
 FAR_M = 50.0  # a ball that the start does not place
+ROBOT = ("x", "y", "phi", "v", "omega")
+BALL = ("ball_x", "ball_y", "ball_vx", "ball_vy")
 
 
 class AgiloBody:
-    """See `Body`. Start values: x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy (SI, field frame)."""
+    """See `Body`. Start values: ROBOT, BALL and opponents.NAMES (SI, field frame)."""
 
     robot = "agilo"
-    names: tuple[str, ...] = ("x", "y", "phi", "v", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
+    names: tuple[str, ...] = (*ROBOT, *BALL, *NAMES)
 
     def __init__(self, parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
         self._sensing = sensing or Sensing()
@@ -41,25 +44,28 @@ class AgiloBody:
         self._left_ctrl, self._right_ctrl = data.actuator("left").ctrl, data.actuator("right").ctrl
         self._sensors = Sensors(self._sensing)
         self._firmware = fw.Firmware(self._track_m)
+        self._opponents = Opponents(model, data)
         self._time_ns = 0
         self._pending: list[Reading] = []
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
-        """See Body.reset; defaults are 0, and a ball far away."""
+        """See Body.reset; defaults are 0, a ball far away, and no opponents."""
         mujoco.mj_resetData(self._model, self._data)
+        self._opponents.reset()
         self._sensors.reset(rng)
         self._firmware.reset(0.0, 0.0)
         self._time_ns = 0
         self._pending = []
-        self.place({**dict.fromkeys(self.names, 0.0), "ball_x": FAR_M, "ball_y": FAR_M, **start})
+        self.place({**dict.fromkeys((*ROBOT, *BALL), 0.0), "ball_x": FAR_M, "ball_y": FAR_M, **start})
 
     def place(self, values: Mapping[str, float]) -> None:
-        """Move the robot (any of x, y, phi, v, omega) or the ball; values left out stay."""
+        """Move the robot, the ball or opponents; values left out stay."""
         current = asdict(self.ground_truth())
-        if any(name in values for name in ("x", "y", "phi", "v", "omega")):
+        if any(name in values for name in ROBOT):
             self._place_robot({**current, **values})
         if any(name.startswith("ball_") for name in values):
             self._place_ball({**current, **values})
+        self._opponents.place(values)
         mujoco.mj_forward(self._model, self._data)
 
     def command(self, values: tuple[float, ...]) -> None:
@@ -67,7 +73,7 @@ class AgiloBody:
         self._firmware.accept(values[0], values[1])
 
     def advance(self, duration_ns: int) -> list[Reading]:
-        """See Body.advance; odom 50 Hz, pose and ball 12.5 Hz, truth 10 Hz."""
+        """See Body.advance; odom 50 Hz, pose, ball and opponents 12.5 Hz, truth 10 Hz."""
         end_ns = self._time_ns + duration_ns
         readings: list[Reading] = []
         while self._time_ns < end_ns:
@@ -77,6 +83,7 @@ class AgiloBody:
             until_ns = min(boundary_ns, end_ns)
             mujoco.mj_step(self._model, self._data, nstep=(until_ns - self._time_ns) // self._step_ns)
             self._time_ns = until_ns
+            self._opponents.watch()
             if until_ns == boundary_ns:
                 readings += self._sense()
         return readings
@@ -109,6 +116,8 @@ class AgiloBody:
             readings.append(self._pending.pop(0))
         if now_ns % TRUTH_PERIOD_NS == 0:
             readings.append(Reading("truth", self.ground_truth(), now_ns))
+            opponents = self._opponents.truth(now_ns)
+            readings += [] if opponents is None else [Reading("opponents_truth", opponents, now_ns)]
         return readings
 
     def _take_picture(self, now_ns: int) -> None:
@@ -123,6 +132,9 @@ class AgiloBody:
         ball = self._sensors.ball(now_ns, c * dx + s * dy, c * dy - s * dx)
         if ball is not None:
             self._pending.append(Reading("ball", ball, due_ns))
+        if self._opponents.standing:
+            opponents = self._sensors.opponents(now_ns, (x, y, phi), self._opponents.standing.values())
+            self._pending.append(Reading("opponents", opponents, due_ns))
 
     def _pose(self) -> tuple[float, float, float]:
         x, y, _, w, i, j, k = self._robot_qpos.tolist()

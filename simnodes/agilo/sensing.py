@@ -1,4 +1,4 @@
-"""Error models of the AGILO robot's sensors: encoders, and a camera that measures robot pose and ball position.
+"""Error models of the AGILO robot's sensors: encoders, and a camera that measures robot pose, ball and opponents.
 
 Every random number comes from the generator of `Sensors.reset`. Metres, radians, seconds.
 """
@@ -6,12 +6,13 @@ Every random number comes from the generator of `Sensors.reset`. Metres, radians
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from tailor.schemas.messages import Odometry, PoseEstimate
-from tailor.schemas.messages.soccer import BallPercept
+from tailor.schemas.messages.soccer import BallPercept, Opponent, OpponentPercept, OpponentPercepts
 
 POSE_PERIOD_NS = 80_000_000
 POSE_PERIOD_S = POSE_PERIOD_NS * 1e-9
@@ -31,6 +32,8 @@ class Sensing:
     ball_half_view: float = math.radians(50)
     ball_near_m: float = 0.25
     ball_far_m: float = 6.0
+    opponent_dropout: float = 0.10  # found less often than a ball, and measured alike
+    opponent_radius_m: float = 0.02
     encoder_scale: float = 0.01  # one draw a reset: tyre pressure
     encoder_v_mps: float = 0.008
     encoder_omega_radps: float = 0.015
@@ -87,10 +90,32 @@ class Sensors:
 
     def ball(self, stamp_ns: int, ahead: float, left: float) -> BallPercept | None:
         """Measured position of a ball at (ahead, left), base_link; None if the percept is lost or out of view."""
+        seen = self._sight(ahead, left)
+        if self._lost(self._s.ball_dropout) or seen is None:
+            return None
+        return BallPercept(stamp_ns, *seen)
+
+    def opponents(
+        self, stamp_ns: int, pose: tuple[float, float, float], standing: Iterable[Opponent]
+    ) -> OpponentPercepts:
+        """The opponents that a picture from a pose (m, m, rad; map frame) shows; none hides another one."""
+        x, y, phi = pose
+        c, s = math.cos(phi), math.sin(phi)
+        found = []
+        for opponent in standing:
+            dx, dy = opponent.x - x, opponent.y - y
+            seen = self._sight(c * dx + s * dy, c * dy - s * dx)
+            radius_m = max(0.01, opponent.radius_m + self._s.opponent_radius_m * self._normal())
+            if not self._lost(self._s.opponent_dropout) and seen is not None:
+                at_x, at_y, *covariance = seen
+                found.append(OpponentPercept(at_x, at_y, radius_m, *covariance))
+        return OpponentPercepts(stamp_ns, tuple(found))
+
+    def _sight(self, ahead: float, left: float) -> tuple[float, float, float, float, float] | None:
+        """Measured place and its covariance (x, y, xx, yy, xy); None out of view. It draws in any case."""
         along, across = self._normal(), self._normal()
         distance, bearing = math.hypot(ahead, left), math.atan2(left, ahead)
-        visible = self._s.ball_near_m < distance < self._s.ball_far_m and abs(bearing) < self._s.ball_half_view
-        if self._lost(self._s.ball_dropout) or not visible:
+        if not (self._s.ball_near_m < distance < self._s.ball_far_m and abs(bearing) < self._s.ball_half_view):
             return None
         sigma_along = self._s.ball_base_m + self._s.ball_share * distance
         sigma_across = 0.5 * sigma_along
@@ -98,7 +123,7 @@ class Sensors:
         x = ahead + c * sigma_along * along - s * sigma_across * across
         y = left + s * sigma_along * along + c * sigma_across * across
         a, b = sigma_along**2, sigma_across**2
-        return BallPercept(stamp_ns, x, y, c * c * a + s * s * b, s * s * a + c * c * b, c * s * (a - b))
+        return x, y, c * c * a + s * s * b, s * s * a + c * c * b, c * s * (a - b)
 
     def _lost(self, share: float) -> bool:
         return 0.5 * math.erfc(self._normal() / math.sqrt(2.0)) < share

@@ -100,7 +100,10 @@ def raw_delete(session, key):
     session._zenoh.delete(key)
 
 
-SENSORS = {"odom", "pose", "ball", "joint_states", "currents", "driver", "truth", "joint_truth", "planar_truth"}
+SENSORS = {
+    "odom", "pose", "ball", "opponents", "joint_states", "currents", "driver",
+    "truth", "opponents_truth", "joint_truth", "planar_truth",
+}  # fmt: skip
 REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "subgoals", "refinement", "tick", "provenance"
 }  # fmt: skip

@@ -10,7 +10,7 @@ from tailor.executive import domains
 from tailor.executive.domains.soccer import belief as soccer
 from tailor.schemas import messages as m
 from tailor.schemas.messages import Sample
-from tailor.schemas.messages.soccer import BallPercept
+from tailor.schemas.messages.soccer import BallPercept, OpponentPercept, OpponentPercepts
 from tailor.schemas.numbers import MAX_NUMBER
 
 SOCCER = domains.load("soccer")
@@ -18,10 +18,12 @@ ANY = st.floats(-MAX_NUMBER, MAX_NUMBER) | st.sampled_from([0.0, MAX_NUMBER, -MA
 ANGLE = st.floats(-math.pi, math.pi)
 VARIANCE = st.floats(0.0, MAX_NUMBER) | st.sampled_from([0.0, 5e-324, MAX_NUMBER])
 STAMP = st.integers(0, 2**62)
+OPPONENT = st.builds(OpponentPercept, ANY, ANY, ANY, VARIANCE, VARIANCE, ANY)
 READINGS = st.one_of(
     st.builds(m.Odometry, STAMP, ANY, ANY, ANGLE, ANY, ANY),
     st.builds(m.PoseEstimate, STAMP, ANY, ANY, ANGLE, VARIANCE, VARIANCE, VARIANCE),
     st.builds(BallPercept, STAMP, ANY, ANY, VARIANCE, VARIANCE, ANY),
+    st.builds(OpponentPercepts, STAMP, st.lists(OPPONENT, max_size=6).map(tuple)),
 )
 
 

@@ -204,12 +204,19 @@ def run_action(
         body.command(control.command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
+        failure = failure or judged(sampler, action, start, readings)
         before, truth = truth, body.ground_truth()
         work.append(sampler.work_j(before, truth))
     done = control.outcome == "done"
     failure = failure or ("" if done else control.detail or "time limit")
     ticks, work_j = np.array(examples), np.array([*work, 0.0])[: len(examples)]
     return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, work_j, tuple(trace))
+
+
+def judged(sampler: TaskSampler, action: Action, start: Mapping[str, float], readings: Sequence[Reading]) -> str:
+    """The first failure that the simulator's readings of one tick show, or ""."""
+    truths = (reading.message for reading in readings if TOPICS[reading.topic].source == "simulator")
+    return next((failure for truth in truths if (failure := sampler.failure(action, start, truth))), "")
 
 
 def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:

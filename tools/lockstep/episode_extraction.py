@@ -107,7 +107,7 @@ class EpisodeExtractor:
     def _arguments(self, run: _Running, status: ExecStatus) -> Array:
         """The controller's arguments with the believed state in place of the start, as instantiation computes it."""
         names = (name.split(" ")[0] for name in self._domain.belief_names)
-        belief = dict(zip(names, status.belief, strict=True))
+        belief = dict(zip(names, status.belief, strict=False))  # the last ones may be left out
         values = np.array([parameter.value for parameter in run.instance.parameters])
         other_names = self._sampler.start_names(run.action, values)
         for k, parameter in enumerate(run.action.parameters):

@@ -1,17 +1,18 @@
-"""The soccer robot's belief: pose and velocity of the robot, place of the ball (paper Table 5)."""
+"""The soccer robot's belief: pose and velocity of the robot, places of ball and opponents (paper Table 5)."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tailor.executive.belief import ball_track, planar_ekf
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.ball_track import BallTrack, Seen
 from tailor.executive.belief.planar_ekf import OdometryNoise, Pose
-from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer import opponents, robot
+from tailor.executive.domains.soccer.opponents import Opponents
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
-from tailor.schemas.messages.soccer import BallPercept
+from tailor.schemas.messages.soccer import BallPercept, OpponentPercepts
 
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
 POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts have one error and count as one
@@ -40,6 +41,7 @@ class SoccerBelief:
     poses_seen: int
     poses_doubted: int = 0
     odom: Odometry | None = None  # the last one
+    opponents: Opponents = opponents.NONE
 
     @property
     def ball_xy(self) -> tuple[float, float] | None:
@@ -62,9 +64,9 @@ def unknown() -> SoccerBelief:
 
 
 def ready(belief: SoccerBelief) -> bool:
-    """Whether the pose has settled and the ball has been seen or sought long enough."""
+    """Whether the pose has settled, the ball has been seen or sought long enough, and opponents are looked for."""
     needed = FIRST_POSES if belief.ball is not None else LOOKING_POSES
-    return belief.poses_seen >= needed
+    return belief.poses_seen >= needed and opponents.fresh(belief.opponents, belief.time_ns)
 
 
 def in_cradle(ball: BallTrack) -> bool:
@@ -83,6 +85,10 @@ def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...]) -> So
             belief = _locate(_advance(belief, sample.arrival_ns), message)
         elif isinstance(message, BallPercept):
             belief = _see_ball(_advance(belief, sample.arrival_ns), message)
+        elif isinstance(message, OpponentPercepts):
+            belief = _advance(belief, sample.arrival_ns)
+            seen = opponents.see(belief.opponents, belief.pose, belief.time_ns, message)
+            belief = replace(belief, opponents=seen)
     return _advance(belief, now_ns)
 
 
@@ -138,7 +144,8 @@ def _moved(
         else:
             ball = ball_track.move(ball, v, omega * duration_s, middle, duration_s, robot.BALL_ROLLING_MPS2)
     v_now, omega_now = (odom.v, odom.omega) if odom is not None else (belief.v, belief.omega)
-    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, belief.poses_seen, belief.poses_doubted, odom)
+    seen, doubted = belief.poses_seen, belief.poses_doubted
+    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, seen, doubted, odom, belief.opponents)
 
 
 def _pushed(ball: BallTrack, v: float, phi: float) -> bool:
@@ -164,7 +171,7 @@ def _locate(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
 def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
     x, y, phi = _variances(seen)
     pose = Pose(seen.x, seen.y, seen.phi, (x, 0.0, 0.0, y, 0.0, phi))
-    return _with_pose(belief, pose, 1, 0)
+    return replace(_with_pose(belief, pose, 1, 0), opponents=opponents.NONE)
 
 
 def _variances(seen: PoseEstimate) -> tuple[float, float, float]:
@@ -178,13 +185,13 @@ def _bounded(variance: float) -> float:
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
     b = belief
-    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom)
+    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom, b.opponents)
 
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
     b = belief
     ball = ball_track.see(b.ball, _sight(seen), b.pose.phi, b.time_ns)
-    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, b.poses_seen, b.poses_doubted, b.odom)
+    return replace(belief, ball=ball)
 
 
 def _sight(seen: BallPercept) -> Seen:

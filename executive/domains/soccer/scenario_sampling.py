@@ -1,4 +1,4 @@
-"""Draws a soccer scenario: places of robot, ball, target and waypoints, and events that move the ball."""
+"""Draws a soccer scenario: places of robot, ball, target, waypoints and opponents, and events that move the ball."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.belief.angles import wrap
+from tailor.executive.domains.soccer.opponent_sampling import sample_opponents
 
 Point = tuple[float, float]
 MAX_TRIES = 10_000  # a declaration that fails so often is contradictory
@@ -24,7 +25,7 @@ def sample_scenario(
       rng: Source of every draw.
 
     Returns:
-      Start state of robot and ball, places by label, and events; metres, radians, m/s, seconds, map frame.
+      Start state of robot, ball and opponents, places by label, and events; metres, radians, m/s, seconds, map frame.
 
     Raises:
       ValueError: The ranges are contradictory.
@@ -36,6 +37,8 @@ def sample_scenario(
     else:
         start, places = _ball_and_target(declared, rng)
     events = tuple(_event(row, start, places, rng) for row in declared.get("events", ()))
+    if "opponents" in declared:
+        start = {**start, **sample_opponents(declared, start, places, rng)}
     return start, places, events
 
 
@@ -91,7 +94,9 @@ def _waypoints(
         following = _point(field, rng)
         if _within(points[-1], following, leg):
             points.append(following)
-    start = {"x": points[0][0], "y": points[0][1], "phi": rng.uniform(-math.pi, math.pi), "v": 0.0}
+    off = declared["robot"]["half_view_rad"] if "robot" in declared else math.pi  # from the way to the first place
+    ahead = _bearing(*points[:2]) if "robot" in declared else 0.0
+    start = {"x": points[0][0], "y": points[0][1], "phi": wrap(ahead + rng.uniform(-off, off)), "v": 0.0}
     places = {label: {"x": x, "y": y} for label, (x, y) in zip(labels, points[1:], strict=True)}
     places[labels[-1]] |= {"phi": rng.uniform(-math.pi, math.pi), "v": 0.0}
     return start, places

@@ -1,4 +1,4 @@
-"""Task sampler of the soccer robot (paper 5.1, 5.4): start states, beliefs, and collisions with the ball."""
+"""Task sampler of the soccer robot (paper 5.1, 5.4): start states, beliefs, collisions with ball and opponents."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, un
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, Message, Odometry
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.schemas.messages.soccer import OpponentsTruth, SoccerGroundTruth
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
@@ -107,7 +107,9 @@ class SoccerSampler:
         return wheel_work_j(before, after)
 
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
-        """Return "collision" if an approach displaced the ball, else ""."""
+        """Return what the truth shows: the robot touched an opponent, or an approach displaced the ball."""
+        if isinstance(truth, OpponentsTruth):
+            return "touched opponent" if truth.touched else ""
         if action.name != "approachBall" or not isinstance(truth, SoccerGroundTruth):
             return ""
         moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
@@ -128,7 +130,9 @@ class SoccerSampler:
         return newest
 
     def observed_start(self, message: Message) -> dict[str, float] | None:
-        """The ball's position in a ground truth, metres."""
+        """The ball's position in a ground truth, metres; opponents that are touched need nothing to compare with."""
+        if isinstance(message, OpponentsTruth):
+            return {}
         return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
 
     def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:

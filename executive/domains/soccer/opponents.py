@@ -1,0 +1,78 @@
+"""Opponents as the soccer robot believes them: standing obstacles on the field."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from tailor.executive.belief.obstacle_tracks import ObstacleTrack, Sighting, confirmed, in_map
+from tailor.executive.belief.obstacle_tracks import see as see_obstacles
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
+
+MOST = 4  # of another team, that are told of in telemetry
+FRESH_S = 0.5  # six pictures: without them the robot does not drive among opponents
+# where a picture shows an opponent for certain, with a margin to what the camera sees: 0.87 rad, 0.25 to 6 m
+VIEW_RAD = 0.7
+VIEW_M = (0.5, 4.5)
+CREDIBLE_M = 20.0  # a percept farther off is none
+VARIANCES = (1e-6, 25.0)  # m²: a millimetre's, and that of 5 m; senders without a covariance send zeros
+RADII_M = (0.05, 0.5)
+NAMES = tuple(
+    f"opponent{number}_{quantity} (m)" for number in range(1, MOST + 1) for quantity in ("x", "y", "radius", "sigma")
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Opponents:
+    """Tracks in the map frame, and when the last picture came; 0 before the first."""
+
+    tracks: tuple[ObstacleTrack, ...] = ()
+    seen_ns: int = 0
+
+    @property
+    def standing(self) -> tuple[ObstacleTrack, ...]:
+        """Those that were seen often enough to count."""
+        return confirmed(self.tracks)
+
+
+NONE = Opponents()
+
+
+def see(opponents: Opponents, pose: Pose, now_ns: int, percepts: OpponentPercepts) -> Opponents:
+    """Fuse a picture, taken from a pose."""
+
+    def in_view(track: ObstacleTrack) -> bool:
+        dx, dy = track.x - pose.x, track.y - pose.y
+        bearing = math.remainder(math.atan2(dy, dx) - pose.phi, math.tau)
+        return abs(bearing) < VIEW_RAD and VIEW_M[0] < math.hypot(dx, dy) < VIEW_M[1]
+
+    near = [percept for percept in percepts.opponents if math.hypot(percept.x, percept.y) < CREDIBLE_M]
+    sightings = [in_map(pose, _sighting(percept)) for percept in near]
+    return Opponents(see_obstacles(opponents.tracks, sightings, now_ns, in_view), now_ns)
+
+
+def fresh(opponents: Opponents, now_ns: int) -> bool:
+    """Whether opponents have never been looked for, or a picture came lately."""
+    return not opponents.seen_ns or now_ns - opponents.seen_ns <= FRESH_S * 1e9
+
+
+def values(opponents: Opponents) -> tuple[float, ...]:
+    """Values of NAMES, none on an empty field; a place without an opponent has a standard deviation of -1."""
+    if not opponents.standing:
+        return ()
+    shown = {track.number: (track.x, track.y, track.radius_m, track.sigma_m) for track in opponents.standing}
+    return tuple(value for number in range(MOST) for value in shown.get(number, (0.0, 0.0, 0.0, -1.0)))
+
+
+def _sighting(seen: OpponentPercept) -> Sighting:
+    """The percept with a valid covariance matrix, whatever was received."""
+    var_x, var_y = _within(seen.var_x, VARIANCES), _within(seen.var_y, VARIANCES)
+    limit = 0.99 * math.sqrt(var_x * var_y)
+    return Sighting(
+        seen.x, seen.y, var_x, var_y, _within(seen.cov_xy, (-limit, limit)), _within(seen.radius_m, RADII_M)
+    )
+
+
+def _within(value: float, limits: tuple[float, float]) -> float:
+    return min(limits[1], max(limits[0], value))

@@ -1,0 +1,5 @@
+(define (problem opponents)
+  (:domain soccer)
+  (:objects home way1)
+  (:init (robot home) (route home way1))
+  (:goal (and (visited way1))))
