@@ -46,7 +46,7 @@ def _energy_j(run: Run, domain: Domain) -> float:
     if not run.finished:
         return 0.0
     work_j, first, last = sampler_of(domain).work_j, run.finished[0], run.finished[-1]
-    stamped: list[Any] = run.truth
+    stamped: list[Any] = _motions(run, domain)
     begun_ns = first.stamp_ns - round(first.actual_s * 1e9)
     during = [state for state in stamped if begun_ns <= state.stamp_ns <= last.stamp_ns]
     return float(sum(work_j(before, after) for before, after in itertools.pairwise(during)))
@@ -63,7 +63,7 @@ def _arrival(run: Run, domain: Domain) -> tuple[tuple[str, float], ...]:
 
 def _arrivals(run: Run, domain: Domain) -> Iterator[tuple[Action, Array, Message]]:
     """Each action that was done: its last arguments, shape (k,), and the ground truth at its end."""
-    truths = {id(message) for message in run.truth}
+    truths = {id(message) for message in _motions(run, domain)}
     truth: Message | None = None
     subgoals: Subgoals | None = None
     for message in run.messages:
@@ -77,3 +77,9 @@ def _arrivals(run: Run, domain: Domain) -> Iterator[tuple[Action, Array, Message
                 action = domain.actions[message.action]
                 values = np.array([[parameter.value for parameter in first.parameters]])
                 yield action, action.arguments(values)[0], truth
+
+
+def _motions(run: Run, domain: Domain) -> list[Message]:
+    """The robot's own true states; a simulator may publish others beside them."""
+    sampler = sampler_of(domain)
+    return [message for message in run.truth if sampler.motion(message, None) is message]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -136,8 +137,10 @@ class SoccerSampler:
         return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
 
     def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
-        """1 if the ball was displaced before the end of the first approach, else 0."""
-        return int(self.disturbance_m(finished, truth) > COLLIDED_M)
+        """1 if the ball was displaced before the end of the first approach, and one for each opponent touched anew."""
+        touching = [message.touched for message in truth if isinstance(message, OpponentsTruth)]
+        anew = sum(now and not before for before, now in itertools.pairwise([False, *touching]))
+        return int(self.disturbance_m(finished, truth) > COLLIDED_M) + anew
 
     def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
         """Errors of the axle's position (m) and heading (rad), and of the speed (m/s)."""
