@@ -12,6 +12,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, share_interval
@@ -51,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=300,
                         help="starts, each run with every setting (default %(default)s)")  # fmt: skip
     parser.add_argument("--model-episodes", type=at_least(0, "--model-episodes"), default=0, metavar="N",
-                        help="train models of N random episodes an action, with on-policy data and without")  # fmt: skip
+                        help="train models of N random episodes, with on-policy data and without")  # fmt: skip
     parser.add_argument("--model-runs", type=at_least(1, "--model-runs"), default=200, metavar="N",
                         help="runs of their on-policy round (default %(default)s)")  # fmt: skip
     configure_report(parser)
