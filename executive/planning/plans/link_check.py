@@ -4,37 +4,36 @@ from __future__ import annotations
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, Effect
-from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan
 from tailor.executive.planning.plans.state import Binding, Objects, fact_of
 
 Bound = dict[int, tuple[Action, Binding]]  # schema and binding of each step
 
 
-def faulty_link(plan: Plan, problem: Problem, bound: Bound) -> str:
+def faulty_link(plan: Plan, objects: Objects, bound: Bound) -> str:
     """The first unsound causal link with the reason; "" if all are sound."""
     starts = {0: -1.0, **{step.id: step.start for step in plan.steps}}
     deadlines = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
     for link in plan.links:
-        fault = _fault(link, starts, deadlines, problem, bound)
+        fault = _fault(link, starts, deadlines, objects, bound)
         if fault:
             return f"the causal link {link.producer} -> {link.literal} {fault}"
     return ""
 
 
-def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], problem: Problem, bound: Bound) -> str:
+def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], objects: Objects, bound: Bound) -> str:
     """The fault of a link or ""; `deadlines` is the last time at which each step may require a condition."""
     if link.producer not in starts or (link.consumer != GOAL and link.consumer not in starts):
         return "names a step that is not in the plan"
     if link.consumer != GOAL and starts[link.producer] >= deadlines[link.consumer]:
         return "runs backward in time"
     if link.producer == 0:
-        timed = any(t.literal == link.literal for t in problem.timed)
-        holds = (link.literal.fact in problem.initial) == link.literal.positive
+        timed = any(t.literal == link.literal for t in objects.problem.timed)
+        holds = (link.literal.fact in objects.problem.initial) == link.literal.positive
         return "" if timed or holds else "supports nothing: the literal does not hold initially"
     action, binding = bound[link.producer]
     effects = [effect for effect in action.effects if effect.positive == link.literal.positive]
-    if any(_touches(effect, binding, link.literal.fact, Objects(problem)) for effect in effects):
+    if any(_touches(effect, binding, link.literal.fact, objects) for effect in effects):
         return ""
     return f"supports nothing: step {link.producer} does not achieve it"
 

@@ -47,24 +47,27 @@ def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, problem: 
         yield from ((a.id, b.id) for a in plan.steps for b in plan.steps if a.start + a.duration <= b.start)
         return
     order = {0: -1, GOAL: len(plan.steps), **{step.id: n for n, step in enumerate(plan.steps)}}
-    undone = {step.id: _undone(step, domain, problem) for step in plan.steps}
+    undoing: dict[Literal, list[int]] = {}
+    objects = Objects(problem)
+    for step in plan.steps:
+        for literal in _undone(step, domain, objects):
+            undoing.setdefault(literal, []).append(step.id)
     for link in links:
         if link.producer != 0 and link.consumer != GOAL:
             yield link.producer, link.consumer
-        for step in plan.steps:
-            if link.literal in undone[step.id] and step.id not in (link.producer, link.consumer):
-                if order[step.id] < order[link.producer]:
-                    yield step.id, link.producer
-                elif order[step.id] > order[link.consumer]:
-                    yield link.consumer, step.id
+        for other in undoing.get(link.literal, ()):
+            if order[other] < order[link.producer]:
+                yield other, link.producer
+            elif order[other] > order[link.consumer]:
+                yield link.consumer, other
 
 
-def _undone(step: Step, domain: Domain, problem: Problem) -> frozenset[Literal]:
+def _undone(step: Step, domain: Domain, objects: Objects) -> frozenset[Literal]:
     """The literals that a step may make false."""
     action = next(action for action in domain.actions if action.name == step.action[0])
     binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
     return frozenset(
         Literal(fact_of(effect.atom, inner), not effect.positive)
         for effect in action.effects
-        for inner in Objects(problem).bindings(effect.variables, binding)
+        for inner in objects.bindings(effect.variables, binding)
     )

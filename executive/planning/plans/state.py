@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import (
@@ -31,15 +31,18 @@ class Objects:
     """The objects of a problem, by type."""
 
     problem: Problem
+    found: dict[tuple[str, ...], dict[str, None]] = field(default_factory=dict, compare=False, repr=False)
 
-    def of(self, variable: Typed) -> list[str]:
-        """The objects of a variable's types."""
-        domain = self.problem.domain
-        return [
-            item.name
-            for item in (*domain.constants, *self.problem.objects)
-            if any(domain.is_a(own, wanted) for own in item.types for wanted in variable.types)
-        ]
+    def of(self, variable: Typed) -> Collection[str]:
+        """The objects of a variable's types, in the order of their declaration."""
+        if variable.types not in self.found:
+            domain = self.problem.domain
+            self.found[variable.types] = {
+                item.name: None
+                for item in (*domain.constants, *self.problem.objects)
+                if any(domain.is_a(own, wanted) for own in item.types for wanted in variable.types)
+            }
+        return self.found[variable.types]
 
     def bindings(self, variables: tuple[Typed, ...], binding: Binding) -> Iterator[Binding]:
         """All extensions of a binding by objects for the variables."""

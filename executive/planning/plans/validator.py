@@ -47,18 +47,19 @@ def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
       "" if the plan is sound, else the first fault: an unknown action, a wrong duration, a condition that does not
       hold, two events that interfere, a goal that is not reached, or an unsound causal link.
     """
+    objects = Objects(problem)
     try:
-        bound = {step.id: _bind(step, domain, problem) for step in plan.steps}
-        state = _simulate(plan, problem, bound)
-        if not holds(problem.goal, {}, state, Objects(problem)):
+        bound: Bound = {}
+        state = _simulate(plan, domain, objects, bound)
+        if not holds(problem.goal, {}, state, objects):
             return f"the goal {problem.goal_text} does not hold at the end"
     except _Unsound as reason:
         return str(reason)
-    return faulty_link(plan, problem, bound)
+    return faulty_link(plan, objects, bound)
 
 
 # --- the actions ---------------------------------------------------------------------------------
-def _bind(step: Step, domain: Domain, problem: Problem) -> tuple[Action, Binding]:
+def _bind(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding]:
     """The action schema and binding of a step."""
     name, *arguments = step.action
     action = next((action for action in domain.actions if action.name == name), None)
@@ -66,19 +67,18 @@ def _bind(step: Step, domain: Domain, problem: Problem) -> tuple[Action, Binding
         raise _Unsound(f"step {step.id}: the domain has no action '{name}'")
     if len(arguments) != len(action.parameters):
         raise _Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
-    objects = Objects(problem)
     for parameter, argument in zip(action.parameters, arguments, strict=True):
         if argument not in objects.of(parameter):
             raise _Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
     binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
-    _check_duration(step, action, binding, problem)
+    _check_duration(step, action, binding, objects)
     return action, binding
 
 
-def _check_duration(step: Step, action: Action, binding: Binding, problem: Problem) -> None:
+def _check_duration(step: Step, action: Action, binding: Binding, objects: Objects) -> None:
     if action.duration is None:
         return
-    allowed = allowed_durations(action.duration, binding, problem.values)
+    allowed = allowed_durations(action.duration, binding, objects.problem.values)
     if allowed is None:
         raise _Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
     if not allowed[0] - DURATION_SLACK_S <= step.duration <= allowed[1] + DURATION_SLACK_S:
@@ -86,28 +86,31 @@ def _check_duration(step: Step, action: Action, binding: Binding, problem: Probl
 
 
 # --- the simulation ------------------------------------------------------------------------------
-def _simulate(plan: Plan, problem: Problem, bound: Bound) -> State:
-    """The state after the last event."""
-    state: State = frozenset(problem.initial)
+def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> State:
+    """The state after the last event; fills `bound` step by step, as most suffixes of a plan fail at their first."""
+    state: State = frozenset(objects.problem.initial)
     running: list[Step] = []
     began: dict[int, State] = {}  # state just before the start of each step
-    for events in _happenings(plan, problem):
-        _check_conditions(events, state, problem, bound)
+    for events in _happenings(plan, objects):
+        starting = [event.step for event in events if event.step and event.step.id not in bound]
+        bound.update((step.id, _bind(step, domain, objects)) for step in starting)
+        _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
-        changes = [(event, *_changes(event, state, began, problem, bound)) for event in events]
-        _check_interference(changes, state, problem, bound)
+        changes = [(event, *_changes(event, state, began, objects, bound)) for event in events]
+        _check_interference(changes, state, objects, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
         state = (state - removed) | added
         running += [event.step for event in events if event.step and not event.ends and plan.durative]
         running = [step for step in running if not any(event.ends and event.step is step for event in events)]
-        _check_invariants(running, state, problem, bound)
+        _check_invariants(running, state, objects, bound)
     return state
 
 
-def _happenings(plan: Plan, problem: Problem) -> Iterator[list[_Event]]:
+def _happenings(plan: Plan, objects: Objects) -> Iterator[list[_Event]]:
     """Events grouped by time; without durations every step is a group."""
-    events = [_literal_event(timed.time_s, timed.literal.fact, timed.literal.positive) for timed in problem.timed]
+    timed = objects.problem.timed
+    events = [_literal_event(t.time_s, t.literal.fact, t.literal.positive) for t in timed]
     for step in plan.steps:
         events.append(_Event(step.start, 1, f"step {step.id}", step, ends=not plan.durative))
         if plan.durative:
@@ -138,34 +141,34 @@ def _moments(event: _Event, action: Action) -> tuple[str, ...]:
     return ("end",) if event.ends else ("start",)
 
 
-def _check_conditions(events: list[_Event], state: State, problem: Problem, bound: Bound) -> None:
+def _check_conditions(events: list[_Event], state: State, objects: Objects, bound: Bound) -> None:
     for event in events:
-        when = _unmet(event, state, problem, bound)
+        when = _unmet(event, state, objects, bound)
         if when and event.step is not None:
             raise _Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
 
 
-def _unmet(event: _Event, state: State, problem: Problem, bound: Bound) -> str:
+def _unmet(event: _Event, state: State, objects: Objects, bound: Bound) -> str:
     """The moment of an event's first condition that fails in a state; "" if all hold."""
     if event.step is None:
         return ""
     action, binding = bound[event.step.id]
     for when in _moments(event, action):
         for condition in action.conditions:
-            if condition.when == when and not holds(condition.formula, binding, state, Objects(problem)):
+            if condition.when == when and not holds(condition.formula, binding, state, objects):
                 return when
     return ""
 
 
-def _check_invariants(running: list[Step], state: State, problem: Problem, bound: Bound) -> None:
+def _check_invariants(running: list[Step], state: State, objects: Objects, bound: Bound) -> None:
     for step in running:
         action, binding = bound[step.id]
-        if not holds(conditions_at(action.conditions, "over"), binding, state, Objects(problem)):
+        if not holds(conditions_at(action.conditions, "over"), binding, state, objects):
             raise _Unsound(f"step {step.id}: {format_atom(step.action)} loses a condition that it needs all the time")
 
 
 def _changes(
-    event: _Event, state: State, began: dict[int, State], problem: Problem, bound: Bound
+    event: _Event, state: State, began: dict[int, State], objects: Objects, bound: Bound
 ) -> tuple[frozenset[Fact], frozenset[Fact]]:
     """The facts that an event adds and removes; add effects win over delete effects of the same event."""
     if event.step is None:
@@ -175,7 +178,7 @@ def _changes(
     removed: set[Fact] = set()
     for effect in action.effects:
         if effect.when in _moments(event, action):
-            facts = affected(effect, binding, state, Objects(problem), began.get(event.step.id, state))
+            facts = affected(effect, binding, state, objects, began.get(event.step.id, state))
             (added if effect.positive else removed).update(facts)
     return frozenset(added), frozenset(removed - added)
 
@@ -197,7 +200,7 @@ def affected(
 _Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
 
 
-def _check_interference(changes: list[_Change], state: State, problem: Problem, bound: Bound) -> None:
+def _check_interference(changes: list[_Change], state: State, objects: Objects, bound: Bound) -> None:
     """Raises if simultaneous events contradict each other or undo each other's conditions (no moving targets).
 
     The conditions of an event must hold after each other event alone, and after all others.
@@ -206,9 +209,9 @@ def _check_interference(changes: list[_Change], state: State, problem: Problem, 
     for other, more, less in changes:
         others = [change for change in changes if change[0] is not other]
         for event, added, removed in others:
-            if added & less or removed & more or _unmet(other, (state - removed) | added, problem, bound):
+            if added & less or removed & more or _unmet(other, (state - removed) | added, objects, bound):
                 raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
         all_removed = frozenset[Fact]().union(*(removed for _, _, removed in others))
         all_added = frozenset[Fact]().union(*(added for _, added, _ in others))
-        if _unmet(other, (state - all_removed) | all_added, problem, bound):
+        if _unmet(other, (state - all_removed) | all_added, objects, bound):
             raise _Unsound(f"what happens at the same time disturbs {other.label}")
