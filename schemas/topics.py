@@ -37,6 +37,7 @@ _SHIPPED: dict[str, Topic] = {
     "plan_request": Topic("exec/plan_request", m.PlanRequest, 0, "executive", max_bytes=1 << 20),
     "plan_answer": Topic("exec/plan_answer", m.PlanAnswer, 0, "executive", max_bytes=1 << 20),  # of the shell
     "subgoals": Topic("exec/subgoals", m.Subgoals, 0, "executive", max_bytes=65536),
+    "contexts": Topic("exec/contexts", m.Contexts, 0, "executive", max_bytes=65536),
     "refinement": Topic("exec/refinement", m.RefinementReport, 0, "executive", max_bytes=65536),
     "tick": Topic("exec/tick", m.TickReport, 10, "executive", max_bytes=65536),
     "provenance": Topic("exec/provenance", m.Provenance, 1, "executive", max_bytes=262144),

@@ -140,7 +140,8 @@ def _redirected(task: Task, running: Running, now_ns: int) -> Task:
 def _starts_another(decision: Decision, running: Running) -> bool:
     """Whether a decision begins with another action than the running one."""
     first = decision.sequence.actions[0]
-    return first.action.name != running.action.name or first.step != running.step
+    same = (running.action.name, running.step, running.asserted)  # an action may be its own subgoal action
+    return (first.action.name, first.step, first.asserted) != same
 
 
 def _bindings_violated(state: State) -> bool:

@@ -60,6 +60,8 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
         if _searched(deliberation) != published.searched or fresh:
             outputs.extend(_refinement(context, state, deliberation))
     if state.task.decision is not None and state.task.decision is not published.decision:
+        if any(action.context for action in state.task.decision.sequence.actions):
+            outputs.append(Output("contexts", _contexts(context, state, state.task.decision)))
         outputs.append(Output("subgoals", _subgoals(context, state, state.task.decision)))
     return (*outputs, Output("status", _status(context, state)))
 
@@ -133,6 +135,19 @@ def _subgoals(context: Context, state: State, decision: Decision) -> m.Subgoals:
         horizon=context.settings.refinement.horizon,
         actions=tuple(_action(decision, i, action) for i, action in enumerate(decision.sequence.actions)),
     )
+
+
+def _contexts(context: Context, state: State, decision: Decision) -> m.Contexts:
+    objects = {
+        action.action.name: m.ActionObjects(
+            action=action.action.name,
+            columns=action.action.context.names if action.action.context is not None else (),
+            values=tuple(value for row in action.context for value in row),
+        )
+        for action in decision.sequence.actions
+        if action.context
+    }
+    return m.Contexts(context.stamp(state.now_ns), state.tick, tuple(objects.values()))
 
 
 def _action(decision: Decision, index: int, action: InstantiatedAction) -> m.InstantiatedAction:

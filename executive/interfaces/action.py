@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
+from tailor.executive.interfaces.action_context import ActionContext
 from tailor.executive.interfaces.values import Array, Belief, Spans
 
 Outcome = Literal["running", "done", "failed"]
@@ -105,11 +106,13 @@ class Action:
       controller: Control program.
       duration_model: Path in the robot's model zoo, e.g. "goToPose/duration".
       success_model: The same for success; empty: never predicted to fail.
-      subgoal_action: Name of the action that is put before this one when it is predicted to fail (Algorithm 3).
+      subgoal_action: Name of the action that is put before this one when it is predicted to fail (Algorithm 3); perhaps
+        its own: a copy with a free goal.
       subgoal_risk: Risk that the subgoal spoils this action; None: there is no such risk.
       arguments: Maps parameters, shape (n, p), to the arguments of controller and models, shape (n, k). An example: a
         parameter names the ball's place, the argument is the pose behind it.
       spans: `arguments` on intervals, for certificates. None: unknown, unless `arguments` is `unchanged`.
+      context: Objects near which the action may fail; None: there are none.
       time_limit_factor: Times the predicted duration; a longer action fails.
       time_limit_floor_s: Minimum of that limit, seconds.
     """
@@ -123,5 +126,6 @@ class Action:
     subgoal_risk: SubgoalRisk | None = None
     arguments: Callable[[Array], Array] = unchanged
     spans: Spans | None = None
+    context: ActionContext | None = None
     time_limit_factor: float = 3.0
     time_limit_floor_s: float = 10.0

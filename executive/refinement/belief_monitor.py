@@ -1,4 +1,4 @@
-"""Monitors the believed values that a running sequence is bound to.
+"""Monitors the believed values that a running sequence is bound to, and the objects near its actions.
 
 Runs in every tick, so it looks up only values with a tolerance.
 """
@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Belief
+from tailor.executive.refinement.context_monitor import ContextMonitor
 from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 
@@ -24,11 +25,13 @@ class BeliefMonitor:
     def __init__(self, pattern: Pattern, sequence: ActionSequence) -> None:
         self._pattern = pattern
         self._bindings = tuple(dict.fromkeys(_bindings(pattern, sequence)))
+        self._objects = ContextMonitor(sequence)
 
     def bindings_violated(self, belief: Belief) -> bool:
-        """Whether a believed value has moved by more than its tolerance and the plan can still be instantiated."""
+        """Whether a value or an object has moved beyond its tolerance and the plan can still be instantiated."""
         try:
-            if not any(self._violated(*binding, belief) for binding in self._bindings):
+            violated = any(self._violated(*binding, belief) for binding in self._bindings)
+            if not (violated or self._objects.objects_changed(belief)):
                 return False
         except Conflict:
             return False
@@ -44,7 +47,7 @@ def _bindings(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int,
     planned = {(action.step, action.action.name): action for action in pattern.actions}
     for action in sequence.actions:
         same = planned.get((action.step, action.action.name))
-        if same is None:
+        if same is None or action.asserted:
             continue  # it leads to an asserted subgoal, which is not in the plan
         for parameter, own, in_pattern in zip(action.action.parameters, action.variables, same.variables, strict=True):
             value = sequence.variables[own].value

@@ -5,9 +5,11 @@ Causal links give the predicates that hold for a label of the plan; the domain t
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from tailor.executive.interfaces.action import Parameter
+from tailor.executive.interfaces.action import Action, Parameter
+from tailor.executive.interfaces.action_context import ContextRows
 from tailor.executive.interfaces.domain import Conflict, Domain, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Belief, Fact, Interval
 from tailor.executive.planning import Plan
@@ -57,7 +59,12 @@ class Pattern:
                 variables[use.variable] = _narrow(variables[use.variable], use.parameter)
             except Conflict as conflict:
                 return Failure(f"{' '.join(use.action)}: {conflict}")
-        return ActionSequence(self.actions, tuple(variables), self._domain.actions)
+        contexts = believed_contexts(self._domain.actions, belief)
+        actions = tuple(
+            replace(instance, context=contexts[instance.action.name]) if instance.action.context else instance
+            for instance in self.actions
+        )
+        return ActionSequence(actions, tuple(variables), self._domain.actions, contexts=contexts)
 
     def value(self, identifier: int, belief: Belief) -> float | None:
         """Value of one variable in `sequence(belief)`; None if it is free.
@@ -105,6 +112,12 @@ class Pattern:
         return Variable(
             identifier, slot.label, parameter.quantity, parameter.unit, interval.lower, interval.upper, periodic, value
         )
+
+
+def believed_contexts(library: Mapping[str, Action], belief: Belief) -> dict[str, ContextRows]:
+    """The believed objects of each executable action that has a context, by its name."""
+    contexts = {action.name: action.context for action in library.values() if action.context is not None}
+    return {name: context.believed(belief) for name, context in contexts.items()}
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
-from tailor.models.features.feature_intervals import FEATURE_SPANS, Spans
+from tailor.models.features.feature_intervals import FEATURE_SPANS
 from tailor.models.features.intervals import Array, Span
+from tailor.models.features.sight_intervals import Spans
 
 Columns = tuple[Array, ...]  # one array per argument; they broadcast to one shape of three axes
 MARGIN = 1e-4  # m or rad: far more than rounding moves the bounds of a part beyond those of the whole

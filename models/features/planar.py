@@ -25,12 +25,21 @@ def _toward(rows: Rows, ops: Operations) -> tuple[Rows, Rows, Rows]:
     distance the line of sight is the robot's heading, which leaves a turn on the spot. Straight ahead (angle_to = 0)
     counts as a left turn.
     """
+    _, dist, turns, left = sighted(rows, ops)
+    return dist, ops.absolute(turns[[0]]), turns[[1]] * left
+
+
+def sighted(rows: Rows, ops: Operations) -> tuple[Rows, Rows, Rows, Rows]:
+    """Way to the goal in the map frame, its length, and the angles of both headings from the line of sight.
+
+    The last is 1 where the robot turns left to face the goal, -1 where it turns right.
+    """
     away = rows[[4, 5]] - rows[[0, 1]]
     dx, dy = away[[0]], away[[1]]
     dist = length(dx, dy, ops)
     turns = wrap(rows[[2, 6]] - direction(dx, dy, dist, rows[[2]], ops), ops)  # the first is minus that to the goal
-    left = ops.clip(turns[[0]] * -STEEP + 1.0, -1.0, 1.0)  # or -1 where it turns right
-    return dist, ops.absolute(turns[[0]]), turns[[1]] * left
+    left = ops.clip(turns[[0]] * -STEEP + 1.0, -1.0, 1.0)
+    return away, dist, turns, left
 
 
 def _direct(rows: Rows, ops: Operations) -> Rows:

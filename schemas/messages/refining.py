@@ -44,6 +44,24 @@ class Subgoals(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class ActionObjects:
+    """Objects near which an action may fail, as its success model gets them: one row of numbers for each."""
+
+    action: str
+    columns: tuple[str, ...] = ()  # names
+    values: tuple[float, ...] = ()  # row by row, SI units
+
+
+@dataclass(frozen=True, slots=True)
+class Contexts(Message):
+    """Objects of the sequence that the Subgoals of the same tick report; published only if there are any."""
+
+    stamp_ns: int
+    tick: int
+    contexts: tuple[ActionObjects, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class RefinementReport(Message):
     """State of the refinement's search; a duration of -1 s is INVALID."""
 

@@ -22,27 +22,29 @@ from tests.support.random_trees import Trees
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
 SHAPE = (1, 1, 1)
 LEARNED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
-spaces = st.sampled_from(["direct", "relative", "projective", "projective-turn", "joints"])
+spaces = st.sampled_from(["direct", "relative", "projective", "projective-turn", "joints", "one-obstacle"])
 seeds = st.integers(0, 2**32 - 1)
 
 
 def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A box of arguments: each wide, narrow or a point; often with the same place at both ends, or at rest."""
     scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in feature_space(space).arguments])
-    lower = rng.uniform(-0.5, 0.5, 8) * scale
+    lower = rng.uniform(-0.5, 0.5, len(scale)) * scale
     if space != "joints":
         lower[[3, 7]] = rng.uniform(0, 0.5, 2)
     if rng.random() < 0.2:
-        lower[4:] = lower[:4]
+        lower[4:8] = lower[:4]
     if rng.random() < 0.2:
         lower[[1, 3]] = 0.0
-    return lower, lower + scale * rng.choice([0.0, 1e-4, 0.03, 0.5], 8)
+    if len(lower) > 8 and rng.random() < 0.4:
+        lower[8:10] = lower[0:2] if rng.random() < 0.5 else lower[4:6]  # an obstacle at the start, or at the goal
+    return lower, lower + scale * rng.choice([0.0, 1e-4, 0.03, 0.5], len(scale))
 
 
 def drawn(lower: np.ndarray, upper: np.ndarray, rng: np.random.Generator, count: int) -> np.ndarray:
     """Points of a box, corners and edges among them."""
-    share = rng.choice([0.0, 0.5, 1.0, np.nan], (count, 8))
-    share = np.where(np.isnan(share), rng.random((count, 8)), share)
+    share = rng.choice([0.0, 0.5, 1.0, np.nan], (count, len(lower)))
+    share = np.where(np.isnan(share), rng.random(share.shape), share)
     return lower + share * (upper - lower)
 
 
@@ -62,7 +64,9 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
 
 
 @settings(max_examples=150, deadline=None)
-@given(st.sampled_from(["relative", "projective", "projective-turn", "joints"]), seeds, st.integers(1, 4))
+@given(
+    st.sampled_from(["relative", "projective", "projective-turn", "joints", "one-obstacle"]), seeds, st.integers(1, 4)
+)
 def test_model_says_nothing_outside_its_bounds(space, seed, trees):
     rng = np.random.default_rng(seed)
     model = Trees.random(seed, space, trees)

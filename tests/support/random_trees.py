@@ -16,6 +16,10 @@ RANGES = {  # where the features of the spaces lie, for thresholds to fall withi
     "projective": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],
     "projective-turn": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi), (0, np.pi)],
     "relative": [(-6, 6), (-4, 4), (-np.pi, np.pi), (0, 0.75), (-np.pi, np.pi), (0, 0.75)],
+    "one-obstacle": [
+        *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"
+        *[(-3, 6), (-3, 3), (-0.5, 3), (-0.5, 5), (-0.5, 5), (0, np.pi), (0, np.pi)],
+    ],
     "joints": [(0, 1), (0, 1), (0, 3), (-np.pi, np.pi), (-np.pi, np.pi)],
 }
 

@@ -34,7 +34,9 @@ def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
     moved = {start[quantity]: identifier for quantity, identifier in subgoal_ids.items() if quantity in start}
     start_side = set(start_indices(action.action))
     after = tuple(moved.get(i, i) if j in start_side else i for j, i in enumerate(action.variables))
-    pair = InstantiatedAction(subgoal_action, action.step, before, asserted=True), replace(action, variables=after)
+    context = sequence.contexts.get(subgoal_action.name, ())
+    to_subgoal = InstantiatedAction(subgoal_action, action.step, before, asserted=True, context=context)
+    pair = to_subgoal, replace(action, variables=after)
     actions = (*sequence.actions[:position], *pair, *sequence.actions[position + 1 :])
     return replace(sequence, actions=actions, variables=(*sequence.variables, *subgoal))
 

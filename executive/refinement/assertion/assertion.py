@@ -48,7 +48,7 @@ class Assertion:
           The sequence with its asserted subgoals, or the reason why no subgoal makes it succeed.
         """
         while self._position < len(self._sequence.within(self._settings.horizon)):
-            if not self._sequence.actions[self._position].action.success_model:
+            if not self._sequence.actions[self._position].may_fail:
                 self._move_to(self._position + 1)
                 continue
             decided = self._compare(self._comparison, budget) if self._comparison else self._check_feasibility(budget)
@@ -86,7 +86,8 @@ class Assertion:
         reason = f"{instance.action.name} is predicted to fail (success probability at most {1 - least_failure:.2f})"
         if instance.action.subgoal_action not in self._sequence.library:
             return Failure(f"{reason} and has no subgoal action")
-        if depth and not instance.asserted and least_failure <= self._settings.p_fail_settle:
+        may_settle = depth and (not instance.asserted or depth >= self._settings.assertion_depth)
+        if may_settle and least_failure <= self._settings.p_fail_settle:
             self._accept_least_risk(least_failure + RISK_MARGIN)
             return True
         if depth >= self._settings.assertion_depth:

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.action_context import ContextRows
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,7 @@ class InstantiatedAction:
 
     `asserted` marks an action that leads to an asserted subgoal: it belongs to the action after it and does not count
     in the horizon. `risk` is the accepted probability of failure of this action; None: the settings' limit applies.
+    `context` are the believed objects near which the action may fail.
     """
 
     action: Action
@@ -48,6 +50,12 @@ class InstantiatedAction:
     variables: tuple[int, ...]  # variable ids in the order of action.parameters
     asserted: bool = False
     risk: float | None = None
+    context: ContextRows = ()
+
+    @property
+    def may_fail(self) -> bool:
+        """Whether a success model has to be queried for this action."""
+        return bool(self.action.success_model or self.context)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +63,15 @@ class ActionSequence:
     """Actions in the order of execution, and their variable table: `variables[i].id == i`.
 
     `library` holds the executable actions by name; assertion takes the subgoal actions from it. `starts` are values by
-    variable id for which success was predicted: initial candidates for a search.
+    variable id for which success was predicted: initial candidates for a search. `contexts` are the believed objects by
+    executable action, for asserted subgoals.
     """
 
     actions: tuple[InstantiatedAction, ...]
     variables: tuple[Variable, ...]
     library: Mapping[str, Action] = field(default_factory=dict)
     starts: tuple[Mapping[int, float], ...] = ()
+    contexts: Mapping[str, ContextRows] = field(default_factory=dict)
 
     def free(self) -> tuple[Variable, ...]:
         """Free variables, by id."""

@@ -58,7 +58,7 @@ class Stage:
         self.columns: NDArray[np.intp] = np.array(sorted({columns[i] for i in ids if i in columns}), dtype=np.intp)
         self.evaluations = 0  # model inputs predicted so far
         self.action = instance.action
-        self.models = models_of(instance.action, models, settings)
+        self.models = models_of(instance, models, settings)
         self._settings = settings
         self._risk_to_next = risk_to_next
         self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tailor.executive.interfaces.action import Action
+import numpy as np
+
 from tailor.executive.interfaces.models import DurationModel, Models, SuccessModel
+from tailor.executive.refinement.objective.context_success import ContextSuccess
+from tailor.executive.refinement.objective.sequence import InstantiatedAction
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 
@@ -19,19 +22,21 @@ class StageModels:
     energy: DurationModel | None
 
 
-def models_of(action: Action, models: Models, settings: RefinementSettings) -> StageModels:
+def models_of(instance: InstantiatedAction, models: Models, settings: RefinementSettings) -> StageModels:
     """Models that an action names; the energy model only if energy has a weight.
 
     Raises:
       UsageError: A named model is not loaded.
     """
+    action, context = instance.action, instance.action.context
     energy_path = action.duration_model.rpartition("/")[0] + "/energy" if settings.energy_weight > 0 else ""
     required = [(action.duration_model, models.durations), (energy_path, models.durations)]
-    for path, loaded in [*required, (action.success_model, models.successes)]:
+    beside_path = context.success_model if context is not None else ""
+    for path, loaded in [*required, (action.success_model, models.successes), (beside_path, models.successes)]:
         if path and path not in loaded:
             raise UsageError(f"action {action.name} needs the model {path}; loaded models: {sorted(loaded)}")
-    return StageModels(
-        models.durations[action.duration_model],
-        models.successes[action.success_model] if action.success_model else None,
-        models.durations[energy_path] if energy_path else None,
-    )
+    success = models.successes[action.success_model] if action.success_model else None
+    if instance.context:
+        success = ContextSuccess(success, models.successes[beside_path], np.array(instance.context))
+    energy = models.durations[energy_path] if energy_path else None
+    return StageModels(models.durations[action.duration_model], success, energy)

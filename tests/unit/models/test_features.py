@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tailor.models.features.joints import joints
+from tailor.models.features.obstacle import one_obstacle
 from tailor.models.features.planar import projective, projective_turn, relative
 from tailor.models.features.spaces import feature_space, feature_spaces
 
@@ -32,7 +33,8 @@ def test_projective_features_are_those_of_table_7() -> None:
 @pytest.mark.parametrize("name", feature_spaces())
 def test_every_space_is_finite_and_wide_as_it_declares(name: str) -> None:
     space = feature_space(name)
-    features = space(poses(1000))
+    rest = np.random.default_rng(1).uniform(-2, 2, (1000, len(space.arguments) - 8))
+    features = space(np.hstack([poses(1000), rest]))
     assert features.shape == (1000, len(space.features))
     assert features.dtype == np.float32
     assert np.isfinite(features).all()
@@ -45,6 +47,39 @@ def test_at_zero_distance_what_is_left_is_the_turn() -> None:
     assert (dist == 0).all()
     assert (to == 0).all()
     assert np.allclose(at, norm(rows[:, 6] - rows[:, 2]), atol=1e-5)
+
+
+def test_obstacle_is_seen_from_the_way_and_from_both_of_its_ends() -> None:
+    rng, rows = np.random.default_rng(2), poses(5000)
+    place, radius = rng.uniform([-3.5, -2.25], [3.5, 2.25], (5000, 2)), rng.uniform(0, 0.3, 5000)
+    features = one_obstacle(np.column_stack([rows, place, radius]))
+    x, y, phi, _, xg, yg, phig, _ = rows.T
+    start, goal = np.array([x, y]).T, np.array([xg, yg]).T
+    way = (goal - start) / np.hypot(*(goal - start).T)[:, None]
+    to = norm(np.arctan2(*way.T[::-1]) - phi)
+    off, off_g = place - start, place - goal
+    along = (off * way).sum(axis=1)
+    across = np.where(to < 0, -1, 1) * (way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0])
+    on_way = start + way * np.clip(along, 0, np.hypot(*(goal - start).T))[:, None]
+    near = [np.hypot(*(place - at).T) - radius for at in (on_way, start, goal)]
+    angles = [np.abs(norm(np.arctan2(o[:, 1], o[:, 0]) - p)) for o, p in ((off, phi), (off_g, phig))]
+    assert np.abs(features[:, :5] - projective(rows)).max() == 0
+    assert np.abs(features[:, 5:] - np.stack([along, across, *near, *angles], axis=1)).max() < 1e-4
+
+
+def test_obstacle_mirrored_on_the_way_gives_the_same_features() -> None:
+    rows = np.column_stack([poses(500), np.random.default_rng(3).uniform(-2, 2, (500, 3))])
+    rows[:, [1, 5]] *= 0.0  # the way lies on the x axis
+    mirrored = rows * np.where(np.isin(np.arange(11), (2, 6, 9)), -1.0, 1.0)
+    assert np.abs(one_obstacle(mirrored) - one_obstacle(rows)).max() < 1e-5
+
+
+def test_obstacle_is_seen_from_a_turn_on_the_spot() -> None:
+    rows = np.column_stack([poses(100), np.random.default_rng(3).uniform(-2, 2, (100, 3))])
+    rows[:, 4:6] = rows[:, :2]
+    features = one_obstacle(rows)
+    assert np.isfinite(features).all()
+    assert np.allclose(features[:, 7], np.hypot(*(rows[:, 8:10] - rows[:, :2]).T) - rows[:, 10], atol=1e-5)
 
 
 @pytest.mark.parametrize("turn", [-2 * PI, 2 * PI])

@@ -1,0 +1,71 @@
+"""Context of an action: objects of the belief near which it may fail, one row of numbers for each (paper 7).
+
+An opponent's place and radius, say. A model that was learned with one object serves any number of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tailor.executive.interfaces.values import Array, Belief
+
+ContextRows = tuple[tuple[float, ...], ...]  # one row per object, one value per column
+
+
+@dataclass(frozen=True, slots=True)
+class ContextColumn:
+    """One number of a row.
+
+    Attributes:
+      name: Unique among the columns and the action's parameters, e.g. "obstacle_x".
+      unit: "m", "rad", "m/s".
+      lower: Lower end of the range from which training draws.
+      upper: Upper end of that range.
+      tolerance: Change of the believed value, in `unit`, beyond which a running action is deliberated anew; None: any
+        change is accepted.
+    """
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ActionContext:
+    """Objects near which an action may fail, independently of each other.
+
+    Attributes:
+      columns: Columns of `rows`, c of them.
+      rows: Maps the belief to the objects of now, shape (m, c); deterministic. The order of the rows has no effect.
+        More than about ten objects slow deliberation down: keep to those that matter.
+      success_model: Path in the robot's model zoo, e.g. "goToPose/clearance": the probability that the action succeeds
+        in spite of one object. Its arguments are Action.arguments followed by one row.
+      failure: Failure that the object causes, as the task sampler returns it, e.g. "obstacle". Only this failure is
+        learned by `success_model`; all others belong to Action.success_model.
+    """
+
+    columns: tuple[ContextColumn, ...]
+    rows: Callable[[Belief], Array]
+    success_model: str
+    failure: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return tuple(column.name for column in self.columns)
+
+    def believed(self, belief: Belief) -> ContextRows:
+        """The rows of now in an order that depends on their values alone.
+
+        Raises:
+          ValueError: `rows` does not return an array of shape (m, c).
+        """
+        rows = np.asarray(self.rows(belief), dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != len(self.columns):
+            raise ValueError(f"a context of {', '.join(self.names)} got rows of shape {rows.shape}")
+        return tuple(sorted(map(tuple, rows.tolist())))

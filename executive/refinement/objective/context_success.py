@@ -1,0 +1,91 @@
+"""Success of an action beside objects: independent of each other, so the probabilities multiply."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tailor.executive.interfaces.models import ModelBounds, SuccessModel
+from tailor.executive.interfaces.values import Array, Columns
+
+
+@dataclass(frozen=True, slots=True)
+class ContextSuccess:
+    """Success model of one action in the context of m objects.
+
+    Attributes:
+      own: Success of the action by itself; None: it never fails by itself.
+      beside: Success of the action in spite of one object; its arguments end with the object's row.
+      rows: The objects, shape (m, c), m >= 1; constants.
+    """
+
+    own: SuccessModel | None
+    beside: SuccessModel
+    rows: Array
+
+    def probability(self, arguments: Array) -> Array:
+        """Probability of success, shape (n,), for arguments of shape (n, k); one model call for all objects."""
+        count, objects = len(arguments), len(self.rows)
+        extended = np.empty((objects, count, arguments.shape[1] + self.rows.shape[1]))
+        extended[:, :, : arguments.shape[1]] = arguments
+        extended[:, :, arguments.shape[1] :] = self.rows[:, None]
+        beside = self.beside.probability(extended.reshape(objects * count, -1)).reshape(objects, count)
+        product = np.ones(count) if self.own is None else self.own.probability(arguments)
+        for probability in beside:  # in this order, on every machine
+            product = product * probability
+        return product
+
+    @property
+    def bounds(self) -> ContextBounds | None:
+        """Bounds of the probability; None if a model has none."""
+        own, beside = getattr(self.own, "bounds", None), getattr(self.beside, "bounds", None)
+        if beside is None or (self.own is not None and own is None):
+            return None
+        return ContextBounds(own, (beside,) * len(self.rows), self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class ContextBounds:
+    """Bounds of a `ContextSuccess`: those of the factors, for objects that stay where they are."""
+
+    own: ModelBounds | None
+    beside: tuple[ModelBounds, ...]  # (m,)
+    rows: Array  # (m, c)
+
+    def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
+        """Lower bound of the probability; it has no standard deviation."""
+        bounds = [bound.lower_bound(*box) for bound, box in self._factors(lower, upper)]
+        return self._product(bounds)
+
+    def upper_bound(self, lower: Columns, upper: Columns) -> Array:
+        """Upper bound of the probability."""
+        bounds = [bound.upper_bound(*box) for bound, box in self._factors(lower, upper)]
+        return self._product(bounds)
+
+    def within(self, lower: Columns, upper: Columns) -> ContextBounds:
+        """Bounds that are valid only for arguments in this box, each object's with the leaves near it."""
+        restricted = [bound.within(*box) for bound, box in self._factors(lower, upper)]
+        own = None if self.own is None else restricted.pop(0)
+        return ContextBounds(own, tuple(restricted), self.rows)
+
+    @property
+    def effort(self) -> int:
+        """Approximate number of elementary comparisons for one bound."""
+        own = 0 if self.own is None else self.own.effort
+        return own + sum(bound.effort for bound in self.beside)
+
+    def _factors(self, lower: Columns, upper: Columns) -> list[tuple[ModelBounds, tuple[Columns, Columns]]]:
+        """Each factor's bounds with its box of arguments."""
+        factors = [] if self.own is None else [(self.own, (lower, upper))]
+        for bound, row in zip(self.beside, self.rows, strict=True):
+            constant = tuple(np.full((1, 1, 1), value) for value in row)
+            factors.append((bound, ((*lower, *constant), (*upper, *constant))))
+        return factors
+
+    @staticmethod
+    def _product(bounds: list[Array]) -> Array:
+        product: Array = np.ones(1)
+        for bound in bounds:  # in the order of the probabilities: rounding keeps the order of products
+            product = product * np.clip(bound, 0.0, 1.0)
+        return product

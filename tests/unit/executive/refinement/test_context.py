@@ -1,0 +1,173 @@
+"""Success beside objects: rows from the belief multiply, subgoals lead around, and a changed object is noticed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.context_monitor import ContextMonitor
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.objective.stage_models import models_of
+from tailor.executive.refinement.refinement import Refinement
+from tailor.schemas.errors import UsageError
+from tests.support.synthetic_models import DRIBBLE, MODELS, ConeSuccess, sequence
+from tests.unit.executive.refinement.synthetic_context import (
+    APPROACH_AROUND,
+    BESIDE,
+    CONTEXT,
+    GO_AROUND,
+    LIBRARY,
+    ClearanceSuccess,
+    beside,
+)
+
+START = {"x": -2.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+GOAL = {"x": 2.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+IN_THE_WAY = (0.0, 0.05, 0.2)
+ASIDE = (0.0, 1.8, 0.2)
+EXACT = RefinementSettings(arrival_spread=(), certify_checks=0)
+
+
+def asserted(given: ActionSequence, settings: RefinementSettings = EXACT, models: Models = BESIDE):
+    return Assertion(given, models, settings, np.random.default_rng(0)).advance(CheckBudget(2000))
+
+
+def names(result) -> list[str]:
+    assert isinstance(result, ActionSequence), result
+    return [action.action.name for action in result.actions]
+
+
+def success_of(instance, arguments) -> np.ndarray:
+    return models_of(instance, BESIDE, EXACT).success.probability(arguments)
+
+
+ARGUMENTS = np.array([[-2.0, 0, 0, 0, 2.0, 0, 0, 0], [-2.0, 1, 0, 0, 2.0, 1, 0, 0]])
+
+
+def test_probabilities_of_several_objects_multiply_in_one_model_call():
+    rows = ((0.0, 0.35, 0.2), (1.0, -0.4, 0.25))
+    model = ClearanceSuccess()
+    given = beside(rows, [GO_AROUND], [START, GOAL])
+    loaded = Models(MODELS.durations, {"goToPose/clearance": model})
+    success = models_of(given.actions[0], loaded, EXACT).success.probability(ARGUMENTS)
+    assert model.calls == 1
+    alone = [ClearanceSuccess().probability(np.hstack([ARGUMENTS, np.tile(row, (2, 1))])) for row in rows]
+    assert success == pytest.approx(alone[0] * alone[1], rel=1e-12)
+
+
+def test_an_action_that_fails_by_itself_also_fails_beside_objects():
+    given = beside((ASIDE,), [APPROACH_AROUND], [START, {**GOAL, "phi": 0.9}])
+    arguments = np.array([[-2.0, 0, 0, 0, 2.0, 0, 0.9, 0]])
+    by_itself = ConeSuccess().probability(arguments)
+    assert 0.1 < by_itself[0] < 0.95
+    assert success_of(given.actions[0], arguments) == pytest.approx(by_itself, abs=1e-9)
+
+
+def test_without_objects_the_action_is_as_if_it_had_no_context():
+    given = beside((), [GO_AROUND], [START, GOAL])
+    assert not given.actions[0].may_fail
+    assert models_of(given.actions[0], BESIDE, EXACT).success is None
+    assert names(asserted(given)) == ["goToPose"]
+
+
+def test_context_without_its_model_is_refused_even_without_objects():
+    given = beside((), [GO_AROUND], [START, GOAL])
+    with pytest.raises(UsageError, match="goToPose/clearance"):
+        SequenceObjective(given.actions, given.variables, MODELS, EXACT)
+
+
+def test_rows_of_another_width_than_the_columns_are_refused():
+    with pytest.raises(ValueError, match="obstacle_x, obstacle_y, obstacle_r"):
+        replace(CONTEXT, rows=lambda belief: np.zeros((2, 4))).believed(())
+
+
+def test_object_aside_asserts_nothing():
+    assert names(asserted(beside((ASIDE,), [GO_AROUND], [START, GOAL]))) == ["goToPose"]
+
+
+def test_object_in_the_way_asserts_a_copy_of_the_action_whose_way_leads_around():
+    given = beside((IN_THE_WAY, ASIDE), [GO_AROUND], [START, GOAL])
+    result = asserted(given)
+    assert names(result) == ["goToPose", "goToPose"]
+    assert [action.asserted for action in result.actions] == [True, False]
+    assert all(action.context == given.actions[0].context for action in result.actions)
+    search = Refinement(result, BESIDE, EXACT, np.random.default_rng(0))
+    search.advance(CheckBudget(300))
+    bound = result.bind(search.choice.values)
+    for instance in bound.actions:
+        leg = np.array([[bound.variables[i].value for i in instance.variables]])
+        assert success_of(instance, leg)[0] >= 0.95
+
+
+def test_first_leg_to_a_subgoal_before_another_action_has_the_objects_too():
+    """The robot is near its ball, on the wrong side; an obstacle leaves one way around the ball."""
+    start, ball = {"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+    given = beside(((1.0, 1.0, 0.3),), [APPROACH_AROUND, DRIBBLE], [start, ball, {**GOAL, "y": 1.5}])
+    result = asserted(given)
+    assert names(result)[:2] == ["goToPose", "approachBall"]
+    assert result.actions[0].context
+    search = Refinement(result, BESIDE, EXACT, np.random.default_rng(0))
+    search.advance(CheckBudget(300))
+    bound = result.bind(search.choice.values)
+    leg = np.array([[bound.variables[i].value for i in bound.actions[0].variables]])
+    assert success_of(bound.actions[0], leg)[0] >= 0.95
+
+
+def test_walled_in_robot_says_that_no_subgoal_helps():
+    ring = tuple((-2 + 0.45 * np.cos(a), 0.45 * np.sin(a), 0.3) for a in np.arange(8) * np.pi / 4)
+    failure = asserted(beside(ring, [GO_AROUND], [START, GOAL]), replace(EXACT, compare_subgoals=False))
+    assert isinstance(failure, Failure)
+    assert "goToPose is predicted to fail" in failure.reason
+
+
+def test_leg_to_a_subgoal_that_cannot_be_safe_is_accepted_at_its_least_risk():
+    """The robot stands so near an object that any way is risky: up to p_fail_settle it goes on."""
+    near = ((-2.0, 0.3, 0.2), IN_THE_WAY)
+    given = beside(near, [GO_AROUND], [START, GOAL])
+    away = np.array([[-2.0, 0, 0, 0, -2.0, -1, 0, 0]])
+    assert success_of(given.actions[0], away)[0] == pytest.approx(0.5, abs=0.1)
+    hard = replace(EXACT, compare_subgoals=False, p_fail_settle=0.65)
+    result = asserted(given, hard)
+    assert names(result)[-1] == "goToPose"
+    assert all(action.risk is not None and action.risk >= 0.5 for action in result.actions[:1])
+    assert isinstance(asserted(given, replace(hard, p_fail_settle=0.2)), Failure)
+
+
+def monitor(belief) -> ContextMonitor:
+    return ContextMonitor(beside(belief, [GO_AROUND], [START, GOAL]))
+
+
+@pytest.mark.parametrize(
+    ("now", "changed"),
+    [
+        ([IN_THE_WAY, ASIDE], False),
+        ([ASIDE, IN_THE_WAY], False),
+        ([(0.09, 0.05, 0.2), ASIDE], False),
+        ([(0.11, 0.05, 0.2), ASIDE], True),
+        ([(0.0, 0.05, 9.0), ASIDE], False),  # the radius has no tolerance: any is accepted
+        ([IN_THE_WAY], True),
+        ([IN_THE_WAY, ASIDE, (3.0, 2.0, 0.2)], True),
+        ([IN_THE_WAY, IN_THE_WAY], True),
+        ([], True),
+    ],
+)
+def test_only_a_new_lost_or_moved_object_is_a_change(now, changed):
+    assert monitor([IN_THE_WAY, ASIDE]).objects_changed(now) is changed
+
+
+def test_one_of_two_objects_side_by_side_that_leaves_is_a_change():
+    beside_it = (0.05, 0.05, 0.2)
+    assert monitor([IN_THE_WAY, beside_it]).objects_changed([IN_THE_WAY, ASIDE])
+    assert monitor([IN_THE_WAY, ASIDE]).objects_changed([IN_THE_WAY, beside_it])
+
+
+def test_actions_without_a_context_are_not_asked():
+    assert not ContextMonitor(sequence([DRIBBLE], [START, GOAL])).objects_changed(None)
+    assert LIBRARY["dribbleBall"].context is None
