@@ -2,7 +2,7 @@
 
 Among all motions that take T seconds between two angles with given velocities the cubic has the least ∫|q̈|² dt. T
 itself minimises T + ∫|q̈|² dt / A²: a smooth function of both states, and one that any later point of the motion
-confirms. From rest to rest the largest acceleration is then A, over any distance.
+confirms. From rest to rest the largest acceleration is then A, over any distance. Each joint may have its own A.
 """
 
 from __future__ import annotations
@@ -46,6 +46,13 @@ class Cubic:
         end = math.hypot(*(2 * b + 6 * c * self.duration_s for b, c in zip(self.b, self.c, strict=True)))
         return max(begin, end)
 
+    @property
+    def peak_velocity(self) -> float:
+        """Largest |q̇| of any joint, rad/s: at an end, or where the joint's acceleration is 0."""
+        ends = (*map(abs, self.v0), *map(abs, self.velocities(self.duration_s)))
+        turns = ((-b / (3 * c), v0 - b * b / (3 * c)) for v0, b, c in zip(self.v0, self.b, self.c, strict=True) if c)
+        return max(*ends, *(abs(v) for t, v in turns if 0.0 < t < self.duration_s))
+
 
 def cubic(q0: Joints, v0: Joints, q1: Joints, v1: Joints, duration_s: float) -> Cubic:
     """The cubic from (q0, v0) to (q1, v1) that takes `duration_s` > 0."""
@@ -58,15 +65,17 @@ def cubic(q0: Joints, v0: Joints, q1: Joints, v1: Joints, duration_s: float) -> 
     return Cubic(q0, v0, tuple(b), tuple(c), duration_s)
 
 
-def best_duration_s(q0: Joints, v0: Joints, q1: Joints, v1: Joints, acceleration: float) -> float:
-    """The T that minimises T + ∫|q̈|² dt / A², A in rad/s²; between SHORTEST_S and LONGEST_S.
+def best_duration_s(q0: Joints, v0: Joints, q1: Joints, v1: Joints, accelerations: Joints) -> float:
+    """The T that minimises T + Σ ∫q̈² dt / A² over the joints, A in rad/s²; between MIN_S and MAX_S.
 
     With u = 1/T the integral is e1·u + e2·u² + e3·u³, so that the slope of the cost over T is 1 - slope(u).
     """
-    weight = 1.0 / acceleration**2
-    e1 = 4 * weight * sum(a * a + a * b + b * b for a, b in zip(v0, v1, strict=True))
-    e2 = -12 * weight * sum((g - s) * (a + b) for s, a, g, b in zip(q0, v0, q1, v1, strict=True))
-    e3 = 12 * weight * sum((g - s) ** 2 for s, g in zip(q0, q1, strict=True))
+    e1 = e2 = e3 = 0.0
+    for start, leave, goal, arrive, acceleration in zip(q0, v0, q1, v1, accelerations, strict=True):
+        way, weight = goal - start, 1.0 / (acceleration * acceleration)
+        e1 += 4 * weight * (leave * leave + leave * arrive + arrive * arrive)
+        e2 -= 12 * weight * way * (leave + arrive)
+        e3 += 12 * weight * way * way
 
     def cost(u: float) -> float:
         return 1.0 / u + u * (e1 + u * (e2 + u * e3))

@@ -6,6 +6,7 @@ Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, th
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -17,13 +18,20 @@ PERIOD_S = 0.1  # of the executive; a command stands until the next one
 
 
 class JointBelief(Protocol):
-    """A belief that knows its joints."""
+    """A belief that knows its joints, and their friction as multiples of the nominal."""
 
     @property
     def angles(self) -> Joints: ...  # noqa: D102
 
     @property
     def velocities(self) -> Joints: ...  # noqa: D102
+
+    @property
+    def friction(self) -> Joints: ...  # noqa: D102
+
+
+# accelerations that the joints may plan with, rad/s²: from their angles, the goal's, and their friction
+Accelerations = Callable[[Joints, Joints, Joints], Joints]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,18 +41,27 @@ class Motion:
     goal: Joints  # angle and velocity of each joint in turn
     cubic: Cubic
     started_ns: int
+    limits: Joints  # accelerations that it was planned with
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Follows one cubic in joint space, closed over the angles; makes another one when it has strayed."""
+    """Follows one cubic in joint space, closed over the angles.
 
-    acceleration_radps2: float  # what a motion from rest to rest may take
+    A motion lasts as long as the motors need: with more friction than usual, or upward, they need longer. It makes
+    another motion when the arm has strayed, or when what it meets on its way changes the time that is left by
+    `reconsidered_s`; smaller differences are left alone, so that it does not dither.
+    """
+
+    accelerations: Accelerations  # what motions from rest to rest may take
     acceleration_max_radps2: float  # what no motion may exceed
+    velocity_max_radps: float  # what no joint may exceed
     feedback_per_s: float = 2.0  # velocity for an error of angle
     strayed_rad: float = 0.15
     reached_rad: float = 0.05
     reached_radps: float = 0.25
+    reconsidered_s: float = 0.08
+    settled_s: float = 0.5  # before the waypoint the motion stands
 
     def __call__(self, state: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is a velocity (rad/s) for each joint.
@@ -56,6 +73,7 @@ class Reach:
         motion = state if isinstance(state, Motion) and state.goal == goal else self._begin(goal, now_ns, belief)
         if self._off_rad(motion, now_ns, belief) > self.strayed_rad:
             motion = self._begin(goal, now_ns, belief)
+        motion = self._reconsidered(motion, now_ns, belief)
         if not self._arrives(motion, now_ns):
             return Control(motion, self._command(motion, now_ns, belief))
         if self._is_near(motion, now_ns, belief):
@@ -65,14 +83,28 @@ class Reach:
 
     def _begin(self, goal: Joints, now_ns: int, belief: JointBelief) -> Motion:
         """A motion from where the arm is; it takes whole periods, so that the waypoint falls on a tick."""
-        states = (belief.angles, belief.velocities, goal[0::2], goal[1::2])
-        duration_s = best_duration_s(*states, self.acceleration_radps2)
-        periods = max(1, round(duration_s / PERIOD_S))
+        angles, velocities = goal[0::2], goal[1::2]
+        states = (belief.angles, belief.velocities, angles, velocities)
+        limits = self.accelerations(belief.angles, angles, belief.friction)
+        periods = max(1, round(best_duration_s(*states, limits) / PERIOD_S))
+        longest = 2 * periods  # ends that are too fast themselves are no reason to take longer
         motion = cubic(*states, periods * PERIOD_S)
-        while motion.peak_acceleration > self.acceleration_max_radps2:  # ends: it falls as the time grows
+        while self._exceeds(motion) and periods < longest:
             periods += 1
             motion = cubic(*states, periods * PERIOD_S)
-        return Motion(goal, motion, now_ns)
+        return Motion(goal, motion, now_ns, limits)
+
+    def _exceeds(self, motion: Cubic) -> bool:
+        return motion.peak_acceleration > self.acceleration_max_radps2 or motion.peak_velocity > self.velocity_max_radps
+
+    def _reconsidered(self, motion: Motion, now_ns: int, belief: JointBelief) -> Motion:
+        left_s = motion.cubic.duration_s - _elapsed_s(motion, now_ns)
+        if left_s < self.settled_s or motion.started_ns == now_ns:
+            return motion
+        states = (belief.angles, belief.velocities, motion.goal[0::2], motion.goal[1::2])
+        limits = self.accelerations(belief.angles, motion.goal[0::2], belief.friction)
+        change_s = best_duration_s(*states, limits) - best_duration_s(*states, motion.limits)
+        return self._begin(motion.goal, now_ns, belief) if abs(change_s) > self.reconsidered_s else motion
 
     def _off_rad(self, motion: Motion, now_ns: int, belief: JointBelief) -> float:
         """How far the arm is from where the motion has it."""

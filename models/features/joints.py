@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from tailor.models.features.features import FeatureSpace, Operations, Rows, direction, length, quantities, wrap
+from tailor.models.features.features import (
+    SAME_PLACE,
+    FeatureSpace,
+    Operations,
+    Rows,
+    direction,
+    length,
+    quantities,
+    wrap,
+)
 
 JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s")
 
@@ -22,6 +31,19 @@ def _joints_relative(rows: Rows, ops: Operations) -> Rows:
     return ops.stack(places, rows[[4, 6]] - places, rows[[1, 3, 5, 7]])
 
 
+def _joints_lifted(rows: Rows, ops: Operations) -> Rows:
+    b, bg, va, vb, vag, vbg = (rows[[k]] for k in (2, 6, 1, 3, 5, 7))
+    da, db = rows[[4]] - rows[[0]], bg - b
+    dist = length(da, db, ops)
+    nearness = 1.0 / (dist + SAME_PLACE)
+    ca, cb = da * nearness, db * nearness
+    along, across = ca * va + cb * vb, ca * vb - cb * va
+    along_g, across_g = ca * vag + cb * vbg, ca * vbg - cb * vag
+    # a mirrored pan is the same motion: the sign of what is across changes with it
+    mirrored = ops.where(da < 0.0, -across, across), ops.where(da < 0.0, -across_g, across_g)
+    return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1])
+
+
 joints = FeatureSpace("joints", JOINTS, quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints)
 joints_relative = FeatureSpace(  # for quantities that depend on the joint positions, as gravity does
     "joints-relative",
@@ -29,4 +51,10 @@ joints_relative = FeatureSpace(  # for quantities that depend on the joint posit
     quantities("a:rad b:rad da:rad db:rad wa:rad/s wb:rad/s wag:rad/s wbg:rad/s"),
     _joints_relative,
 )
-SPACES = (joints, joints_relative)
+joints_lifted = FeatureSpace(  # for durations that depend on gravity: invariant to turning and mirroring the pan
+    "joints-lifted",
+    JOINTS,
+    quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s"),
+    _joints_lifted,
+)
+SPACES = (joints, joints_relative, joints_lifted)

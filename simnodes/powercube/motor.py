@@ -24,6 +24,7 @@ class Motor:
 
     def __init__(self, parameters: PhysicalParameters) -> None:
         self._p = parameters
+        self._limit_a = parameters.current_max_a
         self._step_max = parameters.acceleration_max_radps2 * PERIOD_S
         self.reset(0.0, 0.0, 0.0)
 
@@ -56,15 +57,19 @@ class Motor:
         """
         self.tacho += ((angle - self._last) / PERIOD_S - self.tacho) * (PERIOD_S / TACHO_S)
         self._last = angle
-        difference = self._target - self.velocity
-        self.velocity += max(-self._step, min(self._step, difference))
-        self.velocity = self._limited_near_end(angle, self.velocity)
-        inner = self._inner + self.velocity * PERIOD_S
-        self._inner = max(angle - MAX_LEAD_RAD, min(angle + MAX_LEAD_RAD, inner))
-        current = STIFFNESS_A_PER_RAD * (self._inner - angle) + DAMPING_A_PER_RADPS * (self.velocity - self.tacho)
-        limit = self._p.current_max_a
-        self.current_a = max(-limit, min(limit, current))
-        return self.current_a
+        step, change = self._step, self._target - self.velocity
+        if not -step <= change <= step:
+            change = step if change > 0.0 else -step
+        velocity = self.velocity = self._limited_near_end(angle, self.velocity + change)
+        lead = self._inner + velocity * PERIOD_S - angle
+        if not -MAX_LEAD_RAD <= lead <= MAX_LEAD_RAD:
+            lead = MAX_LEAD_RAD if lead > 0.0 else -MAX_LEAD_RAD
+        self._inner = angle + lead
+        current, limit = STIFFNESS_A_PER_RAD * lead + DAMPING_A_PER_RADPS * (velocity - self.tacho), self._limit_a
+        if not -limit <= current <= limit:
+            current = limit if current > 0.0 else -limit
+        self.current_a = current
+        return current
 
     def _limited_near_end(self, angle: float, velocity: float) -> float:
         """The velocity, limited so that the arm can stop within its range."""

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 
 from tailor.executive.actions.reach import Reach
+from tailor.executive.domains.arm.load import accelerations
+from tailor.executive.domains.arm.robot import V_MAX_RADPS
 from tailor.executive.interfaces.action import Action, Parameter
 
 PAN_RAD = 1.3  # waypoints lie within these
 LIFT_RAD = 0.9
-PASSING_RADPS = 0.7  # maximum velocity of a joint at a waypoint
-ACCELERATION_RADPS2 = 0.87  # a random reach then takes 2.9 s on average (paper Table 1)
-ACCELERATION_MAX_RADPS2 = 4.0  # the driver ramps at 5; hardly a reach needs more than 2.5
+PASSING_RADPS = 1.0  # maximum velocity of a joint at a waypoint
+LIFTING_RADPS2 = 1.5  # what reaches plan with upward; otherwise up to load.ACCELERATION_RADPS2
+ACCELERATION_MAX_RADPS2 = 4.0  # the driver ramps at 5
 
 
 def fastest_radps(distance_rad: float) -> float:
@@ -20,7 +22,7 @@ def fastest_radps(distance_rad: float) -> float:
     Up to this velocity the duration of a reach has one minimum. Beyond it, passing fast and looping back can take
     equally long, and the predicted optimum may be the wrong one.
     """
-    return min(PASSING_RADPS, math.sqrt(ACCELERATION_RADPS2 * distance_rad))
+    return min(PASSING_RADPS, math.sqrt(LIFTING_RADPS2 * distance_rad))
 
 
 def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:
@@ -36,7 +38,7 @@ def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:
 REACH = Action(
     "reach",
     (*_state("", 0), *_state("g", 1)),
-    Reach(ACCELERATION_RADPS2, ACCELERATION_MAX_RADPS2),
+    Reach(accelerations, ACCELERATION_MAX_RADPS2, 0.96 * V_MAX_RADPS),  # the rest is for feedback
     "reach/duration",
 )
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tailor.executive.domains.arm.belief import Joints, ahead
+from tailor.executive.domains.arm.belief import ahead
+from tailor.executive.domains.arm.load import Joints
 from tailor.executive.interfaces.domain import LabelQuery
 from tailor.executive.interfaces.values import Interval
 

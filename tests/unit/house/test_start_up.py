@@ -43,7 +43,7 @@ from tailor.tools.commands.look import verify
 runs = verify.RecordedRuns(Path(sys.argv[1]))
 context = verify.rebuild_context(runs.runs[0].provenance)
 before = set(sys.modules)
-assert sum(1 for _ in replay(context, runs.ticks(runs.runs[0]))) > 50
+assert sum(1 for _ in replay(context, runs.ticks(runs.runs[0]))) > 30
 print(*sorted(set(sys.modules) - before))
 """
 

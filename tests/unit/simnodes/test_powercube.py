@@ -114,6 +114,69 @@ def test_encoders_measure_whole_counts_of_all_six_joints():
         assert counts == pytest.approx(np.round(counts), abs=1e-6)
 
 
+def test_encoders_err_by_noise_backlash_and_jitter_and_not_more():
+    made = body(5, b=-0.3)
+    errors = []
+    for command in [(0.5 * (-1) ** (k // 10), 0.2) for k in range(40)]:
+        made.command(command)
+        for _ in range(5):
+            state = made.advance(TICK_NS // 5)[0].message
+            errors.append(np.subtract(state.positions[:2], made.ground_truth().positions[:2]))
+    limits = PhysicalParameters()
+    assert 1e-4 < np.std(errors) < 1e-3
+    assert np.abs(errors).max() < 0.5 * limits.backlash_rad + 5 * np.hypot(limits.encoder_std_rad, 0.5e-3)
+
+
+def test_the_motor_crosses_the_backlash_when_its_torque_turns_round():
+    made = body(a=0.0)
+    follow(made, [(0.3, 0.0)] * 10)
+    forward = made.gears[0].ahead_rad
+    follow(made, [(-0.3, 0.0)] * 10)
+    half = 0.5 * PhysicalParameters().backlash_rad
+    assert (forward, made.gears[0].ahead_rad) == (half, -half)
+    assert made.gears[1].ahead_rad == half, "the lift always carries its load"
+
+
+def current_a(made, speed):
+    """Mean current of the pan at a constant speed."""
+    follow(made, [(speed, 0.0)] * 10)
+    readings = [reading.message for reading in follow(made, [(speed, 0.0)] * 10) if reading.topic == "currents"]
+    return np.mean([message.amperes[0] for message in readings])
+
+
+def test_cold_gears_take_more_current_and_the_faster_the_more():
+    slow, fast = ([current_a(body(a=-1.5, ta=celsius), speed) for celsius in (15.0, 45.0)] for speed in (0.1, 0.8))
+    assert slow[0] > 1.05 * slow[1]
+    assert fast[0] > 1.5 * fast[1]
+
+
+def test_a_loaded_gear_has_more_friction():
+    gear = body().gears[0]
+    assert gear.friction(25.0)[0] > 1.3 * gear.friction(0.0)[0]
+    assert gear.friction(-25.0) == gear.friction(25.0)
+
+
+def test_gears_warm_with_work_and_cool_with_time():
+    made = body(ta=40.0, tb=25.0)
+    follow(made, [(0.5, 0.0)] * 20 + [(-0.5, 0.0)] * 20)
+    cooled, warmed = (gear.temperature_c for gear in made.gears)
+    assert 0.005 < warmed - 25.0 < 0.2  # it holds the arm up
+    assert -0.2 < cooled - 40.0 < -0.005
+
+
+def test_temperatures_are_drawn_by_the_seed():
+    drawn = [tuple(gear.temperature_c for gear in body(seed).gears) for seed in (1, 1, 2)]
+    assert drawn[0] == drawn[1] != drawn[2]
+    assert np.ptp([body(seed).gears[0].temperature_c for seed in range(20)]) > 10.0
+
+
+def test_nothing_is_left_of_the_episode_before():
+    fresh, used = body(9), body(3, ta=60.0, tb=60.0, b=1.0)
+    follow(used, [(0.6, -0.6)] * 10)
+    used.reset(np.random.default_rng(9), {})
+    assert follow(fresh, scribble(1)) == follow(used, scribble(1))
+
+
 def test_currents_include_the_peak_since_the_last_message():
     readings = follow(body(), [(0.0, 0.0)] * 3 + [(0.0, 0.7)] + [(0.0, 0.7)] * 6)
     currents = [reading.message for reading in readings if reading.topic == "currents"]

@@ -10,16 +10,21 @@ import numpy as np
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.load import COULOMB_NM, TYPICAL_RADPS, VISCOUS_NMS
 from tailor.executive.domains.arm.predicates import named
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, JointState, Message
+from tailor.simnodes.powercube.gear import Gear
+from tailor.simnodes.powercube.physical_parameters import PhysicalParameters
 from tailor.tools.lockstep.samplers.drive_work import joint_work_j
 
 STATE = ("a", "wa", "b", "wb")
 WA, WB, WAG, WBG = 1, 3, 5, 7
 A, B, AG, BG = 0, 2, 4, 6
 AT_REST = 0.2  # share of reaches that start at rest, and of those that end at rest: every stroke has both
+ANGLE_STD_RAD, VELOCITY_STD_RADPS, FRICTION_STD = 0.0007, 0.008, 0.05  # of the belief
+PARAMETERS = PhysicalParameters()
 DISTANCE_RAD = (0.05, 2.2)  # uniform: sampling in a rectangle yields few short reaches, and words need many
 
 
@@ -46,12 +51,18 @@ class ArmSampler:
         return arguments
 
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
-        """Start state of the body."""
-        return dict(zip(STATE, arguments[: len(STATE)].tolist(), strict=True))
+        """Start state of the body, with the temperatures of its gears."""
+        warm = dict(zip(("ta", "tb"), rng.uniform(*PARAMETERS.temperature_c, 2).tolist(), strict=True))
+        return dict(zip(STATE, arguments[: len(STATE)].tolist(), strict=True)) | warm
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> ArmBelief:
-        """Belief after a noise-free encoder reading of that state."""
-        return ArmBelief(0, (start["a"], start["b"]), (start["wa"], start["wb"]), 0)
+        """Belief at that state, as exact as the filter leaves it; the arm has worked, and knows its friction."""
+        off = rng.standard_normal((2, 2)) * ((ANGLE_STD_RAD,), (VELOCITY_STD_RADPS,))
+        states = np.array(((start["a"], start["b"]), (start["wa"], start["wb"])))
+        (a, b), (wa, wb) = (states + off).tolist()
+        known = 1.0 + FRICTION_STD * rng.standard_normal(2)
+        friction = known * [_friction(start[name]) for name in ("ta", "tb")]
+        return ArmBelief(0, (a, b), (wa, wb), 0, (start["wa"], start["wb"]), friction=tuple(friction.tolist()))
 
     def arguments_now(self, action: Action, belief: ArmBelief, arguments: Array) -> list[float]:
         """Training example: the arguments with the believed state in place of the start."""
@@ -95,3 +106,11 @@ class ArmSampler:
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
         """0: there are no objects."""
         return 0.0
+
+
+def _friction(temperature_c: float) -> float:
+    """Friction of an unworn gear as a multiple of the nominal, as the belief observes it."""
+    gear = Gear(PARAMETERS, COULOMB_NM, VISCOUS_NMS)
+    gear.temperature_c = temperature_c
+    dry_nm, viscous_nms = gear.friction(0.0)
+    return (dry_nm + viscous_nms * TYPICAL_RADPS) / (COULOMB_NM + VISCOUS_NMS * TYPICAL_RADPS)

@@ -1,5 +1,7 @@
 """The arm's domain: letters become plans through waypoints, and beliefs say where the next reach begins."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 from tailor.executive import domains, planning
 from tailor.executive.domains.arm import belief as believing
 from tailor.executive.domains.arm import letters
+from tailor.executive.domains.arm import load as loads
 from tailor.executive.domains.arm.action_library import LIFT_RAD, PAN_RAD, PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.interfaces.budget import CheckBudget
@@ -124,11 +127,50 @@ def test_without_encoders_the_belief_stands_still():
     assert later.angles == belief.angles
 
 
+def test_encoder_noise_is_filtered_and_does_not_lag():
+    rng, belief = np.random.default_rng(4), ArmBelief(0, (0.0, 0.0), (0.0, 0.0), 0)
+    q, v, errors, raw = np.zeros(2), np.zeros(2), [], []
+    for tick in range(1, 200):
+        command = np.array([0.6 * np.sin(0.15 * tick), -0.4 * np.cos(0.1 * tick) * min(1.0, 0.1 * tick)])
+        q, v = q + 0.05 * (v + command), command
+        angles, speeds = q + 0.0007 * rng.standard_normal(2), v + 0.02 * rng.standard_normal(2)
+        now_ns = tick * 100_000_000
+        belief = believing.update(belief, now_ns, (heard(now_ns, *angles, *speeds),), tuple(command.tolist()))
+        errors.append(np.subtract(belief.velocities, v))
+        raw.append(speeds - v)
+    assert np.std(errors) < 0.6 * np.std(raw)
+    assert abs(np.mean(errors)) < 0.002
+    assert np.abs(np.subtract(belief.angles, q)).max() < 0.003
+
+
+def test_an_arm_that_does_not_follow_is_believed_where_its_encoders_have_it():
+    belief = ArmBelief(0, (0.0, 0.0), (0.0, 0.0), 0)
+    belief = believing.update(belief, 100_000_000, (heard(100_000_000, 0.0, 0.0),), (0.8, 0.0))  # braked
+    assert belief.angles == belief.velocities == (0.0, 0.0)
+
+
+def test_friction_is_learned_from_efforts_while_the_joints_move():
+    gravity_nm = np.array([0.0, loads.GRAVITY_NM * np.cos(loads.GRAVITY_AT_RAD)])
+    dry_nm = loads.COULOMB_NM + loads.LOAD_FRICTION * gravity_nm
+    efforts = tuple((gravity_nm + 1.3 * (dry_nm + loads.VISCOUS_NMS * 0.5)).tolist())
+    belief = ArmBelief(0, (0.0, 0.0), (0.5, 0.5), 0, (0.5, 0.5))
+    for tick in range(1, 12):
+        belief = sensed(replace(belief, angles=(0.0, 0.0)), tick, 0.5, efforts)
+    assert belief.friction == pytest.approx((1.3, 1.3), abs=0.02)
+    assert sensed(belief, 30, 0.0, (0.0, 90.0)).friction == belief.friction
+
+
+def sensed(belief, tick, speed, efforts):
+    now_ns = tick * 100_000_000
+    state = JointState(now_ns, ("pan", "lift"), (0.0, 0.0), (speed, speed), efforts)
+    return believing.update(belief, now_ns, (Sample("joint_states", state, now_ns, 1),), (speed, speed))
+
+
 def test_the_next_action_begins_where_the_last_command_leads():
     belief = ArmBelief(0, (0.0, 0.0), (0.0, 0.0), 0)
-    belief = believing.update(belief, 100_000_000, (heard(100_000_000, 0.01, 0.0, wa=0.1),), (0.1, 0.0))
+    belief = believing.update(belief, 100_000_000, (heard(100_000_000, 0.005, 0.0, wa=0.1),), (0.1, 0.0))
     angles, velocities = believing.ahead(belief)
-    assert angles == pytest.approx((0.01 + 0.1 * 0.15, 0.0))
+    assert angles == pytest.approx((0.005 + 0.1 * 0.15, 0.0))
     assert velocities == pytest.approx((0.2, 0.0))
 
 
