@@ -33,6 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, SOAK: SOAK_TEXT}.items())
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but soak). {rows}")
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
+    parser.add_argument("--scale", action="store_true", help="planning: CPU time as the number of steps grows")
     parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")
     parser.add_argument("--seed", type=at_least(0, "--seed"), default=0, help="soak: random seed (default 0)")
     parser.add_argument(
@@ -66,7 +67,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
-    module = importlib.import_module(f"tailor.tools.benchmarks.{name}")
+    chosen = "planning_scale" if name == "planning" and arguments.scale else name
+    module = importlib.import_module(f"tailor.tools.benchmarks.{chosen}")
     if name == SOAK:
         options = (arguments.minutes, arguments.seed, arguments.every, arguments.only, arguments.output, arguments.json)
         return bool(module.run(console, module.Options(*options)))
