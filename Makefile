@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants goldens lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants goldens models lint types bench clean
 
 setup: .venv/.installed
 
@@ -34,6 +34,9 @@ test-mutants: setup  # hand-made mistakes in safety code, each of which a test m
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew
+
+models: setup  # makes every model that ships anew from seeds, by the recipes beside them
+	$(BIN)/tailor make-models
 
 lint: setup
 	$(BIN)/ruff check .

@@ -48,6 +48,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "tailor.tools.commands.learn.train_gate",
         "train a refinement gate for the trained action models",
     ),
+    "make-models": (
+        "tailor.tools.commands.learn.make_models",
+        "make the models of robots anew from seeds, by their recipes",
+    ),
     "models": ("tailor.tools.commands.learn.models", "list, show, plot and check action models"),
     "evaluate": ("tailor.tools.commands.measure.evaluate", "reproduce the paper's tables and figures"),
     "bench": ("tailor.tools.commands.measure.bench", "measure speed and memory"),

@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
+from tailor.models.episodes.sources import probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -148,7 +149,7 @@ def _read_part(path: Path, names: Sequence[str]) -> pa.Table:
 
 
 def merge(sets: Sequence[DataSet]) -> DataSet:
-    """Merge data sets of one action; manifest and ranges are those of the first.
+    """Merge data sets of one action; ranges are those of the first, `sources` in the manifest names all.
 
     Raises:
       UsageError: Robots, actions or arguments differ, or two hold the same episodes.
@@ -165,9 +166,15 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
         if other.names != first.names:
             raise UsageError(f"data sets with arguments {first.names} and {other.names} do not mix")
     episodes = [replace(e, number=k) for k, e in enumerate(e for each in sets for e in each.episodes)]
-    policy = sum(len(each.episodes) for each in sets if each.manifest.get("on_policy"))
+    sources = [source_of(each) for each in sets]
+    about = {
+        "on_policy": sum(source["on_policy"] for source in sources),
+        "sources": sources,
+        "source_files": source_files(sets),
+        "probe": probe_of(first),
+    }
     digest = hashlib.sha256("".join(each.sha256 for each in sets).encode()).hexdigest() if others else first.sha256
-    return DataSet({**first.manifest, "on_policy": policy}, tuple(episodes), digest)
+    return DataSet({**first.manifest, **about}, tuple(episodes), digest)
 
 
 def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:

@@ -105,7 +105,7 @@ def _episodes(data: DataSet) -> dict[str, Any]:
         "finished": sum(episode.finished for episode in data.episodes),
         "on_policy": data.manifest.get("on_policy", 0),
         "sha256": data.sha256,
-        **{key: data.manifest.get(key) for key in ("seed", "source", "source_sha256")},
+        **{key: data.manifest[key] for key in ("sources", "source_files", "probe") if data.manifest.get(key)},
     }
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tailor.schemas.installed import file, spec_of
 from tailor.schemas.installed.episode_files import episode_files
-from tailor.schemas.installed.source_text import content_text
+from tailor.schemas.installed.source_text import content_sha256, content_text
 from tailor.schemas.packages.spec import DomainSpec
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,6 +18,8 @@ DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, 
 CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_run.py")
 REASONING = ("executive/core/*", "executive/interfaces/*", "executive/planning/**/*", "executive/refinement/**/*")
 WHOLE = (*CONTROL, *REASONING, "simnodes/*", "models/features/*", "models/runtime.py", "tools/lockstep/*")
+
+LEARNING = ("models/*/*.py", "models/*.py", "tools/learning/*.py", "tools/lockstep/episode_extraction.py")
 
 
 @lru_cache(maxsize=8)
@@ -39,6 +41,14 @@ def runs_sha256(domain: str) -> str:
       UsageError: There is no such domain.
     """
     return _sha256(WHOLE, spec_of(domain))
+
+
+@lru_cache(maxsize=1)
+def learning_sha256() -> str:
+    """Hash of what makes models out of episodes: learners, calibration, export."""
+    files = sorted(path for pattern in LEARNING for path in ROOT.glob(pattern))
+    lines = (f"{_name(path)} {content_sha256(path)}" for path in files)
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
 def _sha256(ours: Iterable[str], spec: DomainSpec) -> str:

@@ -20,15 +20,18 @@ from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
+from tailor.models.episodes.sources import short_hashes
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
+from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
 PART = 20  # episodes in a part: the most that a kill -9 loses, per process
 RANGE_DRAWS = 4096  # samples that determine the ranges of the controller's arguments
-COUNTS = ("episodes", "runs", "software")  # entries of a manifest that may differ when a data set is resumed
+# entries of a manifest that may differ when a data set is resumed; `source_sha256` stands for the files
+COUNTS = ("episodes", "runs", "software", "source_files")
 RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
 
 
@@ -152,10 +155,15 @@ def _manifest(spec: DataSetSpec) -> dict[str, Any]:
         "seed": spec.seed,
         "stream": spec.stream,
         "source": "lock-step, random arguments",
-        "source_sha256": episodes_sha256(spec.domain),
+        **source_entries(spec.domain),
         "on_policy": 0,
         "software": {name: version(name) for name in ("tailor", "mujoco", "numpy")},
     }
+
+
+def source_entries(domain: str) -> dict[str, Any]:
+    """Entries of a manifest that state the source that episodes are simulated with."""
+    return {"source_sha256": episodes_sha256(domain), "source_files": short_hashes(episode_files(domain))}
 
 
 def argument_ranges(domain: Domain, action: str) -> list[dict[str, Any]]:

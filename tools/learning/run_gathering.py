@@ -22,7 +22,6 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.installed.source import episodes_sha256
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
 from tailor.tools.learning import gathering
@@ -98,7 +97,7 @@ def prepare(
             "action": action,
             "arguments": gathering.argument_ranges(loaded, action),
             "runs": len(runs),
-            "source_sha256": episodes_sha256(domain),
+            **gathering.source_entries(domain),
             "on_policy": True,
             **about,
         }

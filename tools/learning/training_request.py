@@ -32,6 +32,7 @@ class TrainingRequest:
       learner: Learner of durations and energies, see `learners.DURATION_LEARNERS`.
       failure_learner: Learner of successes, see `learners.SUCCESS_LEARNERS`.
       seed: Random seed of folds and resampled episodes.
+      command: Command that reproduces the models, for their cards; empty: those of gathering and training.
     """
 
     robot: str
@@ -43,6 +44,7 @@ class TrainingRequest:
     learner: str = DEFAULT_LEARNER
     failure_learner: str = DEFAULT_FAILURE_LEARNER
     seed: int = 1
+    command: str = ""
 
 
 def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
@@ -104,6 +106,8 @@ def reproduction_command(
       spaces: See `feature_spaces`.
       manifests: Manifest of each data set, by folder.
     """
+    if request.command:
+        return request.command
     robot, action = request.robot, next(iter(manifests.values()))["action"]
     data = "" if not request.data else " --data " + " ".join(map(str, request.data))
     train = f"tailor train {robot} {action}{data} --features {spaces['duration'].name}"

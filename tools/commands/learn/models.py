@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    verbs = "one line per model; its card; its rules; pictures; run all checks (exit code 1 if one fails)"
+    verbs = "one line per model; its card; its rules; pictures; run all checks (exit code 1 if any fails)"
     parser.add_argument("verb", choices=VERBS, help=verbs)
     parser.add_argument("models", nargs="*", metavar="MODEL", help="models (default: all)")
     parser.add_argument("--zoo", type=Path, help="folder of models (default: the one of the robot)")
@@ -182,17 +182,24 @@ def _brief(value: Any) -> str:
 
 
 def _check(names: list[str], arguments: argparse.Namespace) -> int:
-    failed = {}
+    from tailor.tools.learning.staleness import staleness
+
+    failed, stale = {}, {}
     for name in names:
         try:
             if name.endswith(f"/{GATE}"):  # valid only with the action models that it was trained with
                 load_models(name.removesuffix(f"/{GATE}"), str(arguments.zoo), gated=True)
             model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
+            differs = staleness(model.card)
+            if differs:
+                stale[name] = differs
         except UsageError as error:
             failed[name] = str(error)
         if not arguments.json:
-            print(f"{name}: {failed.get(name, 'sound')}")
+            print(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}")
     if arguments.json:
-        print(json.dumps({"checked": names, "failed": failed}))
-    return 1 if failed else 0
+        print(json.dumps({"checked": names, "failed": failed, "stale": stale}))
+    elif stale:
+        print("stale models are made anew by `tailor make-models`")
+    return 1 if failed or stale else 0

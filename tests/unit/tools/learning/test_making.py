@@ -1,0 +1,119 @@
+"""Making models from recipes: from seeds, resumable, and the same bits again."""
+
+from pathlib import Path
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names
+from tailor.tools.learning import making as making_module
+from tailor.tools.learning.making import Making, install, make
+from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
+from tailor.tools.main import main
+
+TINY = Recipe(40, rounds=(Round("on-policy", ("approach",), 1),))
+
+
+@pytest.fixture
+def trained(monkeypatch) -> list:
+    """Requests of training, which writes a card and no model."""
+    requests = []
+
+    def train(request) -> None:
+        requests.append(request)
+        folder = request.zoo / request.robot / "goToPose"
+        folder.mkdir(parents=True)
+        (folder / "duration.card.json").write_text(f"of {len(request.data)}")
+
+    monkeypatch.setattr(making_module, "train_models", train)
+    monkeypatch.setattr(making_module.run_gathering, "models_hash", lambda *_: "models")
+    monkeypatch.setattr(making_module.run_gathering, "_run", lambda *_: [])
+    monkeypatch.setattr(making_module.gathering, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
+    return requests
+
+
+def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, trained: list) -> None:
+    making = Making("agilo", TINY, tmp_path, 1, "make")
+    steps = list(make(making))
+    assert [(r.zoo.name, [d.name.split("-")[0] for d in r.data]) for r in trained] == [
+        ("zoo-0", ["random"]), ("zoo", ["random", "round"])
+    ]  # fmt: skip
+    assert all(request.command == "make" for request in trained)
+    assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
+
+
+def test_what_was_made_is_not_made_again(tmp_path: Path, trained: list) -> None:
+    making = Making("agilo", TINY, tmp_path, 1, "make")
+    list(make(making))
+    assert len(list(make(making))) >= 4
+    assert len(trained) == 2
+
+
+def test_another_source_or_recipe_starts_anew_but_keeps_random_episodes(tmp_path: Path, monkeypatch) -> None:
+    making = Making("agilo", TINY, tmp_path, 1, "make")
+    random, rounds = making.random, making.rounds
+    monkeypatch.setattr(making_module, "learning_sha256", lambda: "another learner")
+    assert (making.random, making.rounds != rounds) == (random, True)
+    monkeypatch.setattr(making_module, "episodes_sha256", lambda _: "another controller")
+    assert making.random != random
+
+
+def test_installing_replaces_all_models_of_the_robot_and_nothing_else(tmp_path: Path) -> None:
+    made, zoo = tmp_path / "made", tmp_path / "zoo"
+    files = {
+        made / "a/go/duration.onnx": "new",
+        zoo / "a/go/duration.onnx": "old",
+        zoo / "a/go/success.onnx": "old",
+        zoo / "a/refinement/benefit.card.json": "old",
+        zoo / "a/recipe.toml": "kept",
+        zoo / "b/go/duration.onnx": "kept",
+    }
+    for path, text in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    install(made, zoo, "a")
+    left = {path.relative_to(zoo).as_posix(): path.read_text() for path in zoo.rglob("*") if path.is_file()}
+    assert left == {"a/go/duration.onnx": "new", "a/recipe.toml": "kept", "b/go/duration.onnx": "kept"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "lacks `episodes`"),
+        ("episodes = 0", "a number of episodes is 0, expected at least 1"),
+        ("episodes = 'many'", "'episodes' is 'many', expected int"),
+        ("episodes = [", "not a recipe"),
+        ("episodes = 9\n[[rounds]]\nsource = 'guess'\nscenarios = []\nepisodes = 1", "'rounds.source' is 'guess'"),
+        ("episodes = 9\nepochs = 3", "unknown key 'epochs'"),
+    ],
+)
+def test_a_recipe_with_errors_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "recipe.toml"
+    path.write_text(text)
+    with pytest.raises(UsageError) as error:
+        read_recipe(path)
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_every_robot_that_ships_has_a_recipe_of_at_most_3000_random_episodes() -> None:
+    for robot in robot_names():
+        assert read_recipe(recipe_path(robot)).episodes <= 3000
+
+
+@pytest.mark.slow
+def test_the_same_recipe_gives_the_same_bits(tmp_path: Path) -> None:
+    (tmp_path / "recipe.toml").write_text("episodes = 40")
+    for name in ("one", "two"):
+        flags = ["--recipe", str(tmp_path / "recipe.toml"), "--zoo", str(tmp_path / name)]
+        assert main(["make-models", "powercube", *flags, "--work", str(tmp_path / f"work-{name}"), "--json"]) == 0
+    one, two = (
+        {
+            path.relative_to(tmp_path / name): path.read_bytes()
+            for path in (tmp_path / name).rglob("*")
+            if path.is_file()
+        }
+        for name in ("one", "two")
+    )
+    assert one == two
+    assert len(one) >= 4

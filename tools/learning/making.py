@@ -1,0 +1,153 @@
+"""Makes the models of a robot from seeds: random episodes, then rounds that the models trained so far choose.
+
+Equal source, libraries, recipe and platform give equal models, bit for bit. Every step is resumed where it stopped.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tailor.models.episodes.manifest import MANIFEST
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
+from tailor.tools.learning import gathering, run_gathering
+from tailor.tools.learning.recipe import Recipe, Round
+from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
+from tailor.tools.learning.training_run import train_models
+
+WHOLE = "whole"  # marker of a folder of models, written last
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Progress of one step: `done` of `total` parts."""
+
+    title: str
+    done: int
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class Making:
+    """Models to make.
+
+    Attributes:
+      robot: Name of the robot.
+      recipe: How its models are made.
+      work: Folder of the episodes and models of all steps.
+      jobs: Processes.
+      command: Command that makes the same models again, for their cards.
+    """
+
+    robot: str
+    recipe: Recipe
+    work: Path
+    jobs: int
+    command: str
+
+    @property
+    def domain(self) -> str:
+        """Name of the robot's domain."""
+        return gathering.domain_of(self.robot)
+
+    @property
+    def random(self) -> Path:
+        """Folder of the random episodes; other controllers, bodies or seeds have another one."""
+        return self.work / self.robot / f"random-{episodes_sha256(self.domain)[:12]}-{self.recipe.seed}"
+
+    @property
+    def rounds(self) -> Path:
+        """Folder of all that depends on learners and refinement, too."""
+        about = [runs_sha256(self.domain), episodes_sha256(self.domain), learning_sha256()]
+        key = json.dumps([*about, dataclasses.asdict(self.recipe)])
+        return self.work / self.robot / hashlib.sha256(key.encode()).hexdigest()[:12]
+
+    @property
+    def zoo(self) -> Path:
+        """Folder of the finished models."""
+        return self.rounds / "zoo"
+
+    @property
+    def data(self) -> list[Path]:
+        """Folders with the data sets of the random episodes and of each round."""
+        return [self.random, *(self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds)))]
+
+
+def make(making: Making) -> Iterator[Step]:
+    """Gather and train all that is missing; yields progress. The models are in `making.zoo` at the end.
+
+    Raises:
+      UsageError: An unknown scenario, learner or feature space, or too few episodes.
+    """
+    yield from _random_episodes(making)
+    for number, each in enumerate(making.recipe.rounds):
+        zoo = making.rounds / f"zoo-{number}"
+        yield from _trained(making, zoo, making.data[: number + 1])
+        yield from _round(making, number, each, zoo)
+    yield from _trained(making, making.zoo, making.data)
+
+
+def install(made: Path, zoo: Path, robot: str) -> None:
+    """Replace a robot's models in a zoo by those just made; its recipe and other robots' models stay."""
+    shutil.copytree(made / robot, zoo / robot, dirs_exist_ok=True)
+    kept = {path.relative_to(made) for path in (made / robot).rglob("*")}
+    for path in [*(zoo / robot).glob("*/*.onnx"), *(zoo / robot).glob("*/*.card.json")]:
+        if path.relative_to(zoo) not in kept:
+            path.unlink()  # of an action or kind that has no model any more, or a gate of other models
+
+
+def _random_episodes(making: Making) -> Iterator[Step]:
+    recipe = making.recipe
+    for action in run_gathering.modelled_actions(making.domain):
+        folder = making.random / action
+        spec = gathering.DataSetSpec(making.domain, action, recipe.episodes, recipe.seed, folder)
+        gathering.prepare(spec, resume=True)
+        missing = gathering.missing_parts(spec)
+        left = sum(min(gathering.PART, spec.episodes - first) for first in missing)
+        running = (count for count, *_ in gathering.gather(spec, missing, making.jobs))
+        yield from _counted(f"{action}: random episodes", running, spec.episodes - left, spec.episodes)
+
+
+def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
+    folder, seed = making.data[number + 1], making.recipe.seed + number
+    policy = run_gathering.Policy(making.domain, each.scenarios, each.episodes, seed, str(zoo), folder)
+    running = run_gathering.run_policy(policy, making.jobs)
+    yield from _counted(f"round {number + 1}: runs of {', '.join(each.scenarios)}", running, 0, len(policy.jobs))
+
+
+def _counted(title: str, running: Iterator[int], done: int, total: int) -> Iterator[Step]:
+    yield Step(title, done, total)
+    for count in running:
+        done += count
+        yield Step(title, done, total)
+
+
+def _trained(making: Making, zoo: Path, data: list[Path]) -> Iterator[Step]:
+    """Train as `tailor train` does, unless that has been done."""
+    title = f"training {zoo.name}"
+    if not (zoo / WHOLE).exists():
+        yield Step(title, 0, 1)
+        present = tuple(folder for folder in data if any(folder.glob(f"*/{MANIFEST}")))
+        if not present:
+            raise UsageError(f"{making.work}: no episodes to train on")
+        train_models(_request(making, zoo, present))
+        (zoo / WHOLE).touch()
+    yield Step(title, 1, 1)
+
+
+def _request(making: Making, zoo: Path, data: tuple[Path, ...]) -> TrainingRequest:
+    options = making.recipe.training
+    named: dict[str, Any] = {
+        "features": options.features or None,
+        "energy_features": options.energy_features or None,
+        "learner": options.learner or DEFAULT_LEARNER,
+        "failure_learner": options.failure_learner or DEFAULT_FAILURE_LEARNER,
+    }
+    return TrainingRequest(making.robot, zoo, data=data, seed=options.seed, command=making.command, **named)

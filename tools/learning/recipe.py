@@ -1,0 +1,100 @@
+"""Recipes: how the models of a robot are made from seeds, declared in `recipe.toml` beside them."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import models_folder
+from tailor.schemas.settings import from_table
+
+RECIPE = "recipe.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """Episodes that the models trained so far choose.
+
+    Attributes:
+      source: "on-policy": runs of the executive.
+      scenarios: Scenarios that are run.
+      episodes: Runs of each scenario.
+    """
+
+    source: Literal["on-policy"]
+    scenarios: tuple[str, ...]
+    episodes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Training:
+    """Options of `tailor train`; empty: its defaults."""
+
+    features: str = ""
+    energy_features: str = ""
+    learner: str = ""
+    failure_learner: str = ""
+    seed: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """Refinement gate that is trained with the models, see `tailor train-gate`."""
+
+    episodes: int
+    scenario: str = ""
+    seed: int = 700_000
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """How the models of a robot are made.
+
+    Attributes:
+      episodes: Random episodes of each action.
+      seed: Of all random draws of gathering.
+      rounds: Rounds that follow, each with the models trained on all episodes before it.
+      training: How each model is trained.
+      gate: The refinement gate; None: there is none.
+    """
+
+    episodes: int
+    seed: int = 7
+    rounds: tuple[Round, ...] = ()
+    training: Training = field(default_factory=Training)
+    gate: Gate | None = None
+
+
+def recipe_path(robot: str) -> Path:
+    """Path of the recipe of a robot's package.
+
+    Raises:
+      UsageError: There is no such robot.
+    """
+    return models_folder(robot) / robot / RECIPE
+
+
+def read_recipe(path: Path) -> Recipe:
+    """Read a recipe.
+
+    Raises:
+      UsageError: The file is missing, not TOML, or an entry is unknown, of a wrong type or not positive.
+    """
+    try:
+        table = tomllib.loads(path.read_text())
+    except OSError:
+        raise UsageError(
+            f"{path}: no recipe, expected one with at least `episodes = NUMBER` (docs/learning.md)"
+        ) from None
+    except tomllib.TOMLDecodeError as error:
+        raise UsageError(f"{path}: not a recipe ({error}), expected TOML") from None
+    if "episodes" not in table:
+        raise UsageError(f"{path}: lacks `episodes`, the number of random episodes of each action")
+    recipe = from_table(Recipe, table, str(path))
+    for count in (recipe.episodes, *(each.episodes for each in recipe.rounds)):
+        if count < 1:
+            raise UsageError(f"{path}: a number of episodes is {count}, expected at least 1")
+    return recipe

@@ -1,0 +1,79 @@
+"""Tells which models are stale: episodes of today's source are others than those that they were trained on.
+
+A changed file need not change an episode. Where the source differs, a card's first episodes are run again: if they end
+as they did, the model is still true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.models.cards.card import Card
+from tailor.models.episodes.sources import end_of, short_hashes
+from tailor.schemas.installed.episode_files import episode_files
+from tailor.tools.learning import gathering
+from tailor.tools.lockstep import action_run
+
+END_TOLERANCE = 1e-4  # seconds, metres, radians: other builds of the physics round otherwise
+NAMED = 4  # files that a message names
+SIMULATED = "lock-step"  # beginning of the source of episodes that were not recorded from a real robot
+
+
+def changed_files(card: Card) -> list[str]:
+    """Files that differ between the source of a card's episodes and today's; empty for a card without sources."""
+    today = short_hashes(episode_files(gathering.domain_of(card["robot"])))
+    episodes = card["episodes"]
+    stated = {source["source_sha256"] for source in episodes.get("sources", ()) if _is_simulated(source)}
+    recorded = [episodes["source_files"][sha256] for sha256 in stated if sha256 in episodes.get("source_files", {})]
+    names = {name for files in recorded for name in files.keys() | today.keys() if files.get(name) != today.get(name)}
+    return sorted(names)
+
+
+def is_stated(card: Card) -> bool:
+    """Whether a card states the source of its episodes; those of older versions and of other tools do not."""
+    return bool(card["episodes"].get("source_files"))
+
+
+def staleness(card: Card) -> str:
+    """What differs between a model's episodes and those of today's source; empty if nothing does, or if unknown."""
+    if card["kind"] == "benefit":  # a refinement gate belongs to its action models, which are checked
+        return ""
+    if not is_stated(card):
+        return "its card does not state the source of its episodes" if "source_sha256" in card["episodes"] else ""
+    changed = changed_files(card)
+    if not changed:
+        return ""
+    differing = differing_episodes(card)
+    return f"{_listed(changed)} changed since its episodes were simulated, and {differing}" if differing else ""
+
+
+def differing_episodes(card: Card) -> str:
+    """How the first episodes of a card differ today, in words; empty if they do not."""
+    probe = card["episodes"].get("probe")
+    if probe is None:
+        return "it holds no random episodes to compare"
+    name, action = gathering.domain_of(card["robot"]), card["action"]
+    domain = domains.load(name)
+    if action not in domain.actions:
+        return f"{name} has no action '{action}'"
+    spec = gathering.DataSetSpec(name, action, len(probe["ends"]), probe["seed"], Path(), probe["stream"])
+    body = action_run.new_body(domain)
+    for number, then in enumerate(probe["ends"]):
+        now = end_of(gathering.run_one(spec, domain, body, number))
+        if len(now) != len(then) or not np.allclose(now, then, rtol=0, atol=END_TOLERANCE):
+            return f"random episode {number} now takes {now[0]:.1f} s, {then[0]:.1f} s in the card, or ends elsewhere"
+    return ""
+
+
+def _is_simulated(source: Mapping[str, Any]) -> bool:
+    return str(source.get("source", "")).startswith(SIMULATED)
+
+
+def _listed(names: list[str]) -> str:
+    shown = ", ".join(names[:NAMED])
+    return shown if len(names) <= NAMED else f"{shown} and {len(names) - NAMED} more"
