@@ -3,10 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from tailor.models.episodes.episodes import DataSet, Episode
+import numpy as np
+from numpy.typing import NDArray
+
+
+class SomeEpisode(Protocol):
+    """What is needed of an Episode."""
+
+    @property
+    def number(self) -> int: ...
+    @property
+    def duration_s(self) -> float: ...
+    @property
+    def ticks(self) -> NDArray[np.float64]: ...
+
+
+class SomeData(Protocol):
+    """What is needed of a DataSet."""
+
+    @property
+    def manifest(self) -> Mapping[str, Any]: ...
+    @property
+    def episodes(self) -> Sequence[SomeEpisode]: ...
+    @property
+    def sha256(self) -> str: ...
+
 
 # entries of a manifest that determine the episodes, with "source": random, on-policy, active, recordings
 DRAW = ("source", "seed", "stream", "scenarios", "situations", "recordings", "models_sha256")
@@ -14,7 +37,7 @@ PROBE = 6  # first episodes of a data set that a card repeats, to be run again w
 SHORT = 12  # digits of a hash of a file in a card
 
 
-def source_of(data: DataSet) -> dict[str, Any]:
+def source_of(data: SomeData) -> dict[str, Any]:
     """Entry of one data set: robot, action, how its episodes were drawn, their number and hash, and its source."""
     manifest, count = data.manifest, len(data.episodes)
     return {
@@ -27,7 +50,7 @@ def source_of(data: DataSet) -> dict[str, Any]:
     }
 
 
-def source_files(sets: Sequence[DataSet]) -> dict[str, Mapping[str, str]]:
+def source_files(sets: Sequence[SomeData]) -> dict[str, Mapping[str, str]]:
     """Hashes by file of every source that episodes were simulated with, by `source_sha256`."""
     manifests = [data.manifest for data in sets]
     return {m["source_sha256"]: m["source_files"] for m in manifests if m.get("source_sha256") and "source_files" in m}
@@ -38,7 +61,7 @@ def short_hashes(files: Mapping[str, str]) -> dict[str, str]:
     return {name: sha256[:SHORT] for name, sha256 in files.items()}
 
 
-def probe_of(data: DataSet) -> dict[str, Any] | None:
+def probe_of(data: SomeData) -> dict[str, Any] | None:
     """How the first episodes of a data set with random arguments ended; None for other data sets."""
     drawn = data.manifest.get("seed") is not None and data.manifest.get("stream") is not None
     first = [episode for episode in data.episodes if episode.number < PROBE]
@@ -47,6 +70,6 @@ def probe_of(data: DataSet) -> dict[str, Any] | None:
     return {"seed": data.manifest["seed"], "stream": data.manifest["stream"], "ends": [end_of(each) for each in first]}
 
 
-def end_of(episode: Episode) -> list[float]:
+def end_of(episode: SomeEpisode) -> list[float]:
     """Duration in seconds, and the arguments with the believed state at the last tick."""
     return [round(float(value), 6) for value in (episode.duration_s, *episode.ticks[-1])]
