@@ -11,8 +11,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from tailor.executive.actions.dubins import DubinsPath, Pose2, shortest, straight_on
+from tailor.executive.actions.dubins import DubinsPath, Pieces, Pose2, shortest_pieces, straight_on
 from tailor.executive.actions.path_follower import BEND_RESERVE_M
+from tailor.executive.belief.angles import difference
 from tailor.executive.belief.planar_ekf import Pose
 
 
@@ -28,17 +29,8 @@ class DribblePath:
     radii_m: tuple[float, ...] = (0.36, 0.42, 0.48, 0.56, 0.65)  # of bends: the tighter, the slower
     run_in_m: float = 0.12  # the ball is to lie in the rail before the first bend
     run_out_m: float = 0.15
-    slants_rad: tuple[float, ...] = (
-        0.0,
-        0.15,
-        -0.15,
-        0.3,
-        -0.3,
-        0.45,
-        -0.45,
-        0.6,
-        -0.6,
-    )  # a path may end so far off the goal's heading
+    # a path may end so far off the goal's heading
+    slants_rad: tuple[float, ...] = (0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45, 0.6, -0.6)
     asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
     slant_s_per_rad: float = 2.0  # if it is quicker by as much
     aside_s_per_m: float = 4.0
@@ -56,19 +48,25 @@ class DribblePath:
     def quickest(self, pose: Pose, v: float, goal: tuple[float, ...]) -> DubinsPath:
         """The best path that can be driven from a pose at speed v (m/s) to a goal (x, y, phi, ...)."""
         start = straight_on((pose.x, pose.y, pose.phi), self.run_in_m)
-        radii = self._radii(v)
+        speeds = [(radius, self.bend_mps(radius)) for radius in self._radii(v)]
         best, best_s = None, math.inf
         for penalty_s, slant, aside in self._ends:
             end = self._end(goal, slant, aside)
-            if penalty_s + math.dist(start[:2], end[:2]) / self.v_max_mps > best_s:
-                continue  # no path there can be the best: most ends, and planning takes a tenth of an episode's time
-            for radius in radii:
-                path = shortest(start, end, radius)
-                cost_s = self.driving_s(path, v, goal[3]) + penalty_s
+            distance, turned = math.dist(start[:2], end[:2]), abs(difference(end[2], start[2]))
+            for radius, bend in speeds:
+                if penalty_s + self._least_s(distance, turned * radius, bend) >= best_s:
+                    continue  # no path there can be the best: planning would take a fifth of an episode's time
+                pieces = shortest_pieces(start, end, radius)
+                cost_s = self.driving_s(pieces, bend, v, goal[3]) + penalty_s
                 if cost_s < best_s:
-                    best, best_s = path, cost_s
+                    best, best_s = (radius, pieces), cost_s
         assert best is not None  # the first end has a path
-        return best.between(self.run_in_m, self.run_out_m)
+        return DubinsPath(start, *best).between(self.run_in_m, self.run_out_m)
+
+    def _least_s(self, distance: float, bend_m: float, bend: float) -> float:
+        """Lower bound of `driving_s` for paths of at least `distance` with at least `bend_m` (m) in bends."""
+        straight = max(0.0, distance - bend_m) / max(bend, self.v_max_mps)
+        return (bend_m + BEND_RESERVE_M) / bend + straight
 
     def _radii(self, v: float) -> list[float]:
         """The radii (m) of bends that a robot at speed v (m/s) can brake for; if none, the tightest wider one."""
@@ -79,10 +77,9 @@ class DribblePath:
             wider *= 1.05
         return radii or [wider]
 
-    def driving_s(self, path: DubinsPath, v: float, vg: float) -> float:
-        """Approximate time to drive a path, s, from speed v to vg (m/s)."""
-        bend = self.bend_mps(path.radius)
-        (_, first), (turn, middle), (_, last) = path.pieces
+    def driving_s(self, pieces: Pieces, bend: float, v: float, vg: float) -> float:
+        """Approximate time to drive a path, s, with speed `bend` in bends, from speed v to vg (m/s)."""
+        (_, first), (turn, middle), (_, last) = pieces
         if turn:
             return (first + middle + last + BEND_RESERVE_M) / bend
         straight = self._straight_s(middle, bend if first else max(v, 0.1), bend if last else vg)

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 
 Pose2 = tuple[float, float, float]  # x m, y m, heading rad
 Piece = tuple[int, float]  # turn, length m
+Pieces = tuple[Piece, Piece, Piece]
+Centres = dict[int, tuple[float, float]]  # of a circle for each turn, m
 SAME_M = 1e-9  # circles with centres so near to each other are one
 
 
@@ -56,14 +58,23 @@ def straight_on(pose: Pose2, distance_m: float) -> Pose2:
 
 def shortest(start: Pose2, goal: Pose2, radius: float) -> DubinsPath:
     """The shortest path of curvature at most 1/radius from one pose to the other."""
-    best: tuple[Piece, Piece, Piece] | None = None
+    return DubinsPath(start, radius, shortest_pieces(start, goal, radius))
+
+
+def shortest_pieces(start: Pose2, goal: Pose2, radius: float) -> Pieces:
+    """The pieces of the shortest path: all that a comparison of many needs."""
+    first, last = _centres(start, radius), _centres(goal, radius)
+    best: Pieces | None = None
     best_length = math.inf
-    for candidate in (*_with_straight(start, goal, radius), *_with_arcs(start, goal, radius)):
+    for candidate in (
+        *_with_straight(start[2], goal[2], first, last, radius),
+        *_with_arcs(start[2], goal[2], first, last, radius),
+    ):
         length = candidate[0][1] + candidate[1][1] + candidate[2][1]
         if length < best_length:
             best, best_length = candidate, length
     assert best is not None  # LSL and RSR exist for every pair of poses
-    return DubinsPath(start, radius, best)
+    return best
 
 
 def _along(pose: Pose2, turn: int, s: float, radius: float) -> Pose2:
@@ -78,10 +89,11 @@ def _along(pose: Pose2, turn: int, s: float, radius: float) -> Pose2:
     )
 
 
-def _centre(pose: Pose2, turn: int, radius: float) -> tuple[float, float]:
-    """Of the circle that a turn from this pose follows."""
+def _centres(pose: Pose2, radius: float) -> Centres:
+    """Of the circles that a turn to the left and one to the right follow from this pose."""
     x, y, heading = pose
-    return x - turn * radius * math.sin(heading), y + turn * radius * math.cos(heading)
+    across, along = radius * math.sin(heading), radius * math.cos(heading)
+    return {1: (x - across, y + along), -1: (x + across, y - along)}
 
 
 def _arc(turn: int, start: float, end: float, radius: float) -> Piece:
@@ -90,38 +102,36 @@ def _arc(turn: int, start: float, end: float, radius: float) -> Piece:
     return turn, radius * (angle if angle < math.tau - 1e-9 else 0.0)
 
 
-def _with_straight(start: Pose2, goal: Pose2, radius: float) -> list[tuple[Piece, Piece, Piece]]:
+def _with_straight(leave: float, arrive: float, firsts: Centres, lasts: Centres, radius: float) -> list[Pieces]:
     """LSL, RSR, LSR, RSL: the line touches the first and the last circle."""
-    found = []
+    found: list[Pieces] = []
     for first, last in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
-        ax, ay = _centre(start, first, radius)
-        bx, by = _centre(goal, last, radius)
+        (ax, ay), (bx, by) = firsts[first], lasts[last]
         distance = math.hypot(bx - ax, by - ay)
-        direction = math.atan2(by - ay, bx - ax) if distance > SAME_M else start[2]
+        direction = math.atan2(by - ay, bx - ax) if distance > SAME_M else leave
         heading, straight = direction, distance
         if first != last:
             if distance < 2 * radius:
                 continue
             straight = math.sqrt(distance * distance - 4 * radius * radius)
             heading = direction + first * math.atan2(2 * radius, straight)
-        found.append((_arc(first, start[2], heading, radius), (0, straight), _arc(last, heading, goal[2], radius)))
+        found.append((_arc(first, leave, heading, radius), (0, straight), _arc(last, heading, arrive, radius)))
     return found
 
 
-def _with_arcs(start: Pose2, goal: Pose2, radius: float) -> list[tuple[Piece, Piece, Piece]]:
+def _with_arcs(leave: float, arrive: float, firsts: Centres, lasts: Centres, radius: float) -> list[Pieces]:
     """LRL, RLR: the middle circle touches both others."""
-    found = []
+    found: list[Pieces] = []
     for turn in (1, -1):
-        ax, ay = _centre(start, turn, radius)
-        bx, by = _centre(goal, turn, radius)
+        (ax, ay), (bx, by) = firsts[turn], lasts[turn]
         distance, direction = math.hypot(bx - ax, by - ay), math.atan2(by - ay, bx - ax)
         if distance > 4 * radius:
             continue
         aside = math.acos(distance / (4 * radius))
         for side in (1, -1):
             # from centre to centre: direction ± aside, then the mirrored way; headings are square to that
-            leave = direction + side * aside + turn * math.pi / 2
-            enter = direction - side * aside - turn * math.pi / 2
-            middle = _arc(-turn, leave, enter, radius)
-            found.append((_arc(turn, start[2], leave, radius), middle, _arc(turn, enter, goal[2], radius)))
+            into = direction + side * aside + turn * math.pi / 2
+            out = direction - side * aside - turn * math.pi / 2
+            middle = _arc(-turn, into, out, radius)
+            found.append((_arc(turn, leave, into, radius), middle, _arc(turn, out, arrive, radius)))
     return found
