@@ -20,7 +20,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
-from tailor.models.episodes.sources import probe_of, source_files, source_of
+from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -166,12 +166,13 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
         if other.names != first.names:
             raise UsageError(f"data sets with arguments {first.names} and {other.names} do not mix")
     episodes = [replace(e, number=k) for k, e in enumerate(e for each in sets for e in each.episodes)]
-    sources = [source_of(each) for each in sets]
+    sources = [source_of(each.manifest, len(each.episodes), each.sha256) for each in sets]
+    ends = [end_of(episode.duration_s, episode.ticks) for episode in first.episodes if episode.number < PROBE]
     about = {
         "on_policy": sum(source["on_policy"] for source in sources),
         "sources": sources,
-        "source_files": source_files(sets),
-        "probe": probe_of(first),
+        "source_files": source_files([each.manifest for each in sets]),
+        "probe": probe_of(first.manifest, ends),
     }
     digest = hashlib.sha256("".join(each.sha256 for each in sets).encode()).hexdigest() if others else first.sha256
     return DataSet({**first.manifest, **about}, tuple(episodes), digest)

@@ -64,7 +64,8 @@ def differing_episodes(card: Card) -> str:
     spec = gathering.DataSetSpec(name, action, len(probe["ends"]), probe["seed"], Path(), probe["stream"])
     body = action_run.new_body(domain)
     for number, then in enumerate(probe["ends"]):
-        now = end_of(gathering.run_one(spec, domain, body, number))
+        episode = gathering.run_one(spec, domain, body, number)
+        now = end_of(episode.duration_s, episode.ticks)
         if len(now) != len(then) or not np.allclose(now, then, rtol=0, atol=END_TOLERANCE):
             return f"random episode {number} now takes {now[0]:.1f} s, {then[0]:.1f} s in the card, or ends elsewhere"
     return ""
