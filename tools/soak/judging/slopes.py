@@ -24,6 +24,7 @@ class Growth:
     slope: float | None  # MB/h after the settling time; None: it did not live long enough
     low: float = 0.0  # 95 % confidence interval
     high: float = 0.0
+    by_minute_mb: tuple[float, ...] = ()  # medians of each minute, from the start: steps look other than a leak
 
     @property
     def flat(self) -> bool:
@@ -41,13 +42,18 @@ def growth(samples: Sequence[tuple[float, float]]) -> Growth:
     measured: tuple[float | None, float, float] = (None, 0.0, 0.0)
     if settled and last_s - settled[0][0] >= LEAST_S:
         measured = _theil_sen(settled)
-    return Growth(samples[0][1], samples[-1][1], (last_s - begin_s) / 60, *measured)
+    sizes = tuple(round(mb, 2) for _, mb in _by_minute(samples))
+    return Growth(samples[0][1], samples[-1][1], (last_s - begin_s) / 60, *measured, sizes)
 
 
 def _theil_sen(samples: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
     """Slope in MB/h, and the bounds of its 95 % confidence interval."""
-    minutes = [list(rows) for _, rows in groupby(samples, key=lambda sample: sample[0] // 60)]
-    hours = [float(np.median([at for at, _ in rows])) / 3600 for rows in minutes]
-    sizes = [float(np.median([mb for _, mb in rows])) for rows in minutes]
+    hours, sizes = zip(*((at_s / 3600, mb) for at_s, mb in _by_minute(samples)), strict=True)
     result = stats.theilslopes(sizes, hours)
     return float(result[0]), float(result[2]), float(result[3])
+
+
+def _by_minute(samples: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Medians (seconds, MB) of each minute."""
+    minutes = (zip(*rows, strict=True) for _, rows in groupby(samples, key=lambda sample: sample[0] // 60))
+    return [(float(np.median(times_s)), float(np.median(sizes_mb))) for times_s, sizes_mb in minutes]

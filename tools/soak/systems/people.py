@@ -75,6 +75,10 @@ class People:
         elif self._goal_ns and now_ns > self._goal_ns and view.driver.mode == "armed":
             self._set_goal()
 
+    def change_goal(self) -> None:
+        """Set the next goal although the last one is pursued."""
+        self._set_goal()
+
     def _set_goal(self) -> None:
         accepted, _ = self._system.call("exec/goal", self._tasks.goal())
         if accepted:

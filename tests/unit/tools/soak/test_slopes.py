@@ -41,4 +41,4 @@ def test_a_process_that_did_not_live_long_enough_has_no_slope():
 
 
 def test_first_and_last_are_kept():
-    assert growth([(10.0, 3.0), (70.0, 4.0)]) == Growth(3.0, 4.0, 1.0, None)
+    assert growth([(10.0, 3.0), (70.0, 4.0)]) == Growth(3.0, 4.0, 1.0, None, by_minute_mb=(3.0, 4.0))
