@@ -149,10 +149,14 @@ def shown(sender: str) -> str:
 
 
 def command_values(message: Message, axes: Sequence[str]) -> tuple[float, ...]:
-    """The set-points of a command, in the order of the driver's axes; empty, thus refused, for any other message."""
+    """The set-points of a command, in the order of the driver's axes; empty, thus refused, for any other message.
+
+    A message of a robot's own package has a field for each axis, of its name.
+    """
     if isinstance(message, VelocityCommand):
         return (message.v, message.omega)
     if isinstance(message, JointCommand) and sorted(message.names) == sorted(axes):
         velocities = dict(zip(message.names, message.velocities, strict=False))
         return tuple(velocities[axis] for axis in axes if axis in velocities)
-    return ()
+    values = [getattr(message, axis, None) for axis in axes]
+    return tuple(value for value in values if isinstance(value, float)) if None not in values else ()

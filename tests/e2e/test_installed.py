@@ -3,12 +3,8 @@
 Nothing is downloaded: the fresh environment sees the third-party packages of the test environment through a .pth file.
 """
 
-import os
-import shutil
 import subprocess
-import sys
 import tarfile
-import venv
 import zipfile
 from pathlib import Path
 
@@ -17,33 +13,19 @@ import pytest
 import tailor
 from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
+from tests.support.robots.fresh_environment import LINKS, Environment, built, copied_source
 
-LINKS = ("executive", "models", "robots", "runtime", "schemas", "simnodes", "tools")
 DATA_KINDS = {".template", ".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
-BUILD = "import sys; from setuptools import build_meta; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info")
 HOSTILE = 'raise SystemExit("a module of the working folder was imported")\n'
 
 pytestmark = pytest.mark.xdist_group("live")  # one worker: the wheel is built once, and live runs follow one another
 
 
-def built(kind, source, out):
-    """The file that one of setuptools' build functions makes of a source tree."""
-    done = subprocess.run([sys.executable, "-c", BUILD, kind, out], cwd=source, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return out / done.stdout.split()[-1]
-
-
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
     """A copy of the sources, so that the checkout gets no build folder."""
-    copy = tmp_path_factory.mktemp("source")
-    for name in (*LINKS, "src"):
-        shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=LEFT_OUT)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, copy)
-    return copy
+    return copied_source(tmp_path_factory.mktemp("source"))
 
 
 @pytest.fixture(scope="module")
@@ -55,15 +37,7 @@ def wheel(source, tmp_path_factory):
 @pytest.fixture(scope="module")
 def installed(wheel, tmp_path_factory):
     """The `tailor` command of a fresh environment that has the wheel."""
-    folder = tmp_path_factory.mktemp("environment")
-    venv.create(folder, with_pip=False)
-    python = folder / "bin" / "python"
-    install = ["install", "--quiet", "--no-deps", "--no-index", "--no-compile", "--disable-pip-version-check", wheel]
-    subprocess.run([sys.executable, "-m", "pip", "--python", python, *install], check=True)
-    [site] = folder.glob("lib/python*/site-packages")
-    others = [entry for entry in sys.path if entry.endswith(("site-packages", "dist-packages"))]
-    (site / "third_party.pth").write_text("".join(f"{entry}\n" for entry in others))
-    return folder / "bin" / "tailor"
+    return Environment.made(tmp_path_factory.mktemp("environment"), wheel).program("tailor")
 
 
 @pytest.fixture
@@ -79,11 +53,10 @@ def hostile_folder(tmp_path):
 @pytest.fixture
 def call(installed, hostile_folder):
     """Calls an installed command in the hostile folder and returns the completed process."""
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    environment = Environment(installed.parents[1])
 
     def completed(*arguments):
-        command = [installed, *map(str, arguments)]
-        return subprocess.run(command, cwd=hostile_folder, capture_output=True, text=True, timeout=120, env=environment)
+        return environment.call(hostile_folder, "tailor", *arguments)
 
     return completed
 

@@ -1,0 +1,5 @@
+(define (problem rounds)
+  (:domain warehouse)
+  (:objects dock bay1 bay2 floor top)
+  (:init (parked dock) (forks floor) (rack floor top) (lane dock bay1) (lane bay1 bay2))
+  (:goal (and (raised top) (served bay1) (served bay2))))

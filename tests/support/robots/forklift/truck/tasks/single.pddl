@@ -1,0 +1,5 @@
+(define (problem single)
+  (:domain warehouse)
+  (:objects dock bay1 floor top)
+  (:init (parked dock) (forks floor) (rack floor top) (lane dock bay1))
+  (:goal (and (raised top) (served bay1))))
