@@ -18,13 +18,13 @@ def known_robot(name: str, kind: str, into: Path) -> Iterator[Path]:
     """The folder of a new robot; commands in this process know it meanwhile."""
     folder, package = write_robot(name, kind, into), package_of(name)
     point, declared = EntryPoint(name, f"{package}:SPEC", discovery.GROUP), discovery._declared
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(folder))
-        patch.setattr(discovery, "_declared", lambda: iter([*declared(), point]))
-        discovery.packages.cache_clear()
-        try:
+    try:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.syspath_prepend(str(folder))
+            patch.setattr(discovery, "_declared", lambda: iter([*declared(), point]))
+            discovery.packages.cache_clear()
             yield folder
-        finally:
-            for module in [each for each in sys.modules if each.split(".")[0] == package]:
-                del sys.modules[module]
-    discovery.packages.cache_clear()
+    finally:
+        discovery.packages.cache_clear()
+        for module in [each for each in sys.modules if each.split(".")[0] == package]:
+            del sys.modules[module]
