@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from tailor.models.features.intervals import ARGUMENT_ERROR, Span, direction, length, magnitude, unsigned
+from tailor.models.features.lifted_intervals import joints_lifted
 from tailor.models.features.obstacle_intervals import one_obstacle
 from tailor.models.features.sight_intervals import Case, Spans, may_lie_in_half, sight, wrapped
 
@@ -76,4 +77,5 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "one-obstacle": one_obstacle,
     "joints": _joints,
     "joints-relative": _joints_relative,
+    "joints-lifted": joints_lifted,
 }

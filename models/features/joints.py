@@ -40,7 +40,7 @@ def _joints_lifted(rows: Rows, ops: Operations) -> Rows:
     along, across = ca * va + cb * vb, ca * vb - cb * va
     along_g, across_g = ca * vag + cb * vbg, ca * vbg - cb * vag
     # a mirrored pan is the same motion: the sign of what is across changes with it
-    mirrored = ops.where(da < 0.0, -across, across), ops.where(da < 0.0, -across_g, across_g)
+    mirrored = tuple(ops.where(da < 0.0, row * -1.0, row) for row in (across, across_g))
     return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1])
 
 
@@ -51,10 +51,10 @@ joints_relative = FeatureSpace(  # for quantities that depend on the joint posit
     quantities("a:rad b:rad da:rad db:rad wa:rad/s wb:rad/s wag:rad/s wbg:rad/s"),
     _joints_relative,
 )
-joints_lifted = FeatureSpace(  # for durations that depend on gravity: invariant to turning and mirroring the pan
+joints_lifted = FeatureSpace(  # for what depends on gravity at the lift: invariant to turning and mirroring the pan
     "joints-lifted",
     JOINTS,
     quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s"),
     _joints_lifted,
 )
-SPACES = (joints, joints_relative, joints_lifted)
+SPACES = (joints_lifted, joints, joints_relative)  # the first is the default

@@ -22,7 +22,9 @@ from tests.support.random_trees import Trees
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
 SHAPE = (1, 1, 1)
 LEARNED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
-spaces = st.sampled_from(["direct", "relative", "projective", "projective-turn", "joints", "one-obstacle"])
+spaces = st.sampled_from(
+    ["direct", "relative", "projective", "projective-turn", "joints", "joints-lifted", "one-obstacle"]
+)
 seeds = st.integers(0, 2**32 - 1)
 
 
@@ -30,7 +32,7 @@ def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A box of arguments: each wide, narrow or a point; often with the same place at both ends, or at rest."""
     scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in feature_space(space).arguments])
     lower = rng.uniform(-0.5, 0.5, len(scale)) * scale
-    if space != "joints":
+    if not space.startswith("joints"):
         lower[[3, 7]] = rng.uniform(0, 0.5, 2)
     if rng.random() < 0.2:
         lower[4:8] = lower[:4]
@@ -65,7 +67,9 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
 
 @settings(max_examples=150, deadline=None)
 @given(
-    st.sampled_from(["relative", "projective", "projective-turn", "joints", "one-obstacle"]), seeds, st.integers(1, 4)
+    st.sampled_from(["relative", "projective", "projective-turn", "joints", "joints-lifted", "one-obstacle"]),
+    seeds,
+    st.integers(1, 4),
 )
 def test_model_says_nothing_outside_its_bounds(space, seed, trees):
     rng = np.random.default_rng(seed)

@@ -21,6 +21,7 @@ RANGES = {  # where the features of the spaces lie, for thresholds to fall withi
         *[(-3, 6), (-3, 3), (-0.5, 3), (-0.5, 5), (-0.5, 5), (0, np.pi), (0, np.pi)],
     ],
     "joints": [(0, 1), (0, 1), (0, 3), (-np.pi, np.pi), (-np.pi, np.pi)],
+    "joints-lifted": [(-1, 1), (0, 2), (-2, 2), (0, 3), (-1, 1), (-1, 1), (-1, 1), (-1, 1)],
 }
 
 

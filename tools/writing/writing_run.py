@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.core.context import Settings, make_context
+from tailor.executive.domains.arm.letters import Point
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
@@ -46,9 +47,24 @@ class RecordedBody(PowerCubeBody):
         return readings
 
 
-def write(text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody) -> WritingTrack:
-    """Write capitals by a hand; the same seed gives the same letters, start and noise to every hand."""
+def write(
+    text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody, velocities: Sequence[Point] = ()
+) -> WritingTrack:
+    """Write capitals; the same seed gives the same letters, start and noise in every mode.
+
+    Args:
+      text: Capitals.
+      mode: See `WritingMode`.
+      models: Action models of the arm.
+      seed: Of size, start and noise.
+      body: Reset here.
+      velocities: Of the joints at the first waypoints, rad/s, in place of the executive's choice.
+    """
     scenario, start = domains.seeded_scenario("arm", f"{'stops' if mode.stops else 'word'}-{text}", seed)
+    places = {label: dict(place) for label, place in scenario.places.items()}
+    for place, (wa, wb) in zip(places.values(), velocities, strict=False):
+        place |= {"wa": wa, "wb": wb}
+    scenario = replace(scenario, places=places)
     # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(mode.refinement, certify_checks=0))
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)

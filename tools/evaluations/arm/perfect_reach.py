@@ -69,5 +69,7 @@ def _exceeds(way: Array, v0: Array, v1: Array, duration_s: Array) -> NDArray[np.
     turning = np.abs(v0 + 2 * b * turn_s + 3 * c * turn_s**2)
     fastest = np.maximum(turning, np.maximum(np.abs(v0), np.abs(v1))).max(axis=1)
     controller: Any = REACH.controller
-    too_much: NDArray[np.bool_] = largest > controller.acceleration_max_radps2
-    return too_much | (fastest > controller.velocity_max_radps)
+    too_much: NDArray[np.bool_] = (largest > controller.acceleration_max_radps2) | (
+        fastest > controller.velocity_max_radps
+    )
+    return too_much

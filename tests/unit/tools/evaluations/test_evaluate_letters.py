@@ -1,10 +1,17 @@
 """The letters' evaluation: its oracle knows what a reach takes, and its rows are over letters."""
 
+from dataclasses import replace
+
 import numpy as np
+from pytest import approx
 
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import REACH
 from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.tools.evaluations.arm import letters
+from tailor.tools.evaluations.arm.letter_figures import Figures
+from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _total_s
 from tailor.tools.evaluations.arm.perfect_reach import FRICTION, PerfectReach
 
 
@@ -22,3 +29,44 @@ def test_the_oracle_predicts_what_the_controller_plans():
     assert np.abs(predicted - means).mean() < 0.04  # whole periods are planned
     assert (np.abs(predicted - means) < 0.11).mean() > 0.95  # two durations that cost alike may be told apart otherwise
     assert not spread.any()
+
+
+def figures(duration_s):
+    return Figures(True, duration_s, 1.0, 5.0, 1.0, 1.0, 0.0)
+
+
+def found(n_letters=6, n_seeds=3):
+    """Refined letters take 0.9 of greedy, 0.8 of stopping, 0.95 of perfect greedy ones; letters differ, seeds not."""
+    shares = {"stopping": 1 / 0.8, "greedy": 1 / 0.9, "refined": 1.0, "perfect greedy": 1 / 0.95}
+    keys = [(letter, seed) for seed in range(n_seeds) for letter in "ABCDEFGHIJ"[:n_letters]]
+    rng = np.random.default_rng(0)
+    off = {mode: dict(zip("ABCDEFGHIJ", rng.normal(0.0, 0.02, 10).tolist(), strict=True)) for mode in shares}
+    return {mode: {key: figures(5.0 * (share + off[mode][key[0]])) for key in keys} for mode, share in shares.items()}
+
+
+def test_a_row_compares_with_stopping_learned_greedy_and_perfect_greedy():
+    refined = next(row for row in letters.rows_of(found()) if row["mode"] == "refined")
+    assert (refined["n"], refined["letters"]) == (18, 6)
+    for column, gain_pct in (("improvement", 10), ("against_stopping", 20), ("against_perfect_greedy", 5)):
+        assert abs(refined[f"{column}_pct"] - gain_pct) < 2
+    assert refined["against_stopping_ci95"][0] > 0
+
+
+def test_more_seeds_of_equal_letters_make_no_interval_narrower():
+    few, many = (next(row for row in letters.rows_of(found(n_seeds=n)) if row["mode"] == "refined") for n in (1, 10))
+    assert np.ptp(many["ci95"]) == approx(np.ptp(few["ci95"]))
+
+
+def test_a_letter_that_one_mode_failed_counts_for_none():
+    some = found()
+    some["greedy"]["A", 0] = replace(figures(1.0), achieved=False)
+    rows = letters.rows_of(some)
+    assert {row["n"] for row in rows} == {17}
+    assert [row["failed"] for row in rows if row["mode"] == "greedy"] == [1]
+
+
+def test_perfect_greedy_is_at_least_as_fast_to_the_first_waypoint_as_stopping_there():
+    body, leg = PowerCubeBody(), Leg((-0.8, 0.0, -0.6, 0.0), (-0.2, 0.1), 0.6, (7, 0))
+    chosen = _best(body, leg, [(0.0, 0.0), (0.6, 0.3), (-0.6, -0.3)])
+    assert chosen == (0.6, 0.3)
+    assert _total_s(body, leg, chosen, np.inf) < _total_s(body, leg, (0.0, 0.0), np.inf)

@@ -1,0 +1,93 @@
+"""Writes letters in the modes of the evaluation, and measures them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from joblib import Parallel, delayed
+from rich.progress import track
+
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.models.runtime import load_robot
+from tailor.tools.evaluations.arm.perfect_greedy import greedy_velocities
+from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
+from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
+from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_track import WritingTrack
+
+ALL_AHEAD = 9  # more actions than a letter has
+BASE = RefinementSettings()
+GREEDY = replace(BASE, horizon=1)
+STOPPING = WritingMode("stopping", BASE, stops=True)
+LEARNED_GREEDY = WritingMode("greedy", GREEDY)
+REFINED = WritingMode("refined", BASE)
+PERFECT_GREEDY = WritingMode("perfect greedy", GREEDY)  # its velocities are given
+LEARNED = (STOPPING, LEARNED_GREEDY, REFINED)
+ORACLES = (
+    WritingMode("oracle, greedy", GREEDY),
+    WritingMode("oracle, refined", BASE),
+    WritingMode("oracle, all ahead", replace(BASE, horizon=ALL_AHEAD)),
+)
+Key = tuple[str, int]  # letter, seed
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Figures of one letter in one mode."""
+
+    achieved: bool
+    duration_s: float
+    waypoint_mrad: float  # the largest of the letter
+    peak_current_a: float
+    rms_jerk: float
+    roughness: float
+    bias_s: float  # predicted minus actual, a reach
+
+
+Found = Mapping[str, Mapping[Key, Figures]]  # by mode
+
+
+def measure_letters(modes: Sequence[WritingMode], keys: Sequence[Key], zoo: str, jobs: int) -> Found:
+    """Write every letter in every mode; equal keys have equal starts and noise."""
+    wanted = [(mode, key) for key in keys for mode in modes]
+    found: dict[str, dict[Key, Figures]] = {mode.name: {} for mode in modes}
+    for (mode, key), figures in zip(wanted, _measured(wanted, zoo, jobs), strict=True):
+        found[mode.name][key] = figures
+    return found
+
+
+def _measured(wanted: Sequence[tuple[WritingMode, Key]], zoo: str, jobs: int) -> Iterator[Figures]:
+    done = Parallel(n_jobs=jobs, return_as="generator")(delayed(_figures)(mode, key, zoo) for mode, key in wanted)
+    yield from track(done, "letters", total=len(wanted), transient=True)
+
+
+def _figures(mode: WritingMode, key: Key, zoo: str) -> Figures:
+    written = write_letter(mode, *key, zoo)
+    actual_s = np.diff(written.arrivals_s, prepend=0.0)
+    return Figures(
+        written.result == "achieved",
+        written.duration_s,
+        1e3 * float(waypoint_errors_rad(written).max()),
+        written.peak_current_a,
+        rms_jerk(written),
+        roughness(written),
+        float((written.predicted_s - actual_s).mean() + 0.1),  # an action ends one period before its waypoint
+    )
+
+
+def write_letter(mode: WritingMode, letter: str, seed: int, zoo: str) -> WritingTrack:
+    """One letter in one mode."""
+    models = Models({"reach/duration": PerfectReach()}, {}) if mode in ORACLES else _models(zoo)
+    velocities = greedy_velocities(letter, seed) if mode == PERFECT_GREEDY else ()
+    return write(letter, mode, models, seed, RecordedBody(), velocities)
+
+
+@lru_cache(maxsize=2)
+def _models(zoo: str) -> Models:
+    """Loaded once a process."""
+    return Models(*load_robot(RecordedBody.robot, Path(zoo) if zoo else None))
