@@ -18,20 +18,13 @@ from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
 from tailor.tools.learning import gathering, run_gathering
+from tailor.tools.learning.active_gathering import Active, run_active
 from tailor.tools.learning.recipe import Recipe, Round
+from tailor.tools.learning.steps import Step, counted
 from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
 from tailor.tools.learning.training_run import train_models
 
 WHOLE = "whole"  # marker of a folder of models, written last
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """Progress of one step: `done` of `total` parts."""
-
-    title: str
-    done: int
-    total: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,21 +105,19 @@ def _random_episodes(making: Making) -> Iterator[Step]:
         missing = gathering.missing_parts(spec)
         left = sum(min(gathering.PART, spec.episodes - first) for first in missing)
         running = (count for count, *_ in gathering.gather(spec, missing, making.jobs))
-        yield from _counted(f"{action}: random episodes", running, spec.episodes - left, spec.episodes)
+        yield from counted(f"{action}: random episodes", running, spec.episodes, spec.episodes - left)
 
 
 def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
-    folder, seed = making.data[number + 1], making.recipe.seed + number
+    folder, seed, title = making.data[number + 1], making.recipe.seed + number, f"round {number + 1}"
+    if each.source == "active":
+        active = Active(making.domain, each.scenarios, each.episodes, each.pool, seed, str(zoo), folder)
+        for step in run_active(active, making.jobs):
+            yield Step(f"{title}: {step.title}", step.done, step.total)
+        return
     policy = run_gathering.Policy(making.domain, each.scenarios, each.episodes, seed, str(zoo), folder)
     running = run_gathering.run_policy(policy, making.jobs)
-    yield from _counted(f"round {number + 1}: runs of {', '.join(each.scenarios)}", running, 0, len(policy.jobs))
-
-
-def _counted(title: str, running: Iterator[int], done: int, total: int) -> Iterator[Step]:
-    yield Step(title, done, total)
-    for count in running:
-        done += count
-        yield Step(title, done, total)
+    yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
 
 
 def _trained(making: Making, zoo: Path, data: list[Path]) -> Iterator[Step]:

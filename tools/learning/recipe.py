@@ -19,14 +19,16 @@ class Round:
     """Episodes that the models trained so far choose.
 
     Attributes:
-      source: "on-policy": runs of the executive.
-      scenarios: Scenarios that are run.
-      episodes: Runs of each scenario.
+      source: "on-policy": runs of the executive; "active": its choices on which the models disagree most.
+      scenarios: Scenarios that are run, or from which situations are drawn.
+      episodes: Runs of each scenario; of an active round episodes of each action.
+      pool: Of an active round: situations that are drawn for each episode.
     """
 
-    source: Literal["on-policy"]
+    source: Literal["on-policy", "active"]
     scenarios: tuple[str, ...]
     episodes: int
+    pool: int = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,7 @@ def read_recipe(path: Path) -> Recipe:
     if "episodes" not in table:
         raise UsageError(f"{path}: lacks `episodes`, the number of random episodes of each action")
     recipe = from_table(Recipe, table, str(path))
-    for count in (recipe.episodes, *(each.episodes for each in recipe.rounds)):
+    for count in (recipe.episodes, *(number for each in recipe.rounds for number in (each.episodes, each.pool))):
         if count < 1:
             raise UsageError(f"{path}: a number of episodes is {count}, expected at least 1")
     return recipe

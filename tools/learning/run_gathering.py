@@ -75,7 +75,7 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
 
 def models_hash(robot: str, zoo: str) -> str:
     """SHA-256 over the models that choose the arguments: other models give other episodes."""
-    loaded: Any = _models(robot, zoo)
+    loaded: Any = cached_models(robot, zoo)
     models = {**loaded.durations, **loaded.successes}
     entries = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
     return hashlib.sha256("\n".join(entries).encode()).hexdigest()
@@ -193,11 +193,11 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
     domain = domains.load(policy.domain)
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     settings = Settings(seed=seed, refinement=UNPROVEN)
-    context = make_context(domain, drawn, _models(domain.robot, policy.zoo), settings, SENDER)
+    context = make_context(domain, drawn, cached_models(domain.robot, policy.zoo), settings, SENDER)
     return EpisodeExtractor(domain).read(run_lockstep(context, action_run.new_body(domain), start, seed).messages)
 
 
 @lru_cache(maxsize=2)
-def _models(robot: str, zoo: str) -> Models:
+def cached_models(robot: str, zoo: str) -> Models:
     """Models, loaded once per process."""
     return load_models(robot, zoo)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
@@ -18,15 +18,14 @@ from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
-
-if TYPE_CHECKING:
-    from tailor.tools.learning.run_gathering import Policy
+from tailor.tools.learning.steps import Step, counted, show
 
 EPILOG = """\
 examples:
   tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
   tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
+  tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
 
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
@@ -49,9 +48,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--on-policy", nargs="+", metavar="SCENARIO", help="run scenarios with the current models instead"
     )
     other.add_argument(
+        "--active",
+        nargs="+",
+        metavar="SCENARIO",
+        help="run the refined choices on which the current models disagree most",
+    )
+    other.add_argument(
         "--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="extract recorded runs instead"
     )
-    parser.add_argument("--zoo", default="", help="models for --on-policy (default: the ones that ship)")
+    parser.add_argument(
+        "--pool",
+        type=at_least(1, "--pool"),
+        default=4,
+        help="--active: situations per episode (default: %(default)s)",
+    )
+    parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
     parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
 
@@ -61,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     name = gathering.domain_of(arguments.robot)
     check_package(name)
     out = arguments.out or Path("data") / arguments.robot
-    if arguments.recordings or arguments.on_policy:
+    if arguments.recordings or arguments.on_policy or arguments.active:
         return _from_runs(arguments, name, out)
     specs = [
         DataSetSpec(name, action, arguments.episodes, arguments.seed, out / action)
@@ -89,33 +100,38 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     from tailor.tools.learning import run_gathering
 
     if arguments.actions:
-        raise UsageError("whole runs take no ACTION, expected none with --from and --on-policy")
+        raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
     if arguments.recordings:
         counts = run_gathering.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
-    for scenario in arguments.on_policy:
+    scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))
+    for scenario in scenarios:
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
-    scenarios = tuple(dict.fromkeys(arguments.on_policy))
+    if arguments.active:
+        from tailor.tools.learning.active_gathering import Active, run_active
+
+        episodes, pool = arguments.episodes, arguments.pool
+        active = Active(domain, scenarios, episodes, pool, arguments.seed, arguments.zoo, out)
+        return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
     policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
-    return _run_policy(policy, arguments)
+    running = run_gathering.run_policy(policy, arguments.jobs, arguments.resume)
+    return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
 
 
-def _run_policy(policy: Policy, arguments: argparse.Namespace) -> int:
-    from tailor.tools.learning.run_gathering import run_policy
-
-    done, console = 0, Console(stderr=True)
+def _shown(steps: Iterable[Step], out: Path, as_json: bool) -> int:
+    """Show the progress of all steps; exit code 0, or 130 if interrupted."""
+    reached: dict[str, tuple[Step, Step]] = {}  # first and newest by title
     try:
-        with Progress(console=console, disable=arguments.json) as progress:
-            task = progress.add_task("runs", total=len(policy.jobs))
-            for count in run_policy(policy, arguments.jobs, arguments.resume):
-                done += count
-                progress.update(task, advance=count)
+        show(steps, quiet=as_json, reached=reached)
     except KeyboardInterrupt:
-        console.print(f"{policy.folder}: kept {done} more runs; --resume continues")
+        kept = ", ".join(f"{newest.done} of {newest.total} {title}" for title, (_, newest) in reached.items())
+        Console(stderr=True).print(f"{out}: kept {kept}; --resume continues")
         return 130
-    if arguments.json:
-        print(json.dumps({"folder": str(policy.folder), "runs": len(policy.jobs), "run_now": done}))
+    if as_json:
+        totals = {title: newest.total for title, (_, newest) in reached.items()}
+        now = sum(newest.done - first.done for first, newest in reached.values())
+        print(json.dumps({"folder": str(out), **totals, "run_now": now}))
     return 0
 
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
-
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from tailor.schemas.installed import robot_names
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.learning.making import Making, install, make
 from tailor.tools.learning.recipe import read_recipe, recipe_path
+from tailor.tools.learning.steps import Step, show
 from tailor.tools.learning.target_zoo import target_zoo
 
 EPILOG = """\
@@ -61,15 +60,15 @@ def _making(robot: str, arguments: argparse.Namespace) -> Making:
 def _made(making: Making, zoo: Path, quiet: bool) -> dict[str, Any]:
     """Make and install the models of one robot; seconds of each step that was not done before."""
     seconds: dict[str, float] = {}
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), disable=quiet) as progress:
-        tasks: dict[str, Any] = {}
-        since = time.perf_counter()
-        for step in make(making):
-            if step.title not in tasks:
-                tasks[step.title] = progress.add_task(f"{making.robot}: {step.title}", total=step.total)
-            progress.update(tasks[step.title], completed=step.done)
-            now = time.perf_counter()
-            seconds[step.title], since = seconds.get(step.title, 0.0) + now - since, now
+    show(_timed(make(making), seconds), quiet, {}, f"{making.robot}: ")
     install(making.zoo, zoo, making.robot)
     return {"zoo": str(zoo), "steps_s": {title: round(value, 1) for title, value in seconds.items()}}
+
+
+def _timed(steps: Iterable[Step], seconds: dict[str, float]) -> Iterator[Step]:
+    """The same steps; `seconds` is filled with the time of each by title."""
+    since = time.perf_counter()
+    for step in steps:
+        now = time.perf_counter()
+        seconds[step.title], since = seconds.get(step.title, 0.0) + now - since, now
+        yield step

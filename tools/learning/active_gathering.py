@@ -1,0 +1,140 @@
+"""Gathers episodes where the models disagree most, at the choices of the optimiser.
+
+Situations are drawn from scenarios and refined with the current models, without running them. Of each action, the
+choices with the largest predicted standard deviation are run alone, as random episodes are. A bag's deviation is the
+disagreement of its members, so these are the choices of which the models know least.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.models.episodes.episodes import Episode, write_part
+from tailor.tools.learning import gathering
+from tailor.tools.learning.refined_choices import Choice, refined_choices
+from tailor.tools.learning.run_gathering import modelled_actions, models_hash, prepare
+from tailor.tools.learning.steps import Step, counted
+from tailor.tools.lockstep import action_run
+
+FIRST_SEED = 3_000_000_000  # of situations; disjoint from those of evaluations and of on-policy runs
+ACTIVE_STREAM = 14  # first word of the seeds of the episodes; gathering.py has the others
+CHUNK = 10  # situations that are written together
+
+
+@dataclass(frozen=True, slots=True)
+class Active:
+    """Data sets of choices with large disagreement, one per action.
+
+    Attributes:
+      domain: Name of the domain.
+      scenarios: Scenarios from which situations are drawn, in turn.
+      episodes: Largest number of episodes of each action.
+      pool: Situations drawn for each episode; with 1 nearly every choice is run.
+      seed: Of situations and noise.
+      zoo: Folder of the models that choose.
+      folder: Folder of the data sets.
+    """
+
+    domain: str
+    scenarios: tuple[str, ...]
+    episodes: int
+    pool: int
+    seed: int
+    zoo: str
+    folder: Path
+
+    @property
+    def situations(self) -> list[tuple[str, int]]:
+        """Scenario and seed of each situation."""
+        first = FIRST_SEED + 100_000 * self.seed
+        return [(self.scenarios[k % len(self.scenarios)], first + k) for k in range(self.pool * self.episodes)]
+
+
+def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]:
+    """Draw and refine the missing situations, then run the missing episodes, in parallel; yields progress.
+
+    Raises:
+      UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
+    """
+    from joblib import Parallel, delayed
+
+    about: dict[str, Any] = {
+        "source": "lock-step, choices with the largest disagreement",
+        "seed": active.seed,
+        "scenarios": list(active.scenarios),
+        "situations": len(active.situations),
+        "models_sha256": models_hash(domains.load(active.domain).robot, active.zoo),
+        "on_policy": False,  # they are selected, so they do not tell how often an optimiser's choices are wrong
+        "episodes": active.episodes,
+    }
+    prepare(active.domain, active.folder, modelled_actions(active.domain), about, active.situations, resume)
+    total = len(active.situations)
+    missing = [first for first in range(0, total, CHUNK) if not _pool_path(active, first).exists()]
+    refined = Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_refine)(active, m) for m in missing)
+    left = sum(min(CHUNK, total - first) for first in missing)
+    yield from counted("situations refined", refined, total, total - left)
+    for name, choices in selected(_pool(active), active.episodes).items():
+        parts = [first for first in range(0, len(choices), gathering.PART) if not _part(active, name, first).exists()]
+        ran = Parallel(n_jobs=jobs, return_as="generator_unordered")(
+            delayed(_run)(active, name, first, choices[first : first + gathering.PART]) for first in parts
+        )
+        left = sum(min(gathering.PART, len(choices) - first) for first in parts)
+        yield from counted(f"{name}: choices that models disagree on", ran, len(choices), len(choices) - left)
+
+
+def selected(pool: Sequence[Choice], most: int) -> dict[str, list[Choice]]:
+    """The choices of each data set with the largest disagreement, largest first, at most so many."""
+    useful = [choice for choice in pool if np.isfinite(choice.std_s)]
+    ranked = sorted(useful, key=lambda choice: -choice.std_s)
+    names = sorted({choice.data_set for choice in useful})
+    return {name: [choice for choice in ranked if choice.data_set == name][:most] for name in names}
+
+
+def _refine(active: Active, first: int) -> int:
+    """Write the choices of some situations; returns their number."""
+    some = active.situations[first : first + CHUNK]
+    body = action_run.new_body(domains.load(active.domain))
+    rows = [c for scenario, seed in some for c in refined_choices(active.domain, scenario, seed, active.zoo, body)]
+    path = _pool_path(active, first)
+    temporary = path.with_suffix(".tmp")
+    temporary.write_text(json.dumps([[c.data_set, c.action, c.arguments, c.std_s] for c in rows]))
+    temporary.replace(path)
+    return len(some)
+
+
+def _pool_path(active: Active, first: int) -> Path:
+    return active.folder / f"pool-{first:06d}-{min(first + CHUNK, len(active.situations)):06d}.json"
+
+
+def _pool(active: Active) -> list[Choice]:
+    paths = [_pool_path(active, first) for first in range(0, len(active.situations), CHUNK)]
+    rows = [row for path in paths for row in json.loads(path.read_text())]
+    return [Choice(data_set, action, tuple(arguments), std_s) for data_set, action, arguments, std_s in rows]
+
+
+def _part(active: Active, data_set: str, first: int) -> Path:
+    return active.folder / data_set / f"part-{first:06d}.parquet"
+
+
+def _run(active: Active, data_set: str, first: int, choices: Sequence[Choice]) -> int:
+    """Run some choices, each from the state in which its action begins; returns their number."""
+    domain = domains.load(active.domain)
+    body = action_run.new_body(domain)
+    episodes = []
+    for number, choice in enumerate(choices, first):
+        rng = np.random.default_rng([ACTIVE_STREAM, active.seed, zlib.crc32(data_set.encode()), number])
+        arguments = np.array(choice.arguments)
+        run = action_run.run_action(body, domain, choice.action, arguments, rng)
+        episodes.append(
+            Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
+        )
+    write_part(_part(active, data_set, first), episodes, gathering.argument_names(domain, data_set))
+    return len(episodes)

@@ -1,0 +1,86 @@
+"""Choices that the optimiser makes with the current models, without running them: plan and refine, then stop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.executive.core.context import Settings, make_context
+from tailor.executive.core.state import Output
+from tailor.executive.interfaces.action import Action
+from tailor.executive.replay import RecordedTick
+from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals
+from tailor.simnodes.body import Body
+from tailor.tools.learning.run_gathering import UNPROVEN, cached_models
+
+DECISION_S = 5.0  # by then the first refinement is finished, or the situation is left out
+MIN_PREDICTED_S = 0.3  # a shorter action has no ticks to learn from
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One action of a refined sequence, and how much the models disagree on it."""
+
+    data_set: str
+    action: str
+    arguments: tuple[float, ...]
+    std_s: float
+
+
+class _DecidedError(Exception):
+    """Ends a run at the end of its first refinement."""
+
+
+class _FirstDecision:
+    """Receives the outputs of each tick until the first refinement is finished."""
+
+    def __init__(self) -> None:
+        self.subgoals: Subgoals | None = None
+
+    def __call__(self, tick: RecordedTick, outputs: tuple[Output, ...]) -> None:
+        messages = [output.message for output in outputs]
+        self.subgoals = next((m for m in messages if isinstance(m, Subgoals)), self.subgoals)
+        if self.subgoals is not None and any(isinstance(m, RefinementReport) and m.finished for m in messages):
+            raise _DecidedError
+
+
+def refined_choices(domain_name: str, scenario: str, seed: int, zoo: str, body: Body) -> list[Choice]:
+    """The refined choices in one situation; empty if it is not decided in time.
+
+    Args:
+      domain_name: Name of the domain.
+      scenario: Scenario from which the situation is drawn.
+      seed: Of the situation and of all noise.
+      zoo: Folder of the models that choose; empty: those that ship.
+      body: Simulated body of the domain's robot; reset here.
+    """
+    from tailor.tools.lockstep.run import SENDER, run_lockstep
+
+    domain = domains.load(domain_name)
+    drawn, start = domains.seeded_scenario(domain_name, scenario, seed)
+    settings = Settings(seed=seed, refinement=UNPROVEN)
+    context = make_context(domain, drawn, cached_models(domain.robot, zoo), settings, SENDER)
+    decision = _FirstDecision()
+    try:
+        run_lockstep(context, body, start, seed, limit_s=DECISION_S, on_tick=decision)
+    except _DecidedError:
+        assert decision.subgoals is not None
+        return [
+            Choice(
+                domain.actions[each.action].duration_model.split("/")[0],
+                each.action,
+                tuple(_arguments(domain.actions[each.action], each)),
+                each.spread_s,
+            )
+            for each in decision.subgoals.actions
+            if each.predicted_s >= MIN_PREDICTED_S
+        ]
+    return []
+
+
+def _arguments(action: Action, instance: InstantiatedAction) -> list[float]:
+    values = np.array([[parameter.value for parameter in instance.parameters]])
+    arguments: list[float] = action.arguments(values)[0].tolist()
+    return arguments
