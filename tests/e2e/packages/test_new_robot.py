@@ -53,7 +53,7 @@ def test_a_new_robot_runs_with_no_line_edited(kind, environment, run, tmp_path):
     environment.install("--no-build-isolation", "--editable", folder)
     from_episodes_to_a_verified_run(run, folder, name, name)
     assert (folder / f"fresh_{kind}" / "models" / name).is_dir()
-    assert "passed" in run(folder, "python", "-m", "pytest")
+    assert "passed" in run(folder, "pytest")
 
 
 @pytest.mark.parametrize("editable", [True, False], ids=["editable", "installed"])
@@ -65,4 +65,4 @@ def test_a_package_with_messages_axes_and_features_of_its_own_runs(editable, env
     assert (tmp_path / "share" / "tailor" / "models" / "truck-7").is_dir() is not editable
     assert "truck_msgs/msg/TruckCommand" in run(work, "tailor", "info", "run.mcap")
     if editable:
-        assert "passed" in run(folder, "python", "-m", "pytest")
+        assert "passed" in run(folder, "pytest")

@@ -4,6 +4,7 @@ It sees the third-party packages of the test environment through a .pth file.
 """
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -50,11 +51,26 @@ class Environment:
         [site] = folder.glob("lib/python*/site-packages")
         others = [entry for entry in sys.path if entry.endswith(("site-packages", "dist-packages"))]
         (site / "third_party.pth").write_text("".join(f"{entry}\n" for entry in others))
+        pytest = made.program("pytest")  # third-party programs belong to the test environment
+        pytest.write_text(f'#!/bin/sh\nexec "{made.program("python")}" -m pytest "$@"\n')
+        pytest.chmod(0o755)
         return made
 
     def install(self, *what: str | Path) -> None:
         """`pip install`."""
-        subprocess.run([sys.executable, "-m", "pip", "--python", self.program("python"), *INSTALL, *what], check=True)
+        subprocess.run(self._pip(*what), check=True)
+
+    def pip_command(self, *what: str | Path) -> str:
+        """`install` as a line of a shell script."""
+        return shlex.join(map(str, self._pip(*what)))
+
+    def _pip(self, *what: str | Path) -> list[str | Path]:
+        return [sys.executable, "-m", "pip", "--python", self.program("python"), *INSTALL, *what]
+
+    def variables(self, **more: str) -> dict[str, str]:
+        """Environment variables of its processes; its programs come first on the path."""
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+        return kept | {"PATH": f"{self.folder / 'bin'}:{kept['PATH']}"} | more
 
     def program(self, name: str) -> Path:
         """One of its programs."""
@@ -62,6 +78,6 @@ class Environment:
 
     def call(self, cwd: Path, program: str, *arguments: object, timeout_s: float = 120, **variables: str):
         """The completed process of a program, called in a folder."""
-        environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")} | variables
         command = [self.program(program), *map(str, arguments)]
+        environment = self.variables(**variables)
         return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=timeout_s, env=environment)
