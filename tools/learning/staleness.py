@@ -6,32 +6,21 @@ as they did, the model is still true.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tailor.executive import domains
 from tailor.models.cards.card import Card
-from tailor.models.episodes.sources import end_of, short_hashes
+from tailor.models.episodes.sources import end_of
+from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.learning import gathering
 from tailor.tools.lockstep import action_run
 
 END_TOLERANCE = 1e-4  # seconds, metres, radians: other builds of the physics round otherwise
 NAMED = 4  # files that a message names
-SIMULATED = "lock-step"  # beginning of the source of episodes that were not recorded from a real robot
-
-
-def changed_files(card: Card) -> list[str]:
-    """Files that differ between the source of a card's episodes and today's; empty for a card without sources."""
-    today = short_hashes(episode_files(gathering.domain_of(card["robot"])))
-    episodes = card["episodes"]
-    stated = {source["source_sha256"] for source in episodes.get("sources", ()) if _is_simulated(source)}
-    recorded = [episodes["source_files"][sha256] for sha256 in stated if sha256 in episodes.get("source_files", {})]
-    names = {name for files in recorded for name in files.keys() | today.keys() if files.get(name) != today.get(name)}
-    return sorted(names)
 
 
 def is_stated(card: Card) -> bool:
@@ -45,7 +34,7 @@ def staleness(card: Card) -> str:
         return ""
     if not is_stated(card):
         return "its card does not state the source of its episodes" if "source_sha256" in card["episodes"] else ""
-    changed = changed_files(card)
+    changed = changed_files(card["episodes"], todays_files(gathering.domain_of(card["robot"])))
     if not changed:
         return ""
     differing = differing_episodes(card)
@@ -71,8 +60,7 @@ def differing_episodes(card: Card) -> str:
     return ""
 
 
-def _is_simulated(source: Mapping[str, Any]) -> bool:
-    return str(source.get("source", "")).startswith(SIMULATED)
+todays_files = lru_cache(maxsize=4)(episode_files)  # a check compares several cards
 
 
 def _listed(names: list[str]) -> str:

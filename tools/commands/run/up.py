@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from tailor.runtime.stopping import stop_on_signals
@@ -13,6 +14,7 @@ from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.processes import LaunchConfig
+from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.launch.system import run_system
 
 
@@ -40,6 +42,9 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.scenario = f"word-{arguments.letters.upper()}"
     deployment = deployment_from(arguments)
     check_package(arguments.domain)
+    stale = stale_models_warning(arguments.domain, deployment.zoo)
+    if stale:
+        print(f"warning: {stale}", file=sys.stderr)
     config = LaunchConfig(
         executive_config(arguments.domain, deployment),
         with_hosting_flags(deployment.bus, arguments),

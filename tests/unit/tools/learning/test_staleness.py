@@ -9,6 +9,10 @@ import pytest
 from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.changed_source import changed_files
+from tailor.schemas.installed.episode_files import episode_files
+from tailor.tools.launch import stale_models
+from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.learning import gathering, staleness
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.staleness import differing_episodes
@@ -40,8 +44,10 @@ def card(data):
 @pytest.fixture
 def altered(monkeypatch):
     """A source of which one file differs from today's."""
-    files = staleness.episode_files("arm")
-    monkeypatch.setattr(staleness, "episode_files", lambda _: {**files, REACH: "0" * 64})
+    files = {**episode_files("arm"), REACH: "0" * 64}
+    monkeypatch.setattr(staleness, "todays_files", lambda _: files)
+    monkeypatch.setattr(stale_models, "episode_files", lambda _: files)
+    return files
 
 
 def test_a_merged_data_set_names_all_its_sources(data) -> None:
@@ -57,7 +63,7 @@ def test_a_model_of_todays_source_is_not_stale(card) -> None:
 
 
 def test_a_change_without_effect_on_episodes_makes_no_model_stale(card, altered) -> None:
-    assert staleness.changed_files(card) == [REACH]
+    assert changed_files(card["episodes"], altered) == [REACH]
     assert staleness_of(card) == ""
 
 
@@ -77,7 +83,7 @@ def test_every_source_of_a_merged_data_set_counts(card) -> None:
     files = next(iter(card["episodes"]["source_files"].values()))
     card["episodes"]["sources"][1]["source_sha256"] = "old"
     card["episodes"]["source_files"]["old"] = {**files, REACH: "0" * 12, "gone.py": "1" * 12}
-    assert staleness.changed_files(card) == [REACH, "gone.py"]
+    assert changed_files(card["episodes"], episode_files("arm")) == [REACH, "gone.py"]
 
 
 def test_models_of_other_tools_and_of_recordings_are_not_judged(card, altered) -> None:
@@ -85,6 +91,20 @@ def test_models_of_other_tools_and_of_recordings_are_not_judged(card, altered) -
     for source in card["episodes"]["sources"]:
         source["source"] = "recordings"
     assert staleness_of(card) == ""
+
+
+def test_a_launch_warns_in_one_line(card, altered, tmp_path: Path, monkeypatch) -> None:
+    folder = tmp_path / "powercube" / "reach"
+    folder.mkdir(parents=True)
+    shipped = json.loads((ZOO / "powercube" / "reach" / "duration.card.json").read_text())
+    (folder / "duration.card.json").write_text(json.dumps({**shipped, "episodes": card["episodes"]}))
+    (folder / "energy.card.json").write_text("{}")
+    assert stale_models_warning("arm", str(tmp_path)) == (
+        f"models of reach were learned with another {REACH}: "
+        "`tailor models check powercube` tells whether they are stale"
+    )
+    (folder / "duration.card.json").write_text(json.dumps({**shipped, "episodes": {"count": 16}}))
+    assert stale_models_warning("arm", str(tmp_path)) == ""
 
 
 def test_the_command_reports_stale_models(tmp_path: Path, monkeypatch, capsys) -> None:
