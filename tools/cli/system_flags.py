@@ -22,7 +22,7 @@ def configure_system(parser: argparse.ArgumentParser) -> None:
         help="plan with an external vhpop binary, e.g. 'vhpop -v1 -f MW-Loc', in its own process with time and "
         "memory limits",
     )
-    parser.add_argument("--zoo", help="folder of action models (default: the models that ship with Tailor)")
+    parser.add_argument("--zoo", help="folder of action models (default: that of the robot)")
     configure_bus(parser)
 
 
