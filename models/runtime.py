@@ -15,7 +15,16 @@ import onnxruntime
 from numpy.typing import NDArray
 
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
-from tailor.models.cards.card import KINDS, MAX_MODEL_BYTES, Card, card_path, read_bytes, read_card, sha256_of
+from tailor.models.cards.card import (
+    KINDS,
+    MAX_MODEL_BYTES,
+    SUCCESS_KINDS,
+    Card,
+    card_path,
+    read_bytes,
+    read_card,
+    sha256_of,
+)
 from tailor.models.cards.checks import check_identity, check_place, check_ranges, check_trained_with
 from tailor.schemas.errors import UsageError
 
@@ -246,7 +255,7 @@ def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -
         return OnnxDuration(session, card, float(output_min), float(output_max), bounds)
     if card["kind"] == "benefit":
         return OnnxGate(session, card, float(card["threshold"]))
-    if card["kind"] == "success":
+    if card["kind"] in SUCCESS_KINDS:
         return OnnxSuccess(session, card, float(card["threshold"]), bounds)
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
 

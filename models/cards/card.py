@@ -16,7 +16,9 @@ from tailor.schemas.errors import UsageError
 
 FORMAT = 1
 # "benefit" is the refinement gate; the models that ship were published under this kind
-KINDS = ("duration", "success", "energy", "benefit")
+# "clearance" is success beside one object of the action's context
+KINDS = ("duration", "success", "clearance", "energy", "benefit")
+SUCCESS_KINDS = ("success", "clearance")
 UNITS = {"duration": "s", "energy": "J"}  # of the predictions; a probability has none
 MAX_CARD_BYTES = 1 << 20  # ours are some 20 kB
 MAX_MODEL_BYTES = 64 << 20  # ours are well below 1 MB

@@ -13,7 +13,8 @@ import numpy as np
 import onnx
 from numpy.typing import NDArray
 
-from tailor.models.cards.card import FORMAT, Card, identity
+from tailor.models.cards.card import FORMAT, SUCCESS_KINDS, Card, identity
+from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.export.onnx_export import export_duration, export_success
@@ -31,7 +32,7 @@ LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 class Publication:
     """Card entries that data set and training do not hold."""
 
-    kind: str  # "duration", "energy" or "success"
+    kind: str  # "duration", "energy", "success" or "clearance"
     learner: str
     space: FeatureSpace
     seed: int
@@ -59,19 +60,23 @@ def publish(zoo: Path, data: DataSet, trained: Trained, about: Publication) -> P
 
 
 def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
-    if about.kind == "success":
+    if about.kind in SUCCESS_KINDS:
         return export_success(learner, about.space, identity(card))
     return export_duration(learner, about.space, identity(card), REGRESSION_TARGETS[about.kind].unit)
 
 
 def _outputs(kind: str) -> list[str]:
     """Names of the graph's outputs."""
-    return ["success"] if kind == "success" else [f"{name}_{REGRESSION_TARGETS[kind].unit}" for name in ("mean", "std")]
+    return (
+        ["success"]
+        if kind in SUCCESS_KINDS
+        else [f"{name}_{REGRESSION_TARGETS[kind].unit}" for name in ("mean", "std")]
+    )
 
 
 def _output_range(data: DataSet, kind: str) -> list[float]:
     """Range outside of which predictions are invalid."""
-    if kind == "success":
+    if kind in SUCCESS_KINDS:
         return [0.0, 1.0]
     return [0.0, MAX_FACTOR * max(REGRESSION_TARGETS[kind].whole(episode) for episode in data.episodes)]
 
@@ -88,7 +93,7 @@ def _card(data: DataSet, trained: Trained, about: Publication) -> dict[str, Any]
         "arguments": manifest["arguments"],
         "outputs": _outputs(about.kind),
         "output_range": _output_range(data, about.kind),
-        **({"threshold": trained.learner.threshold_} if about.kind == "success" else {}),
+        **({"threshold": trained.learner.threshold_} if about.kind in SUCCESS_KINDS else {}),
         "episodes": _episodes(data),
         "learner": _learner(trained, about),
         "test": trained.test,
@@ -140,10 +145,10 @@ def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequenc
     """Arguments spread over the episodes, the last at zero distance, and the learner's predictions."""
     chosen = np.linspace(0, len(data.episodes) - 1, GOLDEN).astype(int)
     arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
-    half = arguments.shape[1] // 2
-    arguments[-1, half:] = arguments[-1, :half]
+    half = (arguments.shape[1] - len(data.manifest.get(CONTEXT, {}).get("names", ()))) // 2
+    arguments[-1, half : 2 * half] = arguments[-1, :half]
     features = about.space(arguments)
-    if about.kind == "success":
+    if about.kind in SUCCESS_KINDS:
         predictions: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
     else:
         predictions = dict(zip(_outputs(about.kind), learner.predict_with_std(features), strict=True))

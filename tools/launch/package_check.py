@@ -78,6 +78,7 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
     for kind, model in (("duration", action.duration_model), ("success", action.success_model)):
         if not model.endswith(f"/{kind}") and (model or kind == "duration"):
             yield f"{kind}_model is '{model}', expected ACTION/{kind}"
+    yield from _faults_of_context(action)
     if action.subgoal_action and action.subgoal_action not in domain.actions:
         yield f"subgoal_action is '{action.subgoal_action}', which is none of actions"
     names = [parameter.name for parameter in action.parameters]
@@ -87,6 +88,23 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
             math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower < parameter.upper
         ):
             yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
+
+
+def _faults_of_context(action: Action) -> Iterator[str]:
+    context = action.context
+    if context is None:
+        return
+    if not context.success_model.endswith("/clearance"):
+        yield f"context: success_model is '{context.success_model}', expected ACTION/clearance"
+    if not context.failure:
+        yield "context: failure is empty, expected the failure that the task sampler returns for an object"
+    taken = [parameter.name for parameter in action.parameters]
+    for column in context.columns:
+        if column.name in taken:
+            yield f"context: column '{column.name}' occurs twice, among the parameters or the columns"
+        if not (math.isfinite(column.lower) and math.isfinite(column.upper) and column.lower < column.upper):
+            yield f"context: column '{column.name}' ranges from {column.lower:g} to {column.upper:g}"
+        taken.append(column.name)
 
 
 def _faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:

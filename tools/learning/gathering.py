@@ -15,9 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
+from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
 from tailor.models.episodes.sources import short_hashes
@@ -45,6 +47,7 @@ class DataSetSpec:
     seed: int
     folder: Path
     stream: int = TRAINING_STREAM
+    beside: bool = False  # each episode beside one random object of the action's context
 
     def rng(self, number: int) -> np.random.Generator:
         """Random generator of one episode: its arguments and all its noise."""
@@ -60,23 +63,32 @@ def domain_of(robot: str) -> str:
     return spec_of_robot(robot).name
 
 
-def check_action(domain: str, action: str) -> None:
-    """Check the name of an action.
+def check_action(domain: str, action: str, beside: bool = False) -> None:
+    """Check the name of an action, and that it has a context if it is gathered beside objects.
 
     Raises:
-      UsageError: The domain has no such action.
+      UsageError: The domain has no such action, or the action no context.
     """
     declared = domains.load(domain).actions
     if action not in declared:
         raise UsageError(f"no action '{action}' in {domain} (expected one of: {', '.join(declared)})")
+    if beside and declared[action].context is None:
+        known = ", ".join(name for name, each in declared.items() if each.context is not None) or "none has one"
+        raise UsageError(f"action '{action}' of {domain} has no context of objects (actions with one: {known})")
 
 
 def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episode:
     """Run one episode; the same spec and number give the same bits."""
     rng = spec.rng(number)
-    arguments = action_run.sample_arguments(domain, spec.action, rng)
+    arguments = _draw(spec, domain, rng)
     run = action_run.run_action(body, domain, spec.action, arguments, rng)
     return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
+
+
+def _draw(spec: DataSetSpec, domain: Domain, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Arguments of one episode, with the row of its object if there is one."""
+    arguments = action_run.sample_arguments(domain, spec.action, rng)
+    return action_run.with_object(domain, spec.action, arguments, rng) if spec.beside else arguments
 
 
 def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
@@ -88,7 +100,7 @@ def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
     episodes = [run_one(spec, domain, body, number) for number in range(first, min(first + PART, spec.episodes))]
-    write_part(part_path(spec, first), episodes, argument_names(domain, spec.action))
+    write_part(part_path(spec, first), episodes, [entry["name"] for entry in _columns(spec, domain)])
     return len(episodes), sum(episode.duration_s for episode in episodes), time.perf_counter() - started
 
 
@@ -105,6 +117,12 @@ def missing_parts(spec: DataSetSpec) -> list[int]:
 def argument_names(domain: Domain, action: str) -> list[str]:
     """Names of the controller's arguments."""
     return [parameter.name for parameter in domain.actions[action].parameters]
+
+
+def context_entry(domain: Domain, action: str, names: Sequence[str]) -> dict[str, Any]:
+    """Manifest entry of an action with a context: names of the further columns, and the failure of the object."""
+    context = domain.actions[action].context
+    return {} if context is None else {CONTEXT: {"names": list(names), "failure": context.failure}}
 
 
 def prepare(spec: DataSetSpec, resume: bool) -> None:
@@ -146,15 +164,18 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
 
 def _manifest(spec: DataSetSpec) -> dict[str, Any]:
     domain = domains.load(spec.domain)
+    context = domain.actions[spec.action].context
+    columns = context.names if spec.beside and context is not None else ()
     return {
         "robot": domain.robot,
         "domain": spec.domain,
         "action": spec.action,
-        "arguments": argument_ranges(domain, spec.action),
+        "arguments": argument_ranges(domain, spec),
+        **(context_entry(domain, spec.action, columns) if columns else {}),
         "episodes": spec.episodes,
         "seed": spec.seed,
         "stream": spec.stream,
-        "source": "lock-step, random arguments",
+        "source": "lock-step, random arguments" + (" beside one object" if spec.beside else ""),
         **source_entries(spec.domain),
         "on_policy": 0,
         "software": {name: version(name) for name in ("tailor", "mujoco", "numpy")},
@@ -166,15 +187,23 @@ def source_entries(domain: str) -> dict[str, Any]:
     return {"source_sha256": episodes_sha256(domain), "source_files": short_hashes(episode_files(domain))}
 
 
-def argument_ranges(domain: Domain, action: str) -> list[dict[str, Any]]:
-    """Name, unit and range of each controller argument, from samples."""
+def argument_ranges(domain: Domain, spec: DataSetSpec) -> list[dict[str, Any]]:
+    """Name, unit and range of each column of a data set's arguments, from samples."""
     rng = np.random.default_rng(0)
-    drawn = np.stack([action_run.sample_arguments(domain, action, rng) for _ in range(RANGE_DRAWS)])
+    drawn = np.stack([_draw(spec, domain, rng) for _ in range(RANGE_DRAWS)])
     low, high = np.floor(drawn.min(axis=0) / RANGE_STEP), np.ceil(drawn.max(axis=0) / RANGE_STEP)
     return [
-        {"name": p.name, "unit": p.unit, "lower": round(a * RANGE_STEP, 9), "upper": round(b * RANGE_STEP, 9)}
-        for p, a, b in zip(domain.actions[action].parameters, low.tolist(), high.tolist(), strict=True)
+        {**column, "lower": round(a * RANGE_STEP, 9), "upper": round(b * RANGE_STEP, 9)}
+        for column, a, b in zip(_columns(spec, domain), low.tolist(), high.tolist(), strict=True)
     ]
+
+
+def _columns(spec: DataSetSpec, domain: Domain) -> list[dict[str, str]]:
+    """Name and unit of the action's arguments; then those of the object beside it."""
+    action = domain.actions[spec.action]
+    named = [{"name": parameter.name, "unit": parameter.unit} for parameter in action.parameters]
+    objects = action.context.columns if spec.beside and action.context is not None else ()
+    return [*named, *({"name": column.name, "unit": column.unit} for column in objects)]
 
 
 def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:

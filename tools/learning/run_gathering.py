@@ -25,6 +25,7 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
 from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
@@ -95,7 +96,8 @@ def prepare(
             "robot": loaded.robot,
             "domain": domain,
             "action": action,
-            "arguments": gathering.argument_ranges(loaded, action),
+            "arguments": gathering.argument_ranges(loaded, DataSetSpec(domain, action, 0, 0, folder)),
+            **gathering.context_entry(loaded, action, names=()),
             "runs": len(runs),
             **gathering.source_entries(domain),
             "on_policy": True,

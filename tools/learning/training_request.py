@@ -67,7 +67,7 @@ def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
 
 
 def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
-    """Feature space of each kind of model: "duration", "energy", "success".
+    """Feature space of each kind of model of the action by itself: "duration", "energy", "success".
 
     Args:
       request: Names the spaces, or leaves them to the defaults.
@@ -80,6 +80,21 @@ def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder:
     plain = _space(request.features, arguments, folder)
     energy = request.energy_features or ENERGY_FEATURES.get(plain.name, plain.name)
     return {"duration": plain, "energy": _space(energy, arguments, folder), "success": plain}
+
+
+def context_space(arguments: tuple[str, ...], folder: Path) -> FeatureSpace:
+    """Feature space of success beside one object: the first that takes the arguments and the object's columns.
+
+    Raises:
+      UsageError: There is none.
+    """
+    from tailor.models.features.spaces import feature_spaces
+
+    fitting = (space for space in feature_spaces().values() if tuple(q.name for q in space.arguments) == arguments)
+    chosen = next(fitting, None)
+    if chosen is None:
+        raise UsageError(f"{folder}: no feature space takes the arguments {' '.join(arguments)}")
+    return chosen
 
 
 def _space(name: str | None, arguments: tuple[str, ...], folder: Path) -> FeatureSpace:
@@ -124,4 +139,6 @@ def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
         return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
     scenarios = manifest.get("scenarios")
     what = manifest["action"] if scenarios is None else f"--on-policy {' '.join(scenarios)}"
+    if (manifest.get("context") or {}).get("names"):
+        what += " --beside-object"
     return f"tailor gather {robot} {what} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"

@@ -9,7 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning.training_request import TrainingRequest, data_sets, feature_spaces, reproduction_command
+from tailor.tools.learning.training_request import (
+    TrainingRequest,
+    context_space,
+    data_sets,
+    feature_spaces,
+    reproduction_command,
+)
 
 if TYPE_CHECKING:
     from tailor.models.episodes.episodes import DataSet, Episode
@@ -82,22 +88,38 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     Raises:
       UsageError: The episodes cannot be read, are of another robot, or are too few.
     """
+    from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
 
     sets = [read_data_set(folder) for folder in folders]
-    data = merge(sets)
+    data = merge([without_context(each) for each in sets])
     if data.manifest["robot"] != request.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
     spaces = feature_spaces(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    for kind, learner, train in _jobs(data, request):
+    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in _jobs(data, request)]
+    for source, kind, learner, train, space in (*own, *_context_jobs(sets, request, folders[0])):
         try:
-            trained = train(data.episodes, spaces[kind], learner, request.seed)
+            trained = train(source.episodes, space, learner, request.seed)
         except UsageError as error:
             raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
-        _publish(request, data, trained, kind, learner, spaces[kind], command)
+        _publish(request, source, trained, kind, learner, space, command)
         yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
+
+
+def _context_jobs(
+    sets: Sequence[DataSet], request: TrainingRequest, folder: Path
+) -> Iterator[tuple[DataSet, str, str, Train, FeatureSpace]]:
+    """The model of success beside one object, if the episodes have objects."""
+    from tailor.models.episodes.context_columns import beside_context
+    from tailor.models.episodes.episodes import merge
+    from tailor.models.training.training import train_success
+
+    beside = [each for each in map(beside_context, sets) if each is not None]
+    if beside:
+        data = merge(beside)
+        yield data, "clearance", request.failure_learner, train_success, context_space(data.names, folder)
 
 
 def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:

@@ -47,6 +47,17 @@ class TaskSampler(Protocol):
         """Return the controller arguments with the believed state in place of the start."""
         ...
 
+    def context(self, action: Action, arguments: Array, rng: np.random.Generator) -> Array:
+        """Return one random object near the way, as it is believed: a row of the action's context, shape (c,).
+
+        Needed only for actions that have a context.
+        """
+        raise NotImplementedError(f"{type(self).__name__} draws no objects for {action.name}")
+
+    def context_start(self, action: Action, row: Array, rng: np.random.Generator) -> dict[str, float]:
+        """Return the part of the body's start state that puts the object there, off by the belief's error."""
+        raise NotImplementedError(f"{type(self).__name__} puts no objects near {action.name}")
+
     def work_j(self, before: Message, after: Message) -> float:
         """Return the work of the drives between two states of motion in joules; NaN for other messages."""
         return math.nan
@@ -140,6 +151,11 @@ def sample_arguments(domain: Domain, action_name: str, rng: np.random.Generator)
     return sampler_of(domain).sample(domain.actions[action_name], rng)
 
 
+def with_object(domain: Domain, action_name: str, arguments: Array, rng: np.random.Generator) -> Array:
+    """Controller arguments, shape (k,), followed by the row of one random object of the action's context: (k + c,)."""
+    return np.concatenate([arguments, sampler_of(domain).context(domain.actions[action_name], arguments, rng)])
+
+
 def new_body(domain: Domain) -> Body:
     """A simulated body of the domain's robot. Reuse it for every run: making one is slow.
 
@@ -176,7 +192,8 @@ def run_action(
       body: Reset here, with noise from `rng`.
       domain: Provides the controller and the belief filter.
       action_name: An executable action of the domain.
-      arguments: Controller arguments, shape (k,): state at the start and at the goal.
+      arguments: Controller arguments, shape (k,): state at the start and at the goal; perhaps followed by one row of
+        the action's context, shape (k + c,).
       rng: Source of all noise. Equal arguments and generator states give equal runs, bit for bit.
       limit_s: Limit of the simulated time.
       traced: Also keep beliefs, ground truth and commands.
@@ -185,7 +202,10 @@ def run_action(
       The run with its duration, outcome and the training examples of all its ticks.
     """
     action, sampler = domain.actions[action_name], sampler_of(domain)
+    arguments, row = np.split(arguments, [len(action.parameters)])
     start = sampler.start(action, arguments, rng)
+    if len(row):
+        start = start | sampler.context_start(action, row, rng)
     belief = sampler.belief(start, rng)
     body.reset(rng, start)
     state: Any = None
@@ -194,7 +214,7 @@ def run_action(
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         failure = failure or sampler.failure(action, start, truth)
-        examples.append(sampler.arguments_now(action, belief, arguments))
+        examples.append([*sampler.arguments_now(action, belief, arguments), *row])
         control = action.controller(state, now_ns, belief, arguments)
         if traced:
             trace.append(Tick(now_ns * 1e-9, belief, truth, control.command))

@@ -131,7 +131,7 @@ class EpisodeExtractor:
             return
         done = finished.outcome == "done"
         failure = "" if done else reason_text(finished.reason, finished.detail)
-        observed = bool(run.action.success_model) and run.start is not None
+        observed = bool(run.action.success_model or run.action.context) and run.start is not None
         failure = run.failure or failure if observed else failure or UNOBSERVED
         ticks = np.stack(run.ticks)
         duration_s = finished.actual_s - run.begun_s

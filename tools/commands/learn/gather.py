@@ -24,6 +24,7 @@ EPILOG = """\
 examples:
   tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
   tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
+  tailor gather agilo goToPose --beside-object --episodes 3000 --out data/agilo-beside
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
@@ -56,6 +57,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     other.add_argument(
         "--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="extract recorded runs instead"
     )
+    other.add_argument(
+        "--beside-object",
+        action="store_true",
+        help="put one random object near each way: episodes for the action's clearance model",
+    )
     parser.add_argument(
         "--pool",
         type=at_least(1, "--pool"),
@@ -75,8 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.recordings or arguments.on_policy or arguments.active:
         return _from_runs(arguments, name, out)
     specs = [
-        DataSetSpec(name, action, arguments.episodes, arguments.seed, out / action)
-        for action in actions_of(name, arguments.actions)
+        DataSetSpec(name, action, arguments.episodes, arguments.seed, out / action, beside=arguments.beside_object)
+        for action in actions_of(name, arguments.actions, arguments.beside_object)
     ]
     for spec in specs:
         gathering.prepare(spec, arguments.resume)
@@ -135,18 +141,17 @@ def _shown(steps: Iterable[Step], out: Path, as_json: bool) -> int:
     return 0
 
 
-def actions_of(domain: str, requested: list[str]) -> list[str]:
-    """Actions to gather: the requested ones, or all that have a duration model.
+def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[str]:
+    """Actions to gather: the requested ones, or all that have a duration model, or `beside` objects a context.
 
     Raises:
-      UsageError: The domain lacks a requested action.
+      UsageError: The domain lacks a requested action, or it has no context.
     """
     declared = domains.load(domain).actions
     for action in requested:
-        gathering.check_action(domain, action)
-    return list(dict.fromkeys(requested)) or sorted(
-        {action.duration_model.split("/")[0] for action in declared.values()}
-    )
+        gathering.check_action(domain, action, beside)
+    modelled = {each.duration_model.split("/")[0] for each in declared.values() if each.context or not beside}
+    return list(dict.fromkeys(requested)) or sorted(modelled)
 
 
 def _gather(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:

@@ -99,7 +99,7 @@ def _table(rows: list[dict[str, Any]]) -> Table:
 
 def _results(row: dict[str, Any]) -> tuple[str, str, str, str]:
     """Mean, error, accuracy and missed failures; empty where the kind of model has none."""
-    if row["kind"] == "success":
+    if row["kind"] in ("success", "clearance"):
         return "", "", f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
     unit, mean = ("s", "mean_duration_s") if row["kind"] == "duration" else ("J", "mean_energy_j")
     low, high = row["mae_ci95"]
