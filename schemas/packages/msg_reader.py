@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import make_dataclass
+from functools import cache
 from importlib.resources.abc import Traversable
 from typing import Any
 
@@ -13,6 +14,7 @@ HEADER = "std_msgs/Header"
 PRIMITIVES: Mapping[str, type] = {"int64": int, "float64": float, "bool": bool, "string": str}
 
 
+@cache
 def read_messages(folder: Traversable, frame: str = "") -> dict[str, Any]:
     """Frozen dataclasses of a package's messages, to be used like those that are written by hand.
 
@@ -22,7 +24,7 @@ def read_messages(folder: Traversable, frame: str = "") -> dict[str, Any]:
 
     Returns:
       Types by name, e.g. `read_messages(resources.files("my_robot") / "my_robot_msgs")["Gripper"]`. Fields are the
-      file's; a header, which must come first, becomes `stamp_ns`.
+      file's; a header, which must come first, becomes `stamp_ns`. Another call returns the same types.
 
     Raises:
       ValueError: There is no file, or one cannot be read: a field that is neither int64, float64, bool, string nor an

@@ -44,6 +44,14 @@ def test_a_new_robot_keeps_every_clause(kind, tmp_path):
         assert {clause.name for clause, _ in cases(subject)} == set(CLAUSES)
 
 
+@pytest.mark.parametrize("missing", ["body", "sampler"])
+def test_clauses_about_a_part_that_the_package_lacks_are_left_out(missing, subject):
+    subject.spec = dataclasses.replace(subject.spec, **{missing: ""})
+    left = {clause.name for clause, _ in cases(subject)}
+    assert {clause.name for clause in CLAUSES.values() if not clause.needs} <= left
+    assert not any(CLAUSES[name].needs in (missing, "body") for name in left)
+
+
 def with_action(subject, **changes):
     domain = subject.domain
     domain.actions = {"drive": dataclasses.replace(domain.actions["drive"], **changes)}

@@ -11,6 +11,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.spec import NAME
 
+TAKEN = ("data", "tests")  # folders beside the package
+
 
 def package_of(name: str) -> str:
     """Name of the Python package of a robot, e.g. `my_cart` of `my-cart`."""
@@ -34,6 +36,8 @@ def _objections(name: str) -> Iterator[str]:
     package = package_of(name)
     if keyword.iskeyword(package):
         yield "expected another name: this is a word of Python"
+    if package in TAKEN:
+        yield f"expected another name: {package}/ lies beside the package"
     for other in packages():
         if name == other.name or (other.spec and name in (other.spec.robot, other.spec.package)):
             yield f"expected another name: {other.declared_in} has it already"

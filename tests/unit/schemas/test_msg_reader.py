@@ -38,6 +38,7 @@ def test_a_type_has_the_fields_of_its_file(folder: Path) -> None:
         "string[] names",
         "bool closed",
     ]
+    assert read_messages(folder, "base_link")["Gripper"] is types["Gripper"], "modules that read it apart agree"
     one = types["Gripper"](7, 0.1, (types["Finger"](1, (0.5,)),), ("a",), True)
     assert (one.stamp_ns, one.width, one.fingers[0].angles) == (7, 0.1, (0.5,))
     assert one == types["Gripper"](7, 0.1, (types["Finger"](1, (0.5,)),), ("a",), True)

@@ -57,6 +57,7 @@ def test_a_package_stays_small(kind: str) -> None:
         ("../cart", "expected lower-case letters"),
         ("class", "a word of Python"),
         ("json", "a Python module 'json'"),
+        ("tests", "lies beside the package"),
         ("numpy", "a Python module 'numpy'"),
         ("tailor", "a Python module 'tailor'"),
         ("soccer", "has it already"),
