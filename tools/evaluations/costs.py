@@ -49,6 +49,8 @@ def _energy_j(run: Run, domain: Domain) -> float:
     stamped: list[Any] = _motions(run, domain)
     begun_ns = first.stamp_ns - round(first.actual_s * 1e9)
     during = [state for state in stamped if begun_ns <= state.stamp_ns <= last.stamp_ns]
+    if not during:  # the robot's sampler knows no states of motion
+        return float("nan")
     return float(sum(work_j(before, after) for before, after in itertools.pairwise(during)))
 
 

@@ -10,7 +10,8 @@ from tests.support.robots.fresh_environment import Environment, built, copied_so
 
 PAGE = ROOT / "docs" / "new-robot.md"
 COMMANDS = re.compile(r"```sh\n(.*?)```", re.DOTALL)
-FEWER = {"--episodes 1000": "--episodes 120", "--episodes 40": "--episodes 3"}  # for time's sake
+# for time's sake; so few starts may prove nothing, which is exit code 1
+FEWER = {"--episodes 1000": "--episodes 120", "--episodes 40": "--episodes 3 || test $? = 1"}
 INSTALL = "pip install -e ."  # would download setuptools
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("live")]
