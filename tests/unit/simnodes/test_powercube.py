@@ -124,6 +124,7 @@ def test_encoders_err_by_noise_backlash_and_jitter_and_not_more():
             errors.append(np.subtract(state.positions[:2], made.ground_truth().positions[:2]))
     limits = PhysicalParameters()
     assert 1e-4 < np.std(errors) < 1e-3
+    assert np.mean(errors, axis=0)[1] == pytest.approx(0.5 * limits.backlash_rad, abs=1e-4), "the motor lifts, ahead"
     assert np.abs(errors).max() < 0.5 * limits.backlash_rad + 5 * np.hypot(limits.encoder_std_rad, 0.5e-3)
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from pytest import approx
+import pytest
 
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import REACH
@@ -54,7 +54,7 @@ def test_a_row_compares_with_stopping_learned_greedy_and_perfect_greedy():
 
 def test_more_seeds_of_equal_letters_make_no_interval_narrower():
     few, many = (next(row for row in letters.rows_of(found(n_seeds=n)) if row["mode"] == "refined") for n in (1, 10))
-    assert np.ptp(many["ci95"]) == approx(np.ptp(few["ci95"]))
+    assert np.ptp(many["ci95"]) == pytest.approx(np.ptp(few["ci95"]))
 
 
 def test_a_letter_that_one_mode_failed_counts_for_none():
