@@ -11,8 +11,7 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
-from tailor.executive.refinement.gate import check_gate
-from tailor.models.runtime import GATE, load_gate, load_robot
+from tailor.models.runtime import load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
@@ -50,12 +49,12 @@ def build_context(config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0
     """
     domain = domains.load(config.domain)
     scenario, _ = domains.seeded_scenario(config.domain, config.scenario, config.settings.seed)
-    models = load_models(domain.robot, config.zoo, config.settings.refinement.gate)
+    models = load_models(domain.robot, config.zoo)
     return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns)
 
 
-def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
-    """Load a robot's action models, with its refinement gate if `gated` and there is one.
+def load_models(robot: str, zoo: str = "") -> Models:
+    """Load a robot's action models.
 
     Raises:
       UsageError: A missing or altered model, one whose training range is smaller than its action's, or a refinement
@@ -63,8 +62,7 @@ def load_models(robot: str, zoo: str = "", gated: bool = False) -> Models:
     """
     folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
-    gate = load_gate(robot, folder, {**durations, **successes}) if gated else None
-    return Models(durations, successes, None if gate is None else check_gate(gate))
+    return Models(durations, successes)
 
 
 def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
@@ -84,8 +82,6 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
     """Data from which `rebuild_context` builds the same context; models by the hash of their cards."""
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
-    if context.models.gate is not None:
-        models[GATE] = context.models.gate
     return {
         "config": dataclasses.asdict(config),
         "sender": context.sender,
@@ -93,12 +89,6 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
         "driver_sender": context.driver_sender,
         "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
     }
-
-
-def without_gate(config: ExecutiveConfig) -> ExecutiveConfig:
-    """The configuration of a run that always refines."""
-    refinement = dataclasses.replace(config.settings.refinement, gate=False)
-    return dataclasses.replace(config, settings=dataclasses.replace(config.settings, refinement=refinement))
 
 
 def rebuild_context(recorded: Mapping[str, Any]) -> Context:
@@ -109,8 +99,6 @@ def rebuild_context(recorded: Mapping[str, Any]) -> Context:
     """
     _check(recorded)
     config = from_table(ExecutiveConfig, recorded["config"], "recording's provenance")
-    if GATE not in recorded["models"]:  # the run had no refinement gate, whatever is installed here
-        config = without_gate(config)
     context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"])
     context = dataclasses.replace(context, driver_sender=str(recorded.get("driver_sender", "")))  # newer than others
     here = provenance(config, context)["models"]

@@ -25,13 +25,12 @@ from tailor.models.cards.card import (
     read_card,
     sha256_of,
 )
-from tailor.models.cards.checks import check_identity, check_place, check_ranges, check_trained_with
+from tailor.models.cards.checks import check_identity, check_place, check_ranges
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
 ZOO = Path(__file__).resolve().parent / "zoo"
-GATE = "refinement/benefit"  # the refinement gate: the one model that belongs to a robot and not to an action
 GOLDEN_TOLERANCE = 1e-4  # seconds, joules or probability: the tolerance of export (learning.md)
 
 
@@ -97,43 +96,7 @@ class OnnxSuccess:
         return _probability(self.session, arguments)
 
 
-@dataclass(frozen=True, slots=True)
-class OnnxGate:
-    """Predicts whether refinement would slow an episode down (paper 6.3.2).
-
-    Attributes:
-      session: Inference session of onnxruntime.
-      card: The model's card.
-      threshold: Risk above which the greedy choice is kept, 0..1.
-    """
-
-    session: Any
-    card: Card
-    threshold: float
-
-    @property
-    def input_names(self) -> tuple[str, ...]:
-        """Names of the inputs, in order."""
-        return tuple(argument["name"] for argument in self.card["arguments"])
-
-    @property
-    def sequences(self) -> frozenset[tuple[str, ...]]:
-        """Kinds of sequences that it was learned for: names of actions, asserted subgoals left out."""
-        return frozenset(tuple(names) for names in self.card["sequences"])
-
-    def p_slowdown(self, situations: Array) -> Array:
-        """Predict the risk that refinement costs time.
-
-        Args:
-          situations: Inputs, shape (n, k), in the order of `input_names`.
-
-        Returns:
-          Risk, 0..1, shape (n,); NaN where the prediction is invalid.
-        """
-        return _probability(self.session, situations)
-
-
-OnnxModel = OnnxDuration | OnnxSuccess | OnnxGate
+OnnxModel = OnnxDuration | OnnxSuccess
 
 
 def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
@@ -194,34 +157,10 @@ def load_robot(
     return durations, successes
 
 
-def load_gate(robot: str, zoo: Path | None, models: Mapping[str, OnnxModel]) -> OnnxGate | None:
-    """Load a robot's refinement gate.
-
-    Args:
-      robot: Folder in the zoo.
-      zoo: Folder of models, None for the one that ships.
-      models: The robot's action models by "action/kind"; the gate must have been trained with these.
-
-    Returns:
-      The gate, None if the zoo has none.
-
-    Raises:
-      UsageError: It fails its checks, or was trained with other action models.
-    """
-    path = (zoo or ZOO) / robot / f"{GATE}.onnx"
-    if not path.exists() and not card_path(path).exists():
-        return None
-    model = load_model(path)
-    check_place(model.card, f"{robot}/{GATE}", path.parent)
-    check_trained_with(model.card, {name: loaded.card["sha256"] for name, loaded in models.items()}, path)
-    assert isinstance(model, OnnxGate)
-    return model
-
-
 def _names(folder: Path) -> list[str]:
     """Every "action/kind" that has a model or a card; one without the other is an error when loading."""
     files = {f"{p.parent.name}/{p.name.split('.')[0]}" for kind in KINDS for p in folder.glob(f"*/{kind}.*")}
-    return sorted(files - {GATE})
+    return sorted(files)
 
 
 def _in_zoo(name: str, zoo: Path) -> Path:
@@ -253,8 +192,6 @@ def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -
     if card["kind"] in ("duration", "energy"):
         output_min, output_max = card["output_range"]
         return OnnxDuration(session, card, float(output_min), float(output_max), bounds)
-    if card["kind"] == "benefit":
-        return OnnxGate(session, card, float(card["threshold"]))
     if card["kind"] in SUCCESS_KINDS:
         return OnnxSuccess(session, card, float(card["threshold"]), bounds)
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
@@ -277,8 +214,6 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
             predictions: tuple[Array, ...] = model.predict(arguments)
         case OnnxSuccess():
             predictions = (model.probability(arguments),)
-        case OnnxGate():
-            predictions = (model.p_slowdown(arguments),)
     for name, values in zip(card["outputs"], predictions, strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)

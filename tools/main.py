@@ -44,10 +44,6 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, VHPOP-style"),
     "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and save the episodes"),
     "train": ("tailor.tools.commands.learn.train", "train action models from episodes"),
-    "train-gate": (
-        "tailor.tools.commands.learn.train_gate",
-        "train a refinement gate for the trained action models",
-    ),
     "make-models": (
         "tailor.tools.commands.learn.make_models",
         "make the models of robots anew from seeds, by their recipes",

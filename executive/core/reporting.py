@@ -120,9 +120,6 @@ def _refinement(context: Context, state: State, deliberation: Deliberation) -> t
         best_s=_finite(report.best_s),
         trace_evaluations=tuple(evaluations for evaluations, _ in report.trace),
         trace_best_s=tuple(best_s for _, best_s in report.trace),
-        situation=report.verdict.situation,
-        p_slowdown=report.verdict.p_slowdown,
-        kept_greedy=report.verdict.keep_greedy,
         gap_pct=-1.0 if report.gap_pct is None else report.gap_pct,
     )
     return (Output("refinement", message),)

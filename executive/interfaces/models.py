@@ -39,36 +39,6 @@ class SuccessModel(Protocol):
         ...
 
 
-class RefinementGate(Protocol):
-    """Predicts whether refinement would slow an episode down (paper 6.3.2)."""
-
-    @property
-    def input_names(self) -> tuple[str, ...]:
-        """Names of the model's inputs, in order."""
-        ...
-
-    @property
-    def sequences(self) -> frozenset[tuple[str, ...]]:
-        """Kinds of sequences for which it was learned: names of actions without asserted subgoals."""
-        ...
-
-    @property
-    def threshold(self) -> float:
-        """Probability from 0 to 1 above which the greedy choice is kept."""
-        ...
-
-    def p_slowdown(self, situations: Array) -> Array:
-        """Predict the probability that refinement costs time.
-
-        Args:
-          situations: Values of the inputs, shape (n, k).
-
-        Returns:
-          Probabilities from 0 to 1, shape (n,); NaN for situations outside the model's domain.
-        """
-        ...
-
-
 class ModelBounds(Protocol):
     """Bounds of a model's prediction on boxes of arguments.
 
@@ -109,9 +79,7 @@ class Models:
     Attributes:
       durations: Duration models by zoo path, e.g. "goToPose/duration".
       successes: Success models by zoo path.
-      gate: Refinement gate; None: always refine.
     """
 
     durations: Mapping[str, DurationModel]
     successes: Mapping[str, SuccessModel]
-    gate: RefinementGate | None = None

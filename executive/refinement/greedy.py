@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.interfaces.budget import Budget, CheckBudget
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
@@ -42,53 +42,3 @@ def greedy(sequence: ActionSequence, models: Models, settings: RefinementSetting
         evaluations += objective.evaluations
         arrival_ids = frozenset(unit[-1].variables)
     return Greedy(values, evaluations)
-
-
-class LocalSearch:
-    """Completes the greedy search for the next action, with its asserted subgoals; resumable.
-
-    Args:
-      sequence: The whole sequence.
-      greedy: The greedy answer so far.
-      models: Loaded models.
-      settings: Settings of refinement.
-      rng: The only source of randomness.
-    """
-
-    def __init__(
-        self,
-        sequence: ActionSequence,
-        greedy: Greedy,
-        models: Models,
-        settings: RefinementSettings,
-        rng: np.random.Generator,
-    ) -> None:
-        self._greedy = greedy
-        self._objective = SequenceObjective(sequence.units()[0], sequence.variables, models, settings)
-        starts = self._objective.vectors([greedy.values, *sequence.starts])
-        self._solver = solver_for(self._objective, settings, rng, starts)
-
-    @property
-    def values(self) -> dict[int, float]:
-        """The greedy choice by variable id, with the best values so far for the next action."""
-        best = {} if self._solver.best is None else self._objective.values(self._solver.best)
-        return self._greedy.values | best
-
-    @property
-    def finished(self) -> bool:
-        """Whether a larger budget would change nothing."""
-        return self._solver.finished
-
-    @property
-    def evaluations(self) -> int:
-        """Number of model inputs predicted so far."""
-        return self._objective.evaluations
-
-    @property
-    def checks(self) -> int:
-        """Number of batches so far."""
-        return self._solver.checks
-
-    def advance(self, budget: Budget) -> None:
-        """Resume the search until the budget is spent or the search is finished."""
-        self._solver.advance(budget)

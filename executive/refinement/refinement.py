@@ -6,7 +6,7 @@ Anytime and resumable: the first check yields the greedy answer, every further c
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
-from tailor.executive.refinement.gate import Verdict, judge
-from tailor.executive.refinement.greedy import Greedy, LocalSearch, greedy
+from tailor.executive.refinement.greedy import Greedy, greedy
 from tailor.executive.refinement.objective.choice import Choice, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
@@ -37,7 +36,6 @@ class Report:
     greedy_s: float  # value of the objective for the greedy choice
     best_s: float
     trace: tuple[tuple[int, float], ...]  # (evaluations, best value) at each improvement
-    verdict: Verdict = field(default_factory=Verdict)  # of the refinement gate
     gap_pct: float | None = None  # proven upper bound on the gap between `best_s` and the models' optimum
 
 
@@ -72,24 +70,17 @@ class Refinement:
         self._greedy_s = np.inf
         self._solver: Solver | None = None
         self._choice: Choice | None = None
-        self._greedy_choice: Choice | None = None
-        self._verdict = Verdict()
-        self._local_search: LocalSearch | None = None
         self._certificate: Certificate | NoBound | None = None
 
     @property
     def choice(self) -> Choice | None:
-        """The best answer so far, or the greedy one if the gate keeps it; None before the first check."""
-        return self._greedy_choice if self._verdict.keep_greedy else self._choice
+        """The best answer so far; None before the first check."""
+        return self._choice
 
     @property
     def finished(self) -> bool:
         """Whether a larger budget would change nothing."""
-        if self._greedy is None:
-            return False
-        searched = self._solver is None or self._solver.finished
-        local_search = self._local_search
-        return searched and (not self._verdict.keep_greedy or (local_search is not None and local_search.finished))
+        return self._greedy is not None and (self._solver is None or self._solver.finished)
 
     def advance(self, budget: Budget) -> None:
         """Resume the search until the budget is spent or the search is finished."""
@@ -102,8 +93,6 @@ class Refinement:
             self._solver.advance(budget)
             if self._solver.best is not None and self._solver.value < before:
                 self._adopt(self._solver.best)
-            if self._solver.finished and self._verdict.keep_greedy:
-                self._improve_greedy(budget)
 
     def certify(self, budget: Budget) -> None:
         """Prove the optimality gap of the best answer once the search is finished; it changes no answer."""
@@ -117,23 +106,20 @@ class Refinement:
 
     def report(self) -> Report:
         """Course of the search so far."""
-        searches = [search for search in (self._solver, self._local_search) if search is not None]
         return Report(
             solver=type(self._solver).__name__ if self._solver else "",
             evaluations=self.evaluations,
-            checks=(self._greedy is not None) + sum(search.checks for search in searches),
+            checks=(self._greedy is not None) + (self._solver.checks if self._solver else 0),
             greedy_s=self._greedy_s,
             best_s=self._choice.total_s if self._choice else np.inf,
             trace=self._trace(),
-            verdict=self._verdict,
             gap_pct=self.gap_pct,
         )
 
     @property
     def evaluations(self) -> int:
         """Number of model inputs predicted so far."""
-        local = self._local_search.evaluations if self._local_search else 0
-        return self._greedy_evaluations + self._objective.evaluations + local
+        return self._greedy_evaluations + self._objective.evaluations
 
     @property
     def _greedy_evaluations(self) -> int:
@@ -161,7 +147,6 @@ class Refinement:
         seed = self._objective.vector(self._greedy.values)
         self._adopt(seed)
         assert self._choice is not None
-        self._greedy_choice = self._choice
         self._greedy_s = self._choice.total_s
         if self._objective.ids:
             starts = [self._greedy.values] if self._start is None else [self._greedy.values, self._start]
@@ -174,15 +159,3 @@ class Refinement:
         if self._choice is not None and total >= min(self._choice.total_s, self._greedy_s - self._settings.gain_min_s):
             return
         self._choice = choice_of(self._reporting, candidate)
-        if self._greedy_choice is not None:
-            self._verdict = judge(self._sequence, self._greedy_choice, self._choice, self._models.gate)
-
-    def _improve_greedy(self, budget: Budget) -> None:
-        """The gate keeps the greedy choice: complete its search, as with horizon 1."""
-        assert self._greedy is not None
-        if self._local_search is None:
-            self._local_search = LocalSearch(self._sequence, self._greedy, self._models, self._settings, self._rng)
-        self._local_search.advance(budget)
-        improved = choice_of(self._reporting, self._reporting.vector(self._local_search.values))
-        if improved.valid:
-            self._greedy_choice = improved

@@ -15,9 +15,8 @@ from tailor.models.cards.card_shape import card_error
 from tailor.schemas.errors import UsageError
 
 FORMAT = 1
-# "benefit" is the refinement gate; the models that ship were published under this kind
 # "clearance" is success beside one object of the action's context
-KINDS = ("duration", "success", "clearance", "energy", "benefit")
+KINDS = ("duration", "success", "clearance", "energy")
 SUCCESS_KINDS = ("success", "clearance")
 UNITS = {"duration": "s", "energy": "J"}  # of the predictions; a probability has none
 MAX_CARD_BYTES = 1 << 20  # ours are some 20 kB

@@ -12,15 +12,13 @@ OUTPUTS = {
     "energy": ["mean_j", "std_j"],
     "success": ["success"],
     "clearance": ["success"],
-    "benefit": ["slower"],
 }
-KINDS_WITH_THRESHOLD = ("success", "clearance", "benefit")
+KINDS_WITH_THRESHOLD = ("success", "clearance")
 TEST_FIGURES = {  # entries of the test that every list of models shows
     "duration": ("mae_s", "mean_duration_s"),
     "energy": ("mae_j", "mean_energy_j"),
     "success": ("accuracy_pct", "missed_failures_pct"),
     "clearance": ("accuracy_pct", "missed_failures_pct"),
-    "benefit": ("right_pct", "slower_pct"),
 }
 
 

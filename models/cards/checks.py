@@ -59,25 +59,3 @@ def check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: 
                 f"{path}: {name} was trained in [{low:g}, {high:g}] {trained[name]['unit']}, "
                 f"expected to cover [{lower:g}, {upper:g}] as the action declares"
             )
-
-
-def check_trained_with(card: Card, installed: Mapping[str, str], path: Path) -> None:
-    """Check that a refinement gate was trained with the installed action models; with others it is not valid.
-
-    Args:
-      card: Card of the gate.
-      installed: SHA-256 of the robot's models by "action/kind".
-      path: ONNX file of the gate, for errors.
-
-    Raises:
-      UsageError: One of the models is missing, or is another one.
-    """
-    if not card.get("models"):
-        raise UsageError(f"{path}: card names no action models, expected those that the gate was trained with")
-    for name, sha256 in card["models"].items():
-        present = installed.get(name, "missing")
-        if present != sha256:
-            raise UsageError(
-                f"{path}: was trained with {name} {sha256[:12]}…, which is {present[:12]} here: train it again "
-                f"with `tailor train-gate`, or set refinement.gate = false"
-            )

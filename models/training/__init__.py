@@ -1,1 +1,1 @@
-"""Learners by name, training, testing, calibration; the refinement gate."""
+"""Learners by name, training, testing, calibration."""

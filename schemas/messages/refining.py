@@ -76,7 +76,4 @@ class RefinementReport(Message):
     best_s: float  # predicted duration of the best choice so far
     trace_evaluations: tuple[int, ...] = ()  # parallel to trace_best_s
     trace_best_s: tuple[float, ...] = ()
-    situation: tuple[float, ...] = ()  # inputs of the refinement gate; its card names the values
-    p_slowdown: float = -1.0  # predicted risk that refining costs time, 0..1 (paper 6.3.2); -1: no prediction
-    kept_greedy: bool = False  # the gate advised against refining
     gap_pct: float = -1.0  # certified: best_s is at most this much above the models' optimum; -1: not certified

@@ -73,7 +73,6 @@ class Outcome:
       greedy_cost_s: Objective of the greedy values in the first choice.
       refined_cost_s: Objective of the refined values in the first choice.
       predicted_actions: Of the first choice: action, whether it was asserted, predicted seconds.
-      situation: Features that a refinement gate receives of the first choice (tailor.executive.refinement.gate).
       costs: Costs besides time.
     """
 
@@ -93,7 +92,6 @@ class Outcome:
     greedy_cost_s: float = float("nan")
     refined_cost_s: float = float("nan")
     predicted_actions: tuple[tuple[str, bool, float], ...] = ()
-    situation: tuple[float, ...] = ()
     costs: Costs = NO_COSTS
 
 
@@ -117,7 +115,6 @@ def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
         bound,
         *_costs_s(run),
         _predicted_actions(run),
-        _gate_situation(run),
         costs_of(run, domain),
     )
 
@@ -125,13 +122,6 @@ def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
 def _predicted_actions(run: Run) -> tuple[tuple[str, bool, float], ...]:
     actions = run.subgoals[0].actions if run.subgoals else ()
     return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
-
-
-def _gate_situation(run: Run) -> tuple[float, ...]:
-    """Comparison of the first finished refinement's choice with the greedy one; empty if they are equal."""
-    reports = (message for message in run.messages if isinstance(message, RefinementReport) and message.finished)
-    first = next(reports, None)
-    return tuple(round(value, 6) for value in first.situation) if first is not None else ()
 
 
 def _costs_s(run: Run) -> tuple[float, float]:

@@ -17,7 +17,7 @@ ROWS_MAX = 6
 MAIN = (
     "scenario", "domain", "robot", "action", "model", "run", "start", "mode", "space", "learner", "training_data",
     "horizon", "n", "episodes", "mae_s", "mae_ci95", "floor_s", "accuracy_pct", "mean_greedy_s", "mean_refined_s",
-    "mean_lockstep_s", "mean_s", "duration_s", "improvement_pct", "gated_pct", "ci95", "p_value", "slower_pct",
+    "mean_lockstep_s", "mean_s", "duration_s", "improvement_pct", "ci95", "p_value", "slower_pct",
     "oracle_pct", "regret_pct", "correlation", "success_before_pct", "success_after_pct", "needless_pct",
     "difference_pct", "ci95_pct", "equivalent",
 )  # fmt: skip

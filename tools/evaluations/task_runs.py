@@ -52,9 +52,7 @@ def run_all(
       Outcomes by name of the variant and seed.
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
-    journals = {
-        variant.name: Journal(store, task, variant, dependencies(task, variant.refinement.gate)) for variant in variants
-    }
+    journals = {variant.name: Journal(store, task, variant, dependencies(task)) for variant in variants}
     wanted = []
     for seed in seeds:
         for variant in variants:
@@ -104,7 +102,7 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     pinned: Any = PinnedDomain(domain, pins)
     # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(variant.refinement, certify_checks=0))
-    models = _models(domain.robot, task.zoo, variant.refinement.gate)
+    models = _models(domain.robot, task.zoo)
     context = make_context(pinned, scenario, models, settings, SENDER)
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
@@ -112,14 +110,13 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
 
 
 @lru_cache(maxsize=4)
-def _models(robot: str, zoo: str, gated: bool) -> Models:
+def _models(robot: str, zoo: str) -> Models:
     """Models, loaded once a process."""
-    return load_models(robot, zoo, gated)
+    return load_models(robot, zoo)
 
 
-def dependencies(task: Task, gated: bool = True) -> list[str]:
+def dependencies(task: Task) -> list[str]:
     """Hashes of models and source code, on which a run depends besides task, variant and seed."""
-    models: Any = _models(domains.load(task.domain).robot, task.zoo, gated)
-    loaded = [*models.durations.values(), *models.successes.values()]
-    cards = [model.card["sha256"] for model in [*loaded, *([models.gate] if models.gate else [])]]
+    models: Any = _models(domains.load(task.domain).robot, task.zoo)
+    cards = [model.card["sha256"] for model in (*models.durations.values(), *models.successes.values())]
     return [*sorted(cards), runs_sha256(task.domain)]

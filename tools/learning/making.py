@@ -93,7 +93,7 @@ def install(made: Path, zoo: Path, robot: str) -> None:
     kept = {path.relative_to(made) for path in (made / robot).rglob("*")}
     for path in [*(zoo / robot).glob("*/*.onnx"), *(zoo / robot).glob("*/*.card.json")]:
         if path.relative_to(zoo) not in kept:
-            path.unlink()  # of an action or kind that has no model any more, or a gate of other models
+            path.unlink()  # of an action or kind that has no model any more
 
 
 def _random_episodes(making: Making) -> Iterator[Step]:

@@ -43,15 +43,6 @@ class Training:
 
 
 @dataclass(frozen=True, slots=True)
-class Gate:
-    """Refinement gate that is trained with the models, see `tailor train-gate`."""
-
-    episodes: int
-    scenario: str = ""
-    seed: int = 700_000
-
-
-@dataclass(frozen=True, slots=True)
 class Recipe:
     """How the models of a robot are made.
 
@@ -60,14 +51,12 @@ class Recipe:
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
       training: How each model is trained.
-      gate: The refinement gate; None: there is none.
     """
 
     episodes: int
     seed: int = 7
     rounds: tuple[Round, ...] = ()
     training: Training = field(default_factory=Training)
-    gate: Gate | None = None
 
 
 def recipe_path(robot: str) -> Path:

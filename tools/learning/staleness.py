@@ -30,8 +30,6 @@ def is_stated(card: Card) -> bool:
 
 def staleness(card: Card) -> str:
     """What differs between a model's episodes and those of today's source; empty if nothing does, or if unknown."""
-    if card["kind"] == "benefit":  # a refinement gate belongs to its action models, which are checked
-        return ""
     if not is_stated(card):
         return "its card does not state the source of its episodes" if "source_sha256" in card["episodes"] else ""
     changed = changed_files(card["episodes"], todays_files(gathering.domain_of(card["robot"])))

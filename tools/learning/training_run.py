@@ -71,17 +71,6 @@ def checked(request: TrainingRequest) -> TrainingRequest:
     )
 
 
-def remove_outdated_gate(request: TrainingRequest) -> bool:
-    """Remove the robot's refinement gate, which is valid only for the action models it was trained with.
-
-    Returns:
-      Whether there was one.
-    """
-    from tailor.models.export.gate_publishing import remove_gate
-
-    return remove_gate(request.zoo, request.robot)
-
-
 def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[dict[str, Any]]:
     """Train the models of one action; yields a row of test results per published model.
 

@@ -61,8 +61,6 @@ def refinement(message: m.RefinementReport) -> Fields:
         "checks": message.checks,
         "greedy": _cost(message.greedy_s),
         "best": _cost(message.best_s),
-        "pSlowdown": number(message.p_slowdown) if message.p_slowdown >= 0 else None,
-        "keptGreedy": message.kept_greedy,
         "gap": number(message.gap_pct) if message.gap_pct >= 0 else None,
         "trace": [[evaluations, number(best_s)] for evaluations, best_s in trace],
     }

@@ -60,14 +60,6 @@ def features_text(situation: Situation) -> str:
     return f"{situation.action} features (greedy): {', '.join(values)}"
 
 
-def gate_text(report: RefinementReport) -> str:
-    """Decision of the refinement gate (paper 6.3.2); empty without a gate."""
-    if report.p_slowdown < 0:
-        return ""
-    decision = "greedy kept" if report.kept_greedy else "refined"
-    return f"{decision}: the refinement gate predicts a slowdown with probability {100 * report.p_slowdown:.0f} %"
-
-
 def certificate_text(report: RefinementReport | None) -> str:
     """Certified gap between the refined choice and the optimum of the models."""
     if report is None or report.gap_pct < 0:

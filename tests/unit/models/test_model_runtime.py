@@ -149,7 +149,7 @@ NUMBERS = [0.5] * 32
         ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'std_s']"),
         ("output_range", [60, 0], "output_range is [60, 0], expected two numbers"),
         ("output_range", [float("nan"), 1], "output_range is [nan, 1]"),
-        ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success, benefit"),
+        ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success"),
         ("sha256", None, "sha256 is None, expected text"),
         ("test", {}, "test's mae_s is None, expected a number"),
         ("learner", None, "learner is None, expected an object"),

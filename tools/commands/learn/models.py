@@ -11,10 +11,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from tailor.executive.composition import load_models, required_ranges
+from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
-from tailor.models.runtime import GATE, ZOO, OnnxGate, OnnxModel, load_model
+from tailor.models.runtime import ZOO, OnnxModel, load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.terminal import table_console
@@ -70,8 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
         from tailor.tools.figures import learned
 
         for model in loaded:
-            if isinstance(model, OnnxGate):  # has no plane to draw; `rules` prints it
-                continue
             for path in learned.draw(model, arguments.data, arguments.out):
                 print(path)
     return 0
@@ -80,16 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
     from tailor.tools.learning.model_rules import DISTILLED, rules, tree_number
 
-    if isinstance(model, OnnxGate):
-        return _gate_rules(model.card)
     tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
     return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
-
-
-def _gate_rules(card: Card) -> str:
-    head = f"{card['robot']}/{card['action']}/{card['kind']}: {len(card['rules'])} rules that approximate it"
-    kept = f"above a risk of {100 * card['threshold']:.0f} % the greedy choice is kept"
-    return "\n\n".join([f"{head}; {kept}", *card["rules"]])
 
 
 def _zoo_of(names: list[str]) -> Path:
@@ -106,8 +96,6 @@ def _full(name: str, zoo: Path) -> list[str]:
             robots = ", ".join(sorted({each.split("/")[0] for each in _all(zoo)}))
             raise UsageError(f"'{name}' has no models in {zoo} (expected ROBOT/ACTION/KIND, or one of: {robots})")
         return mine
-    if name.endswith("/refinement"):
-        return [f"{name}/benefit"]
     return [name if name.count("/") != 1 else f"{name}/duration"]
 
 
@@ -125,9 +113,6 @@ def _quality(card: Card) -> str:
             return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
         case "energy":
             return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
-        case "benefit":
-            plain = test["ungated"]
-            return f"{test['right_pct']:.1f} % correct; slower {plain['slower_pct']:.1f} -> {test['slower_pct']:.1f} %"
         case _:
             return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed"
 
@@ -165,8 +150,6 @@ def _show(card: Card, as_json: bool) -> None:
         elif key == "arguments":
             ranges = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
             console.print(f"[bold]arguments[/bold]: {ranges}")
-        elif key == "rules":
-            console.print(f"[bold]rules[/bold]: {len(value)}, which `tailor models rules` prints")
         else:
             console.print(f"[bold]{key}[/bold]: {escape(_brief(value))}")
 
@@ -187,8 +170,6 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
     failed, stale = {}, {}
     for name in names:
         try:
-            if name.endswith(f"/{GATE}"):  # valid only with the action models that it was trained with
-                load_models(name.removesuffix(f"/{GATE}"), str(arguments.zoo), gated=True)
             model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
             differs = staleness(model.card)

@@ -14,7 +14,7 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
-from tailor.tools.learning.training_run import remove_outdated_gate, train_models
+from tailor.tools.learning.training_run import train_models
 
 # named here so that --help loads no learning library
 DURATION_LEARNERS = "bag, robust, distilled-tree, linear, m5, boosting, network"
@@ -71,11 +71,6 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console(stderr=True)
     with console.status("reading data sets") as status:
         rows = train_models(request, lambda action: status.update(f"training {action}"))
-    if remove_outdated_gate(request):
-        console.print(
-            f"removed {request.robot}/refinement/benefit, which was trained with the previous action models; "
-            f"`tailor train-gate {request.robot}` trains a new one"
-        )
     if arguments.json:
         print(json.dumps(rows))
     else:

@@ -23,7 +23,6 @@ from tailor.tools.viewer.explanation_text import (
     certificate_text,
     duration_table,
     features_text,
-    gate_text,
     long_search_text,
     parameter_text,
     search_text,
@@ -130,8 +129,6 @@ def _show(decisions: Sequence[ExplainedDecision]) -> None:
                 console.print(f"    {escape(situation.rule)}", highlight=False)
         console.print(f"  {long_search_text(explained.explanation.chosen_cost, explained.best_cost)}", highlight=False)
         console.print(f"  {certificate_text(explained.decision.report)}", highlight=False)
-        if explained.decision.report is not None and (gated := gate_text(explained.decision.report)):
-            console.print(f"  {gated}", highlight=False)
         console.print(f"  {search_text(explained.decision)}\n", highlight=False)
 
 
@@ -151,8 +148,6 @@ def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
             "solver": report.solver,
             "evaluations": report.evaluations,
             "checks": report.checks,
-            "p_slowdown": report.p_slowdown if report.p_slowdown >= 0 else None,
-            "kept_greedy": report.kept_greedy,
             "gap_pct": report.gap_pct if report.gap_pct >= 0 else None,
         },
         "deliberation_s": decision.deliberation_s,

@@ -47,7 +47,6 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "tailor.tools.evaluations.refinement.ablations",
         "refinement with one part off at a time, paired with the default",
     ),
-    "gate": ("tailor.tools.evaluations.refinement.gate", "the refinement gate: accuracy of its predicted slowdowns"),
     "energy": (
         "tailor.tools.evaluations.refinement.energy",
         "duration against energy for different weights of energy",

@@ -25,7 +25,6 @@ DEFAULT = RefinementSettings()
 GREEDY = Variant("h1", replace(DEFAULT, horizon=1))
 ABLATIONS = (
     Variant("default", DEFAULT),
-    Variant("no gate", replace(DEFAULT, gate=False)),
     Variant("no spread", replace(DEFAULT, k_std=0.0)),
     Variant("exact arrivals", replace(DEFAULT, arrival_spread=())),
     Variant("risk price 0", replace(DEFAULT, risk_cost_s=0.0)),

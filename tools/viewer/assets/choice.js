@@ -30,10 +30,8 @@ class ChoicePanel {
       report.greedy === null || report.best === null
         ? ""
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
-    const risk = report.pSlowdown === null ? "" : `slowdown predicted with ${(100 * report.pSlowdown).toFixed(0)} %`;
-    const advice = risk && `, ${report.keptGreedy ? "greedy kept" : "refined"}, ${risk}`;
     const gap = report.gap === null ? "" : `, within ${report.gap.toFixed(1)} % of the models' optimum`;
-    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}${advice}`;
+    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}`;
   }
 
   /** With models: chosen against greedy values, and the alternatives. */

@@ -20,7 +20,7 @@ from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.evaluations.refinement import ablations, figure1, figure11, gate, oracle, replicas, table3, table4
+from tailor.tools.evaluations.refinement import ablations, figure1, figure11, oracle, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.oracle import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.task_runs import paired
@@ -154,7 +154,7 @@ def test_assertion_is_counted_as_the_paper_counts_it():
     assert row["predicted_fail_observed_success_pct"] == 75.0
 
 
-@pytest.mark.parametrize("module", [table3, table4, figure1, figure11, figure15, figure16, gate, live])
+@pytest.mark.parametrize("module", [table3, table4, figure1, figure11, figure15, figure16, live])
 def test_every_evaluation_has_the_same_flags(module):
     parser = argparse.ArgumentParser()
     module.configure(parser)

@@ -64,7 +64,7 @@ def test_installing_replaces_all_models_of_the_robot_and_nothing_else(tmp_path: 
         made / "a/go/duration.onnx": "new",
         zoo / "a/go/duration.onnx": "old",
         zoo / "a/go/success.onnx": "old",
-        zoo / "a/refinement/benefit.card.json": "old",
+        zoo / "a/stop/energy.card.json": "old",
         zoo / "a/recipe.toml": "kept",
         zoo / "b/go/duration.onnx": "kept",
     }
