@@ -1,4 +1,7 @@
-"""Risk that the way to an asserted subgoal runs into the ball: the models of goToPose have no ball."""
+"""Risk that the way to an asserted subgoal runs into the ball: hand-made geometry, because goToPose's models have no ball.
+
+Nothing here is learned. It repeats the path planner of the controller and takes the distance from the ball for a risk.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ CLEAR_M = 0.55  # with what noise may add
 
 @dataclass(frozen=True, slots=True)
 class BallContactRisk:
-    """See tailor.executive.interfaces.action.SubgoalRisk: the risk that the robot touches the ball on its way."""
+    """Geometric risk that the robot touches the ball on its way; see tailor.executive.interfaces.action.SubgoalRisk."""
 
     ways: ArrivalPath  # goToPose's
 
