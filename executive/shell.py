@@ -10,6 +10,7 @@ from tailor.executive.core.context import PERIOD_NS, Context, check_goal
 from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import control, deliberate
+from tailor.executive.interfaces.outlet import outlets_of
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.bus.session import Session
@@ -55,7 +56,7 @@ class Shell:
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
         self._goals = session.service_server("exec/goal")
-        topics = (domain.command_topic, *TOPICS)
+        topics = (*(outlet.topic for outlet in outlets_of(domain)), *TOPICS)
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         external = context.settings.external
         self._planner = ExternalPlanner(external.command, external.limit_s)

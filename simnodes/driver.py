@@ -9,6 +9,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
+from tailor.schemas.topics import TOPICS as TOPIC_TABLE
+from tailor.simnodes.command_parts import CommandParts, Part
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Guard
 from tailor.simnodes.hold import HeldSwitches
@@ -41,7 +43,8 @@ class Driver:
         self.guard = Guard(spec.limits, epoch, spec.timeout_ns, leave)
         self.held = HeldSwitches()
         self._arm_refused: Counter[ArmRefusal] = Counter()
-        self._axes = spec.axes
+        self._outlets = tuple((_suffix(TOPIC_TABLE[o.topic].key), o.axes) for o in spec.all_outlets())
+        self._parts = CommandParts([len(axes) for _, axes in self._outlets])
         self._published: tuple[str, str, str] | None = None
         self._due_ns = 0
         self._rejected: Mapping[str, int] = {}
@@ -67,9 +70,10 @@ class Driver:
                 if refusal is not None:
                     self._arm_refused[refusal] += 1
             elif not isinstance(message, EStop):
-                values, stamp_ns = command_values(message, self._axes), getattr(message, "stamp_ns", 0)
                 arrival_ns = sample.arrival_ns - guard_lag_ns
-                self.guard.command(arrival_ns, sample.sender, sample.sequence, values, stamp_ns, guard_lag_ns)
+                for whole in self._parts.join(self._part(sample), sample.sender, self.guard.sender):
+                    command = (whole.sequence, whole.values, whole.stamp_ns)
+                    self.guard.command(arrival_ns, sample.sender, *command, guard_lag_ns)
         self._rejected = rejected
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
@@ -99,6 +103,14 @@ class Driver:
             refused_counts=tuple(refused.values()),
             command_stamp_ns=guard.command_stamp_ns,
         )
+
+    def _part(self, sample: Sample) -> Part:
+        """The set-points of one outlet: that of the sample's key, or the only one."""
+        keys = [suffix for suffix, _ in self._outlets]
+        outlet = keys.index(_suffix(sample.key)) if len(keys) > 1 and _suffix(sample.key) in keys else 0
+        message = sample.message
+        values, stamp_ns = command_values(message, self._outlets[outlet][1]), getattr(message, "stamp_ns", 0)
+        return Part(outlet, sample.sequence, values, stamp_ns)
 
     def _detail(self) -> str:
         held = ", ".join(shown(sender) for sender in self.held.senders)
@@ -146,6 +158,11 @@ class Driver:
 def shown(sender: str) -> str:
     """Short form of a sender id in a detail."""
     return sender[:SHOWN_DIGITS] or "unknown"
+
+
+def _suffix(key: str) -> str:
+    """A topic's key without the robot."""
+    return key.partition("/")[2]
 
 
 def command_values(message: Message, axes: Sequence[str]) -> tuple[float, ...]:

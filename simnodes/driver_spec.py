@@ -16,13 +16,35 @@ MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command protects n
 
 
 @dataclass(frozen=True, slots=True)
+class OutletSpec:
+    """One command outlet of a driver, and the names of its axes."""
+
+    topic: str  # name in tailor.schemas.topics
+    axes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class DriverSpec:
-    """A driver's command: its topic, and its axes with their limits, in one order."""
+    """A driver's command: its topic, and its axes with their limits, in one order.
+
+    A robot with several command outlets lists them in `outlets`: `axes` and `limits` are those of all, in that order,
+    and `command_topic` is that of the first. One guard judges them together.
+    """
 
     command_topic: str  # name in tailor.schemas.topics
     axes: tuple[str, ...]
     limits: tuple[Limit, ...]
     timeout_ns: int = 300_000_000
+    outlets: tuple[OutletSpec, ...] = ()
+
+    def all_outlets(self) -> tuple[OutletSpec, ...]:
+        """Every outlet: those listed, or the only one."""
+        return self.outlets or (OutletSpec(self.command_topic, self.axes),)
+
+    @property
+    def command_topics(self) -> tuple[str, ...]:
+        """Topics of all outlets."""
+        return tuple(outlet.topic for outlet in self.all_outlets())
 
 
 def shipped_driver_spec(robot: str) -> DriverSpec:
@@ -48,23 +70,37 @@ def read_driver_spec(text: str) -> DriverSpec:
       KeyError, TypeError: A key is missing or has a value of another type.
       ValueError: The text is no TOML, a limit is not finite, or the timeout exceeds MAX_TIMEOUT_S.
     """
-    command = tomllib.loads(text)["command"]
+    table = tomllib.loads(text)
+    commands = table["commands"] if "commands" in table else [table["command"]]
+    outlets = tuple(OutletSpec(each["topic"], tuple(axis["name"] for axis in each["axes"])) for each in commands)
+    names = [name for outlet in outlets for name in (outlet.topic, *outlet.axes)]
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    if repeated:
+        raise ValueError(f"{', '.join(repeated)}: declared twice, expected topics and axes of different names")
+    return DriverSpec(
+        command_topic=outlets[0].topic,
+        axes=tuple(name for outlet in outlets for name in outlet.axes),
+        limits=tuple(_limit(axis) for each in commands for axis in each["axes"]),
+        timeout_ns=min(_timeout_ns(each) for each in commands),
+        outlets=outlets if len(outlets) > 1 else (),
+    )
+
+
+def _timeout_ns(command: Mapping[str, Any]) -> int:
     timeout_s = _number(command, "timeout_s")
     if not 0.0 < timeout_s <= MAX_TIMEOUT_S:
         raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {MAX_TIMEOUT_S:g}")
-    return DriverSpec(
-        command_topic=command["topic"],
-        axes=tuple(axis["name"] for axis in command["axes"]),
-        limits=tuple(_limit(axis) for axis in command["axes"]),
-        timeout_ns=round(timeout_s * 1e9),
-    )
+    return round(timeout_s * 1e9)
 
 
 def _limit(axis: Mapping[str, Any]) -> Limit:
     lower, upper = _number(axis, "lower"), _number(axis, "upper")
     if lower >= upper:
         raise ValueError(f"{axis['name']} goes from {lower:g} to {upper:g}, expected the lower limit first")
-    return Limit(lower, upper)
+    kept = _number(axis, "kept") if "kept" in axis else None
+    if kept is not None and not lower <= kept <= upper:
+        raise ValueError(f"{axis['name']} is kept at {kept:g}, expected a set-point within its limits")
+    return Limit(lower, upper, kept)
 
 
 def _number(table: Mapping[str, Any], key: str) -> float:

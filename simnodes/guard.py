@@ -33,14 +33,21 @@ MODES = {
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Bounds of one axis of the command; a value on a bound is legal."""
+    """Bounds of one axis of the command; a value on a bound is legal.
+
+    `kept` is the first set-point of an axis that keeps its last one when the guard stops, such as the width of a
+    gripper: opening it would drop what it holds. None: zero stops the axis.
+    """
 
     lower: float
     upper: float
+    kept: float | None = None
 
 
 class Guard:
     """Latched filter of commands; pure: every call receives the monotonic time in nanoseconds.
+
+    "Zero" is the set-point that stops an axis; an axis that is kept keeps its last one.
 
     Attributes:
       epoch: Identifies this start of the driver; an arming request for another one is refused.
@@ -72,8 +79,7 @@ class Guard:
         self._leave = leave
         self._limits = tuple(limits)
         self._timeout_ns = timeout_ns
-        self._zero = (0.0,) * len(self._limits)
-        self._values = self._zero
+        self._values = tuple(0.0 if limit.kept is None else limit.kept for limit in self._limits)
         self._valid_ns = 0  # time of the last valid command, or of arming
         self._sequences: dict[str, int] = {}  # highest passed, by sender: kept when disarmed, against replays
         self._stamps: Stamps | None = None  # of the armed sender; None: no command since arming
@@ -192,4 +198,9 @@ class Guard:
         following = next_arming(self.arming, cause)
         if following is not None:
             self.arming, self.reason, self.detail = following, reason, detail
-            self.sender, self._values = "", self._zero
+            self.sender, self._values = "", self._rest()
+
+    def _rest(self) -> tuple[float, ...]:
+        """Zero, or the last set-point of an axis that keeps it."""
+        pairs = zip(self._limits, self._values, strict=True)
+        return tuple(0.0 if limit.kept is None else value for limit, value in pairs)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive import planning
-from tailor.executive.core.command_guard import at_rest, checked
+from tailor.executive.core.command_guard import whole_command
 from tailor.executive.core.context import Context
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import State, Task
+from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
@@ -21,7 +22,7 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     Returns:
       The state after it, and the report of an action that ended in this tick.
     """
-    zero = at_rest(context.domain.axes)
+    zero = at_rest(context.domain.axes, state.command)
     if state.mode is not Mode.EXECUTING:
         return replace(state, command=zero), None
     if state.task.running is None:
@@ -31,7 +32,7 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
         coast = state.coasted < context.settings.coast_ticks
         return replace(state, command=state.command if coast else zero, coasted=state.coasted + 1), None
     running, control, failure = control_step(running, state.now_ns, state.belief)
-    command, rejection = checked(control.command, context.domain.axes)
+    command, rejection = whole_command(context.domain, running.action, control.command, state.command)
     state = replace(state, command=command, task=replace(state.task, running=running))
     cause = rejection or failure
     if cause is not None:
@@ -94,7 +95,7 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
     if failures.count(failure) >= context.settings.replan_failures:
         fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
     task = replace(_after_action(state.task), failures=failures, plan=None, done=frozenset())
-    zero, coasted = at_rest(context.domain.axes), context.settings.coast_ticks
+    zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks
     return replace(state, task=task, deliberation=None, fault=fault, command=zero, coasted=coasted), finished
 
 

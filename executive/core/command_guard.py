@@ -8,12 +8,17 @@ from __future__ import annotations
 import math
 
 from tailor.executive.core.reasons import Cause, Reason
-from tailor.executive.interfaces.domain import Axis
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Axis, Domain
+from tailor.executive.interfaces.outlet import Command, at_rest, completed, driven_axes
 
 
-def at_rest(axes: tuple[Axis, ...]) -> tuple[float, ...]:
-    """The command that brings the robot to rest."""
-    return tuple(0.0 for _ in axes)
+def whole_command(domain: Domain, action: Action, command: Command, last: Command) -> tuple[Command, Cause | None]:
+    """The checked command of all axes: those that the action does not drive rest; after a rejection all do."""
+    driven, rejection = checked(command, driven_axes(domain, action))
+    if rejection is not None:
+        return at_rest(domain.axes, last), rejection
+    return completed(domain, action, driven, last), None
 
 
 def checked(command: tuple[float, ...], axes: tuple[Axis, ...]) -> tuple[tuple[float, ...], Cause | None]:

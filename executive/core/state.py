@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.core.command_guard import at_rest
 from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
@@ -13,6 +12,7 @@ from tailor.executive.core.freshness import Stream
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.plan_reuse import Improvement
 from tailor.executive.core.reasons import Cause, Result
+from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.values import Belief, Fact
 from tailor.executive.planning import GroundCache, Plan
 from tailor.schemas.messages import DriverState, Message, Sample

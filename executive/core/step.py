@@ -16,6 +16,7 @@ from tailor.executive.core.deliberation_cycle import advance_deliberation, recei
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.outlet import messages_of
 from tailor.schemas.messages import ArmRequest
 
 REARM_NS = 500_000_000  # a request without an effect is repeated
@@ -28,8 +29,8 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     state, finished = act(context, state)
     outputs: list[Output] = []
     if disarmed(context, state) is None:
-        command = context.domain.message(state.command, context.stamp(state.now_ns))
-        outputs.append(Output(context.domain.command_topic, command))
+        commands = messages_of(context.domain, state.command, context.stamp(state.now_ns))
+        outputs.extend(Output(topic, command) for topic, command in commands)
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
         outputs.append(Output("self_arm", request))

@@ -18,7 +18,8 @@ class Control:
 
     Attributes:
       state: Controller state, passed to the next step.
-      command: One value per axis of the domain, in its order and units. The executive clamps it to the axis limits.
+      command: One value per axis of the outlets that the action drives, in the domain's order and units. The executive
+        clamps it to the axis limits.
       outcome: "done" and "failed" end the action in this tick.
       detail: Cause of a failure, for people; it becomes the detail of Reason.CONTROLLER_FAILED.
     """
@@ -112,6 +113,8 @@ class Action:
       arguments: Maps parameters, shape (n, p), to the arguments of controller and models, shape (n, k). An example: a
         parameter names the ball's place, the argument is the pose behind it.
       spans: `arguments` on intervals, for certificates. None: unknown, unless `arguments` is `unchanged`.
+      drives: Names of the command outlets that the action drives; empty: all. What it does not drive rests: zero, or
+        the last set-point of an axis that keeps it.
       context: Objects near which the action may fail; None: there are none.
       time_limit_factor: Times the predicted duration; a longer action fails.
       time_limit_floor_s: Minimum of that limit, seconds.
@@ -127,5 +130,6 @@ class Action:
     arguments: Callable[[Array], Array] = unchanged
     spans: Spans | None = None
     context: ActionContext | None = None
+    drives: tuple[str, ...] = ()
     time_limit_factor: float = 3.0
     time_limit_floor_s: float = 10.0

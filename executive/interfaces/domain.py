@@ -20,12 +20,15 @@ class Axis:
       unit: E.g. "rad/s".
       lower: Minimum of the command; lower < 0 < upper, since zero brings the robot to rest.
       upper: Maximum of the command.
+      kept: First set-point of an axis that keeps its last one while no action drives it, such as the width of a
+        gripper; its range need not contain zero. None: zero brings the axis to rest.
     """
 
     name: str
     unit: str
     lower: float
     upper: float
+    kept: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,8 @@ class Domain(Protocol):
       pddl: PDDL text of the domain.
       actions: Executable actions by name.
       executables: Executable name by PDDL action name (lower case).
-      axes: Axes of the command.
+      axes: Axes of the command. A robot with several command outlets also has an attribute `outlets`, see
+        tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first.
       command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
       sensors: Topics from which the belief is estimated.
       required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.

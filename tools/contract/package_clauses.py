@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tailor.executive.composition import load_models
+from tailor.executive.interfaces.outlet import messages_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.schemas.topics import TOPICS
@@ -28,8 +29,9 @@ def axes_contain_rest(subject: Subject, case: str) -> Iterator[str]:
     for axis in subject.domain.axes:
         if not axis.unit:
             yield f"axis {axis.name} has no unit"
-        if not axis.lower <= 0.0 <= axis.upper:
-            yield f"axis {axis.name} ranges from {axis.lower:g} to {axis.upper:g}, expected 0 between them"
+        rest = 0.0 if axis.kept is None else axis.kept
+        if not axis.lower <= rest <= axis.upper:
+            yield f"axis {axis.name} ranges from {axis.lower:g} to {axis.upper:g}, expected {rest:g} between them"
 
 
 @clause("package")
@@ -42,12 +44,12 @@ def parameters_have_units(subject: Subject, case: str) -> Iterator[str]:
 @clause("package")
 def command_becomes_a_message(subject: Subject, case: str) -> Iterator[str]:
     """`message` turns a command into a message of the type of its topic, with the given stamp."""
-    domain = subject.domain
-    message, expected = domain.message(tuple(SMALL for _ in domain.axes), 7), TOPICS[domain.command_topic].type
-    if type(message) is not expected:
-        yield f"message is a {type(message).__name__}, expected {expected.__name__} by the topic {domain.command_topic}"
-    elif getattr(message, "stamp_ns", 7) != 7:
-        yield f"message has the stamp {getattr(message, 'stamp_ns', None)}, expected 7"
+    for topic, message in messages_of(subject.domain, tuple(SMALL for _ in subject.domain.axes), 7):
+        expected = TOPICS[topic].type
+        if type(message) is not expected:
+            yield f"message is a {type(message).__name__}, expected {expected.__name__} by the topic {topic}"
+        elif getattr(message, "stamp_ns", 7) != 7:
+            yield f"message has the stamp {getattr(message, 'stamp_ns', None)}, expected 7"
 
 
 @clause("package")

@@ -10,6 +10,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain, Scenario
+from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.values import Array, Belief
 from tailor.schemas.installed import spec_of
 from tailor.schemas.packages.spec import DomainSpec
@@ -75,7 +76,7 @@ class Subject:
 
     def look(self, start: Mapping[str, float], seed: int = 0) -> tuple[Belief, list[Reading]]:
         """The belief of a robot that stood and looked around, and all that its body sensed."""
-        zero = (0.0,) * len(self.domain.axes)
+        zero = at_rest(self.domain.axes)
         belief, readings = self.domain.initial_belief(), []
         self.body.reset(np.random.default_rng([seed, 1]), start)
         for tick in range(1, LOOKING_TICKS + 1):

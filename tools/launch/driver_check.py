@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import DriverSpec, read_driver_spec, shipped_driver_spec
 
@@ -37,8 +38,10 @@ def check_driver(domain: Domain, driver: DriverSpec) -> None:
 def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
     """All reasons why the driver would not accept every command of the domain."""
     mismatches = []
-    if domain.command_topic != driver.command_topic:
-        mismatches.append(f"the domain publishes {domain.command_topic}, the driver expects {driver.command_topic}")
+    published = tuple(outlet.topic for outlet in outlets_of(domain))
+    if published != driver.command_topics:
+        expected = ", ".join(driver.command_topics)
+        mismatches.append(f"the domain publishes {', '.join(published)}, the driver expects {expected}")
     names = tuple(axis.name for axis in domain.axes)
     if names != driver.axes:
         mismatches.append(f"the domain has the axes {', '.join(names)}, the driver {', '.join(driver.axes)}")
@@ -49,4 +52,13 @@ def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
             for axis, limit in zip(domain.axes, driver.limits, strict=True)
             if not (limit.lower <= axis.lower and axis.upper <= limit.upper)
         ]
+        mismatches += [
+            f"{axis.name} is {_rest(axis.kept)} at rest, by the driver {_rest(limit.kept)}"
+            for axis, limit in zip(domain.axes, driver.limits, strict=True)
+            if axis.kept != limit.kept
+        ]
     return mismatches
+
+
+def _rest(kept: float | None) -> str:
+    return "zero" if kept is None else f"kept, {kept:g} at first"

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of
 from tailor.schemas.packages.spec import DomainSpec
@@ -48,8 +49,13 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
 
 
 def _faults_of_topics(domain: Domain) -> Iterator[str]:
-    for field, names in (("command_topic", (domain.command_topic,)), ("sensors", domain.sensors)):
+    commands = tuple(outlet.topic for outlet in outlets_of(domain))
+    field_of_commands = "outlets" if getattr(domain, "outlets", ()) else "command_topic"
+    for field, names in ((field_of_commands, commands), ("sensors", domain.sensors)):
         yield from (f"{field}: there is no topic '{name}'" for name in names if name not in TOPICS)
+    axes = tuple(axis for outlet in outlets_of(domain) for axis in outlet.axes)
+    if axes != domain.axes:
+        yield "axes are not those of all outlets, in their order"
     yield from (f"required: '{name}' is none of sensors" for name in domain.required if name not in domain.sensors)
 
 
@@ -79,6 +85,8 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
         if not model.endswith(f"/{kind}") and (model or kind == "duration"):
             yield f"{kind}_model is '{model}', expected ACTION/{kind}"
     yield from _faults_of_context(action)
+    outlets = {outlet.name for outlet in outlets_of(domain)}
+    yield from (f"drives '{name}', which is none of outlets" for name in action.drives if name not in outlets)
     if action.subgoal_action and action.subgoal_action not in domain.actions:
         yield f"subgoal_action is '{action.subgoal_action}', which is none of actions"
     names = [parameter.name for parameter in action.parameters]

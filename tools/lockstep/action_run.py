@@ -14,6 +14,7 @@ import numpy as np
 
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.outlet import at_rest, completed
 from tailor.executive.interfaces.values import Array, Belief
 from tailor.schemas.installed import part, spec_of
 from tailor.schemas.messages import ActionFinished, Message, Sample
@@ -211,19 +212,21 @@ def run_action(
     state: Any = None
     failure, examples, work, trace = "", [], [], []
     truth = body.ground_truth()
+    command = at_rest(domain.axes)
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         failure = failure or sampler.failure(action, start, truth)
         examples.append([*sampler.arguments_now(action, belief, arguments), *row])
         control = action.controller(state, now_ns, belief, arguments)
+        command = completed(domain, action, control.command, command)
         if traced:
-            trace.append(Tick(now_ns * 1e-9, belief, truth, control.command))
+            trace.append(Tick(now_ns * 1e-9, belief, truth, command))
         if control.outcome != "running":
             break
         state = control.state
-        body.command(control.command)
+        body.command(command)
         readings = body.advance(PERIOD_NS)
-        belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), control.command)
+        belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), command)
         failure = failure or judged(sampler, action, start, readings)
         before, truth = truth, body.ground_truth()
         work.append(sampler.work_j(before, truth))

@@ -113,7 +113,7 @@ class _Link:
 
     def send(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
         """Pass the tick's commands and requests to the driver."""
-        received = (self._spec.command_topic, "self_arm")
+        received = (*self._spec.command_topics, "self_arm")
         samples = [
             Sample(key_of(o.topic, self._robot), o.message, now_ns, tick, SENDER)
             for o in outputs

@@ -1,0 +1,72 @@
+"""Command outlets of a robot: base, arm and gripper, say, each with a topic, axes and a message of its own.
+
+A robot with one outlet declares `axes`, `command_topic` and `message` in its domain. One with several declares
+`outlets` as well, in the order of `axes`; all of them are published in each tick, behind one guard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.domain import Axis, Domain
+from tailor.schemas.messages import Message
+
+Command = tuple[float, ...]  # one value per axis
+
+
+@dataclass(frozen=True, slots=True)
+class Outlet:
+    """One outlet.
+
+    Attributes:
+      name: As in Action.drives, e.g. "gripper".
+      topic: Topic of its command, a key of tailor.schemas.topics.TOPICS.
+      axes: Its axes.
+      message: Makes the message of the topic's type from one finite value per axis, and a stamp in ns.
+    """
+
+    name: str
+    topic: str
+    axes: tuple[Axis, ...]
+    message: Callable[[Command, int], Message]
+
+
+def outlets_of(domain: Domain) -> tuple[Outlet, ...]:
+    """All outlets of a robot, in the order of the domain's axes."""
+    declared: tuple[Outlet, ...] = getattr(domain, "outlets", ())
+    return declared or (Outlet("", domain.command_topic, domain.axes, domain.message),)
+
+
+def messages_of(domain: Domain, command: Command, stamp_ns: int) -> tuple[tuple[str, Message], ...]:
+    """Topic and message of each outlet for a command of all axes."""
+    messages, first = [], 0
+    for outlet in outlets_of(domain):
+        last = first + len(outlet.axes)
+        messages.append((outlet.topic, outlet.message(command[first:last], stamp_ns)))
+        first = last
+    return tuple(messages)
+
+
+def driven_axes(domain: Domain, action: Action) -> tuple[Axis, ...]:
+    """Axes that an action's controller commands, in the order of the domain's axes."""
+    if not action.drives:
+        return domain.axes
+    return tuple(axis for outlet in outlets_of(domain) if outlet.name in action.drives for axis in outlet.axes)
+
+
+def at_rest(axes: tuple[Axis, ...], last: Command = ()) -> Command:
+    """The command that brings the robot to rest: zero, or for an axis that keeps its set-point the last one."""
+    before = last or tuple(0.0 if axis.kept is None else axis.kept for axis in axes)
+    return tuple(0.0 if axis.kept is None else value for axis, value in zip(axes, before, strict=True))
+
+
+def completed(domain: Domain, action: Action, command: Command, last: Command) -> Command:
+    """A command of all axes from that of the driven ones: the others rest. One of a wrong length is not completed."""
+    driven = driven_axes(domain, action)
+    if not action.drives or len(command) != len(driven):
+        return command
+    values = dict(zip((axis.name for axis in driven), command, strict=True))
+    rest = at_rest(domain.axes, last)
+    return tuple(values.get(axis.name, value) for axis, value in zip(domain.axes, rest, strict=True))
