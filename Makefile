@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants goldens models lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models lint types bench clean
 
 setup: .venv/.installed
 
@@ -31,6 +31,9 @@ test-faults: setup  # the promises of SAFETY.md; one test after another, or they
 
 test-mutants: setup  # hand-made mistakes in safety code, each of which a test must see
 	$(BIN)/python -m tests.mutants.runner
+
+test-packages: setup  # new robots, the tutorial and a foreign package, from the wheel to a verified run: 15 minutes
+	$(BIN)/python -m pytest tests/e2e/packages
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew
