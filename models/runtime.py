@@ -14,6 +14,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
+from tailor.models.bounds.interval_boxes import UPPER_SCORE
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
 from tailor.models.cards.card import (
     KINDS,
@@ -59,13 +60,41 @@ class OnnxDuration:
           arguments: Arguments of the action, shape (n, k), in the order and units of the card.
 
         Returns:
-          Mean and standard deviation in seconds (or joules), shapes (n,); NaN where the prediction is invalid.
+          Mean and standard deviation in seconds (or joules), shapes (n,); NaN where the prediction is invalid. The
+          deviation of a model with intervals is that of a normal distribution with the same 95 % quantile.
         """
-        mean, std = self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
-        valid = (mean >= self.output_min) & (mean <= self.output_max) & (std >= 0)
-        if not valid.all():
-            mean, std = np.where(valid, mean, np.nan), np.where(valid, std, np.nan)
-        return mean.astype(np.float64), std.astype(np.float64)
+        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
+        std = (rest[1] - mean) / UPPER_SCORE if self.calibrated else rest[0]
+        mean, std = self._valid(mean, (mean, std), std)
+        return mean, std
+
+    def interval(self, arguments: Array) -> tuple[Array, Array, Array]:
+        """Predict durations or energies with intervals that hold 90 % of them.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Mean, lower and upper end in seconds (or joules), shapes (n,); NaN where the prediction is invalid.
+        """
+        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
+        half = float(self.card["test"].get("interval90_factor", UPPER_SCORE)) * rest[0]
+        lower, upper = rest if self.calibrated else (mean - half, mean + half)
+        mean, lower, upper = self._valid(mean, (mean, lower, upper), upper - mean)
+        return mean, lower, upper
+
+    @property
+    def calibrated(self) -> bool:
+        """Whether the graph has intervals of its own, and not only a standard deviation."""
+        return len(self.card["outputs"]) == 3
+
+    def _run(self, arguments: Array) -> Any:
+        return self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
+
+    def _valid(self, mean: Array, values: tuple[Array, ...], width: Array) -> Any:
+        """The values, NaN where the mean is out of range or the width is negative."""
+        valid = (mean >= self.output_min) & (mean <= self.output_max) & (width >= 0)
+        return values if valid.all() else tuple(np.where(valid, each, np.nan) for each in values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +240,7 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
     arguments = np.array(golden["arguments"], np.float64)
     match model:
         case OnnxDuration():
-            predictions: tuple[Array, ...] = model.predict(arguments)
+            predictions: tuple[Array, ...] = model.interval(arguments) if model.calibrated else model.predict(arguments)
         case OnnxSuccess():
             predictions = (model.probability(arguments),)
     for name, values in zip(card["outputs"], predictions, strict=True):

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.bag_bounds import bag_lower_bound
+from tailor.models.bounds.interval_boxes import interval_boxes
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.features.feature_intervals import FEATURE_SPANS
@@ -20,21 +21,29 @@ from tailor.models.features.sight_intervals import Spans
 Columns = tuple[Array, ...]  # one array per argument; they broadcast to one shape of three axes
 MARGIN = 1e-4  # m or rad: far more than rounding moves the bounds of a part beyond those of the whole
 
+ANY_STD = Span(np.zeros((1, 1, 1)), np.full((1, 1, 1), np.inf))  # the bound holds whatever the trees' std is
+OFFSET_ROUNDING = np.float32(1e-5)  # of the difference of two predictions in single precision
+
 MIN_SELECTION = 200  # pairs of boxes, by case; below, selecting the possible ones costs more than it saves
 
 
 @dataclass(frozen=True, slots=True)
 class ModelBounds:
-    """The bounds of one model, computed from its trees and its feature space."""
+    """The bounds of one model, computed from its trees and its feature space.
+
+    `spread` are the bounds of the tree of intervals; None: the standard deviation is that over the trees.
+    """
 
     space: str
     trees: LeafBounds
+    spread: LeafBounds | None = None
 
     def within(self, lower: Columns, upper: Columns) -> ModelBounds:
         """The bounds restricted to arguments between these, with fewer leaves: much faster to compute."""
         cases = FEATURE_SPANS[self.space](tuple(map(Span, lower, upper)))
-        hulls = (reduce(Span.hull, spans) for spans in zip(*(case.features for case in cases), strict=True))
-        return replace(self, trees=self.trees.within(tuple(hulls), MARGIN))
+        hulls = tuple(reduce(Span.hull, spans) for spans in zip(*(case.features for case in cases), strict=True))
+        spread = self.spread and self.spread.within((*hulls, ANY_STD), MARGIN)
+        return replace(self, trees=self.trees.within(hulls, MARGIN), spread=spread)
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """Lower bound of the mean plus `k_std` standard deviations over boxes of arguments.
@@ -47,22 +56,23 @@ class ModelBounds:
         Returns:
           Seconds, joules or probability, of the broadcast shape.
         """
-        return self._over_cases(tuple(map(Span, lower, upper)), lambda overlap: self._mean_and_std(overlap, k_std))
+        arguments = tuple(map(Span, lower, upper))
+        return self._over_cases(arguments, lambda features, overlap: self._mean_and_std(features, overlap, k_std))
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """Upper bound of the mean over boxes of arguments, as `lower_bound`."""
         trees = self.trees
         return -self._over_cases(
             tuple(map(Span, lower, upper)),
-            lambda overlap: trees.least(overlap, Side.OPPOSITE)[0].mean(axis=0) - trees.slack,
+            lambda _, overlap: trees.least(overlap, Side.OPPOSITE)[0].mean(axis=0) - trees.slack,
         )
 
     @property
     def effort(self) -> int:
         """Maximum number of leaves that one bound considers."""
-        return self.trees.leaves
+        return self.trees.leaves + (0 if self.spread is None else self.spread.leaves)
 
-    def _over_cases(self, arguments: Spans, least: Callable[[Overlap], Floats]) -> Array:
+    def _over_cases(self, arguments: Spans, least: Callable[[Spans, Overlap], Floats]) -> Array:
         """Minimum over all cases of the features, each where it is possible.
 
         If a tree has no leaf for a case, there are no such arguments: the case and sums with it are ignored.
@@ -77,13 +87,17 @@ class ModelBounds:
             overlap = self.trees.overlap(features)
             if not overlap.empty:
                 with np.errstate(invalid="ignore"):
-                    values = np.fmin(bound[at], least(overlap))
+                    values = np.fmin(bound[at], least(features, overlap))
                 bound[at] = np.where(possible[at], values, bound[at])
         return bound
 
-    def _mean_and_std(self, overlap: Overlap, k_std: float) -> Floats:
-        """Lower bound of the mean plus k standard deviations of the trees, shape (...)."""
+    def _mean_and_std(self, features: Spans, overlap: Overlap, k_std: float) -> Floats:
+        """Lower bound of the mean plus k standard deviations, shape (...)."""
         trees, slack = self.trees, np.float32(self.trees.slack)
+        if self.spread is not None and k_std > 0:
+            spread = self.spread.least(self.spread.overlap((*features, ANY_STD)), Side.LEAST)[0, 0] - OFFSET_ROUNDING
+            total: Floats = trees.least(overlap, Side.LEAST)[0].mean(axis=0) - slack + np.float32(k_std) * spread
+            return total
         if k_std <= 0 or trees.trees == 1:
             mean: Floats = trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack
             return mean
@@ -103,7 +117,10 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
       The bounds; None if the model is not made of trees, or the feature space has no intervals.
     """
     boxes = tree_boxes(model, features) if space in FEATURE_SPANS else None
-    return None if boxes is None else ModelBounds(space, LeafBounds(boxes))
+    if boxes is None:
+        return None
+    spread = interval_boxes(model, features)
+    return ModelBounds(space, LeafBounds(boxes), None if spread is None else LeafBounds(spread))
 
 
 def _selected(features: Spans, possible: NDArray[np.bool_]) -> tuple[Spans, Any]:

@@ -19,12 +19,13 @@ DTYPES = {1: "<f4", 4: "<u2", 6: "<i4", 7: "<i8", 11: "<f8"}  # TensorProto.data
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """An operator: names of inputs and outputs, and those attributes that are lists of numbers."""
+    """An operator: its name, names of inputs and outputs, and those attributes that are lists of numbers."""
 
     op: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     attributes: dict[str, NDArray[Any]]
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,7 @@ def _varint(message: memoryview, at: int) -> tuple[int, int]:
 
 
 def _node(message: memoryview) -> Node:
-    texts: dict[int, list[str]] = {1: [], 2: [], 4: []}
+    texts: dict[int, list[str]] = {1: [], 2: [], 3: [""], 4: []}
     attributes: dict[str, NDArray[Any]] = {}
     for number, value in _fields(message):
         if number in texts:
@@ -87,7 +88,7 @@ def _node(message: memoryview) -> Node:
         elif number == 5:
             name, numbers = _attribute(value)
             attributes[name] = numbers
-    return Node(texts[4][0], tuple(texts[1]), tuple(texts[2]), attributes)
+    return Node(texts[4][0], tuple(texts[1]), tuple(texts[2]), attributes, texts[3][-1])
 
 
 def _attribute(message: memoryview) -> tuple[str, NDArray[Any]]:

@@ -62,7 +62,10 @@ def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
     """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes."""
     try:
         graph = read_graph(model)
-        ensembles = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
+        if any(node.op == "Relu" for node in graph.nodes):
+            return None  # a network, alone or blended with trees
+        trees = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
+        ensembles = [node for node in trees if node.name != tree_names.INTERVALS]
         boxes = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)
         return _linear(graph, *boxes) if tree_names.LOW in graph.constants else _plain(graph, *boxes)
     except (ValueError, KeyError, IndexError):
@@ -110,6 +113,12 @@ def _boxes(ensembles: list[Node], features: int) -> tuple[Ints, Floats, Floats, 
             parts.append(part)
     lower, upper, values = (np.concatenate(column) for column in zip(*parts, strict=True))
     return np.array(first), lower, upper, values
+
+
+def boxes_of_node(node: Node, features: int) -> tuple[Floats, Floats, Floats]:
+    """Boxes and numbers of the leaves of a tree that is alone in its node."""
+    every = np.ones(len(node.attributes["nodes_treeids"]), bool)
+    return _tree(node.attributes, every, np.ones(len(node.attributes["target_treeids"]), bool), features)
 
 
 def _tree(

@@ -22,7 +22,9 @@ ENSEMBLE = (
 )  # fmt: skip
 
 
-def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]]) -> str:
+def add_steps(
+    sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArray[np.float32]]], **attributes: Any
+) -> str:
     """The sum of trees with one number in each leaf, (l,): features (n, f) to (n, 1)."""
     rows: dict[str, list[Any]] = {name: [] for name in ENSEMBLE}
     for number, (tree, values) in enumerate(steps):
@@ -34,8 +36,15 @@ def add_steps(sink: Sink, features: str, steps: Sequence[tuple[SplitTree, NDArra
             if not inner:
                 for name, item in zip(ENSEMBLE[7:], (number, node, 0, float(values[tree.leaf[node]])), strict=True):
                     rows[name].append(item)
-    attributes: dict[str, Any] = {"n_targets": 1, "post_transform": "NONE", **rows}
+    attributes = {"n_targets": 1, "post_transform": "NONE", **rows, **attributes}
     return str(sink.add("TreeEnsembleRegressor", features, domain=ML, **attributes))
+
+
+def add_number(sink: Sink, features: str, tree: SplitTree, name: str) -> str:
+    """Leaf numbers of a single tree, by a node of that name: features (n, f) to (n,)."""
+    number = add_steps(sink, features, [(tree, np.arange(tree.leaves, dtype=np.float32))], name=name)
+    flat = sink.add("Reshape", number, sink.constant(np.array([-1])))
+    return str(sink.add("Cast", flat, to=TensorProto.INT32))
 
 
 def add_leaves(sink: Sink, features: str, trees: Sequence[SplitTree], width: int) -> str:

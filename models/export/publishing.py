@@ -25,6 +25,7 @@ from tailor.models.training.training import Trained
 Array = NDArray[np.float64]
 GOLDEN = 32  # examples in a card
 MAX_FACTOR = 3.0  # predictions above three times the longest episode, or its energy, are invalid
+ROUNDING = 1e-5  # s or J: more than graph and learner differ by
 LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 
 
@@ -67,11 +68,9 @@ def _exported(learner: Any, about: Publication, card: Card) -> onnx.ModelProto:
 
 def _outputs(kind: str) -> list[str]:
     """Names of the graph's outputs."""
-    return (
-        ["success"]
-        if kind in SUCCESS_KINDS
-        else [f"{name}_{REGRESSION_TARGETS[kind].unit}" for name in ("mean", "std")]
-    )
+    if kind in SUCCESS_KINDS:
+        return ["success"]
+    return [f"{name}_{REGRESSION_TARGETS[kind].unit}" for name in ("mean", "lower", "upper")]
 
 
 def _output_range(data: DataSet, kind: str) -> list[float]:
@@ -116,10 +115,12 @@ def _episodes(data: DataSet) -> dict[str, Any]:
 
 def _learner(trained: Trained, about: Publication) -> dict[str, Any]:
     """Card entries of the learner."""
+    learner = getattr(trained.learner, "inner_", trained.learner)
     return {
         "name": about.learner,
-        "settings": {k: v for k, v in trained.learner.get_params(deep=False).items() if _plain(v)},
-        "leaves": leaves(trained.learner),
+        **({"weights": learner.weights_} if hasattr(learner, "weights_") else {}),
+        "settings": {k: v for k, v in learner.get_params(deep=False).items() if _plain(v)},
+        "leaves": leaves(learner),
         "n_i": trained.n_i,
         "seed": about.seed,
     }
@@ -138,6 +139,8 @@ def leaves(learner: Any) -> list[int]:
     """Number of leaves of each tree of a learner; empty if it has no trees."""
     if hasattr(learner, "steps_"):
         return [splits.leaves for splits, _ in learner.steps_]
+    if hasattr(learner, "members_"):
+        return [count for member in learner.members_.values() for count in leaves(member)]
     return [tree.leaves for tree in getattr(learner, "trees_", [])]
 
 
@@ -147,10 +150,20 @@ def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequenc
     arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
     half = (arguments.shape[1] - len(data.manifest.get(CONTEXT, {}).get("names", ()))) // 2
     arguments[-1, half : 2 * half] = arguments[-1, :half]
+    if about.kind not in SUCCESS_KINDS:
+        arguments = _off_thresholds(arguments, learner, about.space)
     features = about.space(arguments)
     if about.kind in SUCCESS_KINDS:
         predictions: Mapping[str, Array] = {"success": learner.predict_proba(features)[:, 1]}
     else:
-        predictions = dict(zip(_outputs(about.kind), learner.predict_with_std(features), strict=True))
+        predictions = dict(zip(_outputs(about.kind), learner.predict_interval(features), strict=True))
     rounded = {name: np.round(values.astype(np.float64), 6).tolist() for name, values in predictions.items()}
     return {"arguments": arguments.tolist(), **rounded}
+
+
+def _off_thresholds(arguments: Array, learner: Any, space: FeatureSpace) -> Array:
+    """The rows whose interval does not depend on rounding errors of the standard deviation."""
+    features = space(arguments)
+    _, std = learner.predict_with_std(features)
+    ends = [learner.intervals_.around(features, 0.0, std + step)[1] for step in (-ROUNDING, 0.0, ROUNDING)]
+    return np.asarray(arguments[(ends[0] == ends[1]) & (ends[1] == ends[2])])

@@ -1,6 +1,7 @@
-"""Calibration of prediction intervals where they are used: on the optimiser's choices, if enough are available.
+"""Coverage of prediction intervals on held-out episodes: by thirds of their widths, random and on-policy.
 
-An interval calibrated on random episodes covers less there (learning.md): the optimiser prefers where a model errs.
+An interval that holds nine tenths of all errors may still hold too few where it is narrow, and the optimiser prefers
+where a model is sure; so each third is judged by itself, on random arguments and on the optimiser's choices.
 """
 
 from __future__ import annotations
@@ -10,36 +11,50 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.training import scores
+from tailor.models.regression.intervals import LEVEL
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
-LEVEL = 0.9
-MIN_POLICY_EPISODES = 30  # on-policy test episodes: fewer do not determine a tenth of them
+MIN_EPISODES = 30  # test episodes of a kind: fewer do not determine a tenth of them
+THIRDS = 3
 
 
-def calibrated(errors: Array, std: Array, on_policy: NDArray[np.bool_]) -> dict[str, Any]:
-    """Card entries of the interval `mean ± factor · std` that covers 90 % of the errors.
+def judged(observed: Array, lower: Array, upper: Array, on_policy: Bools) -> dict[str, Any]:
+    """Card entries of intervals.
 
     Args:
-      errors: Observed minus predicted values of held-out episodes, shape (n,).
-      std: Their predicted standard deviations, shape (n,).
-      on_policy: Whether the optimiser chose the episode, shape (n,); if enough are, they alone set the factor.
+      observed: Values of held-out episodes, shape (n,).
+      lower: Lower ends, shape (n,).
+      upper: Upper ends, shape (n,).
+      on_policy: Whether the optimiser chose the episode, shape (n,).
 
     Returns:
-      `interval90_factor`, `interval90_on` ("on-policy" or "random") and, with both kinds of episodes, the random ones'
-      factor and the share of on-policy errors that it would cover.
+      `intervals`: for "random" and "on_policy" episodes, if there are enough, what `coverage` returns.
     """
-    random = ~on_policy
-    enough = int(on_policy.sum()) >= MIN_POLICY_EPISODES
-    used = on_policy if enough else random if random.any() else on_policy
-    entries: dict[str, Any] = {
-        "interval90_factor": scores.interval_factor(errors[used], std[used], LEVEL),
-        "interval90_on": "on-policy" if used is on_policy else "random",
-        "interval90_n": int(used.sum()),
+    kinds = {"random": ~on_policy, "on_policy": on_policy}
+    enough = {name: rows for name, rows in kinds.items() if rows.sum() >= MIN_EPISODES}
+    return {
+        "intervals": {
+            name: coverage(observed[rows], lower[rows], upper[rows])
+            for name, rows in (enough or {"all": np.ones_like(on_policy)}).items()
+        }
     }
-    if enough and random.any():
-        factor = scores.interval_factor(errors[random], std[random], LEVEL)
-        entries["interval90_random_factor"] = factor
-        entries["interval90_random_covers_pct"] = scores.coverage(errors[on_policy], std[on_policy], factor)
-    return entries
+
+
+def coverage(observed: Array, lower: Array, upper: Array) -> dict[str, Any]:
+    """Percent of the values that intervals hold, in all and by thirds of rising width, and their cost.
+
+    `winkler` is the mean width plus, for each value outside, its distance times 2 / (1 - LEVEL): the proper score of an
+    interval (Winkler 1972), in the unit of the values.
+    """
+    held = (observed >= lower) & (observed <= upper)
+    order = np.argsort(upper - lower, kind="stable")
+    outside = np.maximum(lower - observed, 0) + np.maximum(observed - upper, 0)
+    return {
+        "n": len(observed),
+        "covers_pct": float(100 * held.mean()),
+        "covers_thirds_pct": [float(100 * held[part].mean()) for part in np.array_split(order, THIRDS)],
+        "width": float(np.mean(upper - lower)),
+        "winkler": float(np.mean(upper - lower + 2 / (1 - LEVEL) * outside)),
+    }

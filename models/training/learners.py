@@ -7,7 +7,7 @@ from typing import Any
 
 from sklearn.calibration import CalibratedClassifierCV
 from sklearn.ensemble import GradientBoostingClassifier, GradientBoostingRegressor
-from sklearn.neural_network import MLPClassifier, MLPRegressor
+from sklearn.neural_network import MLPClassifier
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
@@ -16,6 +16,9 @@ from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
+from tailor.models.regression.blend import STACK, BlendedRegressor
+from tailor.models.regression.calibrated import CalibratedRegressor
+from tailor.models.regression.network import NetworkRegressor
 from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
 from tailor.models.trees.distillation import DistilledModelTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
@@ -33,8 +36,8 @@ ROBUST: Mapping[str, Any] = {
 NETWORK = {"hidden_layer_sizes": (40, 40), "alpha": 1e-2, "max_iter": 1500, "early_stopping": True}
 
 
-def _network(kind: type, seed: int) -> Any:
-    return make_pipeline(StandardScaler(), kind(**NETWORK, random_state=seed))
+def _network(seed: int) -> Any:
+    return make_pipeline(StandardScaler(), MLPClassifier(**NETWORK, random_state=seed))
 
 
 def _svm(seed: int) -> Any:
@@ -49,7 +52,9 @@ DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "linear": lambda seed: ModelTreeRegressor("linear", random_state=seed),
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
     "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
-    "network": lambda seed: SklearnRegressor(_network(MLPRegressor, seed)),
+    "network": lambda seed: NetworkRegressor(random_state=seed),
+    "stack": lambda seed: BlendedRegressor((STACK,), random_state=seed),
+    "best": lambda seed: BlendedRegressor(random_state=seed),
 }
 SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "distilled-forest": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
@@ -57,7 +62,7 @@ SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "distilled-tree": lambda seed: DistilledFailureTree(cost_ratio=COST_RATIO, random_state=seed),
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
     "boosting": lambda seed: SklearnClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
-    "network": lambda seed: SklearnClassifier(_network(MLPClassifier, seed), COST_RATIO),
+    "network": lambda seed: SklearnClassifier(_network(seed), COST_RATIO),
     "svm": lambda seed: SklearnClassifier(_svm(seed), COST_RATIO),
 }
 
@@ -81,6 +86,11 @@ def make_learner(kind: str, name: str, seed: int) -> Any:
       UsageError: There is no learner of that name for that kind.
     """
     return _table(kind)[learner_name(kind, name)](seed)
+
+
+def calibrated(kind: str, name: str, seed: int) -> CalibratedRegressor:
+    """An unfitted learner of durations or energies with prediction intervals; arguments as for `make_learner`."""
+    return CalibratedRegressor(make_learner(kind, name, seed), seed)
 
 
 def learner_name(kind: str, name: str) -> str:

@@ -11,13 +11,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from sklearn.base import clone
 
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.models.episodes.examples import Examples, folds, split, success_examples
 from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
+from tailor.models.regression.blend import BlendedRegressor
+from tailor.models.regression.calibrated import CalibratedRegressor
 from tailor.models.training import learners, scores
-from tailor.models.training.calibration import calibrated
+from tailor.models.training.calibration import judged
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -25,7 +28,7 @@ Array = NDArray[np.float64]
 TEST_SHARE = 0.25  # of the episodes (paper 5.1)
 FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
 FOLDS = 4
-CURVE = (0.125, 0.25, 0.5, 0.75, 1.0)  # shares of the training episodes in the learning curve
+CURVE = (0.125, 0.25, 0.5, 0.75)  # shares, besides all of them, of the training episodes in the learning curve
 MIN_EPISODES = 40  # fewer cannot be split four ways
 
 
@@ -72,9 +75,10 @@ def train_regression(
     n_i = _best_n_i(target, finished, kept, space, rng)
     rows = target.examples(finished, n_i)
     first = target.examples(finished, 1).of(apart)
-    held_out = fit(target.kind, learner, rows.of(kept), space, seed)
-    mean, std = held_out.predict_with_std(space(first.arguments))
+    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space)
+    mean, lower, upper = held_out.predict_interval(space(first.arguments))
     errors = first.targets - mean
+    chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
     mae, ci = scores.mean_with_ci(np.abs(errors), rng)
     on_policy = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
     unit = target.unit
@@ -86,10 +90,11 @@ def train_regression(
         "mae_ci95": list(ci),
         f"mae_first_ticks_{unit}": _mae(held_out, rows.of(apart), space),
         f"bias_{unit}": float(-errors.mean()),
-        **calibrated(errors, std, on_policy),
-        "learning_curve": _curve(target.kind, learner, rows, first, kept, space, rng, seed),
+        **judged(first.targets, lower, upper, on_policy),
+        "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
+        **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
-    return Trained(fit(target.kind, learner, rows, space, seed), n_i, test)
+    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space), n_i, test)
 
 
 def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
@@ -147,6 +152,10 @@ def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) ->
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 
 
+def _fitted(learner: Any, rows: Examples, space: FeatureSpace) -> Any:
+    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups)
+
+
 def _check_count(episodes: Sequence[Episode], what: str) -> None:
     if len(episodes) < MIN_EPISODES:
         raise UsageError(f"{len(episodes)} {what} episodes, expected at least {MIN_EPISODES}".replace("  ", " "))
@@ -175,18 +184,17 @@ def _mae(learner: Any, rows: Examples, space: FeatureSpace) -> float:
 
 
 def _curve(
-    kind: str,
-    learner: str,
+    learner: Any,
+    whole: Any,
     rows: Examples,
     test: Examples,
     kept: NDArray[np.int64],
     space: FeatureSpace,
     rng: np.random.Generator,
-    seed: int,
 ) -> list[list[float]]:
-    """MAE on the test episodes against the number of training episodes (paper 5.1)."""
+    """MAE on the test episodes against the number of training episodes (paper 5.1); `whole` is fitted to all."""
     order, curve = rng.permutation(kept), []
     for share in CURVE:
         some = order[: round(share * len(order))]
-        curve.append([len(some), _mae(fit(kind, learner, rows.of(some), space, seed), test, space)])
-    return curve
+        curve.append([len(some), _mae(_fitted(clone(learner), rows.of(some), space), test, space)])
+    return [*curve, [len(order), _mae(whole, test, space)]]

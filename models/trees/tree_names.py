@@ -10,3 +10,5 @@ FORMULAS = "formulas"  # (l, f + 1) of one tree: slopes and intercept of each le
 TERM = "term_{}"  # (k, m) of k trees of at most m leaves: one for each column of their formulas
 LOW, HIGH = "low", "high"  # (k, m), range that a leaf is clipped to
 LEAF_STD = "spread"  # (1, l) of one tree
+INTERVALS = "intervals"  # the node of the tree whose leaves hold intervals; its last feature is the std
+INTERVAL_LOWER, INTERVAL_UPPER = "interval_lower", "interval_upper"  # (l,), added to the mean

@@ -21,7 +21,10 @@ from tests.support.random_trees import Trees
 
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
 SHAPE = (1, 1, 1)
-LEARNED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
+SHIPPED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
+LEARNED = [
+    path for path in SHIPPED if "network" not in json.loads(card_path(path).read_text())["learner"].get("weights", {})
+]
 spaces = st.sampled_from(
     ["direct", "relative", "projective", "projective-turn", "joints", "joints-lifted", "one-obstacle"]
 )
@@ -124,7 +127,7 @@ def test_trees_read_from_a_learned_model_say_what_it_says(path):
     assert boxes is not None
     said, spread = Trees(space.name, boxes).predict(np.array(golden["arguments"]))
     np.testing.assert_allclose(said, golden[card["outputs"][0]], atol=1e-4)
-    if len(card["outputs"]) > 1:
+    if len(card["outputs"]) == 2:
         np.testing.assert_allclose(spread, golden[card["outputs"][1]], atol=1e-4)
 
 

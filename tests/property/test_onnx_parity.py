@@ -12,6 +12,8 @@ from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.features.joints import joints
 from tailor.models.features.planar import projective
 from tailor.models.features.spaces import feature_spaces
+from tailor.models.regression.blend import BlendedRegressor
+from tailor.models.regression.calibrated import CalibratedRegressor
 from tailor.models.trees import cells
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 from tailor.models.trees.split_tree import LEAF
@@ -79,6 +81,31 @@ def test_durations_agree(learner, examples) -> None:
     expected = learner.predict_with_std(projective(rows))
     assert np.abs(mean - expected[0]).max() <= TOLERANCE
     assert np.abs(std - expected[1]).max() <= TOLERANCE
+
+
+BLENDS = {
+    "network": BlendedRegressor(weights={"network": 1.0}),
+    "stack": BlendedRegressor(weights={"bag": 0.4, "network": 0.6}),
+    "bag": BlendedRegressor(weights={"bag": 1.0}),
+}
+
+
+@pytest.mark.parametrize("name", BLENDS)
+def test_intervals_agree(name, examples) -> None:
+    """But where the standard deviation lies on a threshold of the intervals, to rounding errors."""
+    arguments, targets, groups = examples
+    learner = CalibratedRegressor(BLENDS[name]).fit(projective(arguments), targets, groups=groups)
+    rows = awkward()
+    results = session(export_duration(learner, projective, {})).run(None, {"arguments": rows})
+    expected = learner.predict_interval(projective(rows))
+    std = learner.predict_with_std(projective(rows))[1]
+    splits = learner.intervals_.splits
+    thresholds = splits.threshold[splits.feature == 5]
+    clear = np.abs(std[:, None] - thresholds).min(axis=1, initial=1.0) > 1e-4
+    assert clear.mean() > 0.99
+    assert np.abs(results[0] - expected[0]).max() <= TOLERANCE
+    for result, values in zip(results[1:], expected[1:], strict=True):
+        assert np.abs(result - values)[clear].max() <= TOLERANCE
 
 
 def test_a_bag_of_too_many_cells_walks_down_its_trees(examples, monkeypatch) -> None:

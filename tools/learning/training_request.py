@@ -12,7 +12,7 @@ from tailor.schemas.errors import UsageError
 if TYPE_CHECKING:
     from tailor.models.features.features import FeatureSpace
 
-DEFAULT_LEARNER = "bag"
+DEFAULT_LEARNER = "best"
 DEFAULT_FAILURE_LEARNER = "distilled-forest"
 DEFAULT_FEATURES = "projective"
 ENERGY_FEATURES = {"joints": "joints-relative"}  # gravity's work depends on where the joints are, durations do not

@@ -1,36 +1,54 @@
-"""Intervals are calibrated where the optimiser goes as soon as enough of its choices are known."""
+"""Intervals hold nine tenths of fresh errors in every third of their widths, and the card states how many they hold."""
 
 import numpy as np
 import pytest
 
-from tailor.models.training import scores
-from tailor.models.training.calibration import MIN_POLICY_EPISODES, calibrated
+from tailor.models.regression.intervals import fit_intervals
+from tailor.models.training.calibration import MIN_EPISODES, coverage, judged
 
 
-def errors(count: int, deviation: float, seed: int) -> np.ndarray:
-    return np.random.default_rng(seed).normal(0.0, deviation, count)
+def heteroscedastic(count: int, seed: int):
+    """Features, a std that is informative but of the wrong size, and skewed errors ten times as large at one end."""
+    rng = np.random.default_rng(seed)
+    features = rng.uniform(0, 1, (count, 3))
+    scale = 0.05 + 0.5 * features[:, 0] ** 2
+    std = 0.2 * scale * rng.uniform(0.8, 1.2, count)
+    return features, std, scale * (rng.exponential(1.0, count) - 0.7)
 
 
-def test_random_episodes_alone_hold_nine_in_ten_of_their_errors() -> None:
-    off = errors(2000, 0.5, 1)
-    entries = calibrated(off, np.full(2000, 0.5), np.zeros(2000, bool))
-    assert entries["interval90_on"] == "random"
-    assert entries["interval90_factor"] == pytest.approx(1.645, abs=0.1)
-    assert "interval90_random_factor" not in entries
+@pytest.fixture(scope="module")
+def intervals():
+    features, std, errors = heteroscedastic(3000, 1)
+    return fit_intervals(features, std, errors, np.arange(3000), seed=1)
 
 
-def test_on_policy_errors_that_are_larger_widen_the_interval_and_the_card_says_by_how_much() -> None:
-    off = np.concatenate([errors(2000, 0.5, 1), errors(400, 1.0, 2)])
-    on_policy = np.arange(2400) >= 2000
-    std = np.full(2400, 0.5)
-    entries = calibrated(off, std, on_policy)
-    assert (entries["interval90_on"], entries["interval90_n"]) == ("on-policy", 400)
-    assert entries["interval90_factor"] > 1.8 * entries["interval90_random_factor"]
-    assert entries["interval90_random_covers_pct"] < 70
-    assert scores.coverage(off[on_policy], std[on_policy], entries["interval90_factor"]) == pytest.approx(90, abs=1)
+def test_every_third_of_the_widths_holds_nine_tenths_of_fresh_errors(intervals) -> None:
+    features, std, errors = heteroscedastic(30_000, 2)
+    lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
+    result = coverage(errors, lower, upper)
+    assert result["covers_thirds_pct"] == pytest.approx([90, 90, 90], abs=3)
+    constant = coverage(errors, *(np.full(len(errors), np.quantile(errors, level)) for level in (0.05, 0.95)))
+    assert result["winkler"] < 0.8 * constant["winkler"]
 
 
-def test_a_few_on_policy_episodes_decide_nothing() -> None:
-    on_policy = np.arange(500) < MIN_POLICY_EPISODES - 1
-    assert calibrated(errors(500, 0.5, 3), np.full(500, 0.5), on_policy)["interval90_on"] == "random"
-    assert calibrated(errors(20, 0.5, 3), np.full(20, 0.5), np.ones(20, bool))["interval90_on"] == "on-policy"
+def test_skewed_errors_have_skewed_intervals(intervals) -> None:
+    assert np.median(intervals.upper / -intervals.lower) == pytest.approx((np.log(20) - 0.7) / 0.65, rel=0.25)
+    assert (intervals.lower < 0).all()
+
+
+def test_few_episodes_give_one_interval_that_holds_them_all() -> None:
+    features, std, errors = heteroscedastic(20, 3)
+    few = fit_intervals(features, std, errors, np.arange(20), seed=1)
+    lower, upper = few.around(features.astype(np.float32), np.zeros(20), std)
+    assert ((errors >= lower) & (errors <= upper)).mean() >= 0.9
+
+
+def test_coverage_is_told_for_random_and_on_policy_episodes_apart() -> None:
+    observed = np.concatenate([np.zeros(100), np.full(MIN_EPISODES, 2.0)])
+    ends = np.full(len(observed), 1.0)
+    on_policy = observed > 1
+    entries = judged(observed, -ends, ends, on_policy)["intervals"]
+    assert (entries["random"]["covers_pct"], entries["on_policy"]["covers_pct"]) == (100, 0)
+    assert entries["on_policy"]["winkler"] == pytest.approx(2 + 20)
+    assert set(judged(observed[1:-1], -ends[1:-1], ends[1:-1], on_policy[1:-1])["intervals"]) == {"random"}
+    assert set(judged(observed[:5], -ends[:5], ends[:5], on_policy[:5])["intervals"]) == {"all"}

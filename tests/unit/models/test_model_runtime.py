@@ -146,7 +146,7 @@ NUMBERS = [0.5] * 32
         ("golden", {"arguments": [[1]] * 32, "mean_s": NUMBERS, "std_s": NUMBERS}, "expected rows of 8 numbers"),
         ("golden", {"arguments": [[0] * 8] * 32, "mean_s": NUMBERS[:2], "std_s": NUMBERS}, "golden mean_s is"),
         ("golden", {"arguments": [[0] * 8] * 32, "std_s": NUMBERS}, "golden mean_s is None, expected 32 numbers"),
-        ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'std_s']"),
+        ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'lower_s', 'upper_s']"),
         ("output_range", [60, 0], "output_range is [60, 0], expected two numbers"),
         ("output_range", [float("nan"), 1], "output_range is [nan, 1]"),
         ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success"),

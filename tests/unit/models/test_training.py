@@ -53,9 +53,11 @@ def test_a_published_duration_model_predicts_what_its_learner_does(data, duratio
     model = runtime.load_model(publish(tmp_path, data, duration, about))
     arguments = np.stack([standin.draw(np.random.default_rng([9, k])) for k in range(500)])
     mean, std = model.predict(arguments)
-    expected = duration.learner.predict_with_std(projective(arguments))
-    assert np.abs(mean - expected[0]).max() <= 1e-4
-    assert np.abs(std - expected[1]).max() <= 1e-4
+    results, expected = model.interval(arguments), duration.learner.predict_interval(projective(arguments))
+    for result, values in zip(results, expected, strict=True):
+        assert np.abs(result - values).max() <= 1e-4
+    assert np.array_equal(mean, results[0])
+    assert std == pytest.approx((results[2] - mean) / 1.6448536)
     assert model.card["test"]["mae_s"] < 0.3 * model.card["test"]["mean_duration_s"]
 
 
@@ -84,7 +86,7 @@ def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path)
     about = Publication("energy", "linear", projective, 3, "tailor train toy")
     publish(tmp_path, replace(data, episodes=recorded), trained, about)
     model = runtime.load_robot("toy", tmp_path)[0]["goToPose/energy"]
-    assert model.card["outputs"] == ["mean_j", "std_j"]
+    assert model.card["outputs"] == ["mean_j", "lower_j", "upper_j"]
     assert model.card["test"]["mae_j"] < 0.3 * model.card["test"]["mean_energy_j"]
     arguments = np.stack([e.ticks[0] for e in recorded[:50]])
     assert np.abs(model.predict(arguments)[0] - trained.learner.predict(projective(arguments))).max() <= 1e-4
@@ -92,12 +94,11 @@ def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path)
         train_regression(ENERGY, data.episodes, projective, "linear", seed=3)
 
 
-def test_on_policy_episodes_among_the_test_episodes_calibrate_the_interval(data) -> None:
+def test_a_card_states_the_coverage_of_random_and_on_policy_episodes(data) -> None:
     chosen = [replace(e, on_policy=e.number % 4 > 0) for e in data.episodes]
     test = train_duration(chosen, projective, "linear", seed=3).test
-    assert test["interval90_on"] == "on-policy"
-    assert test["interval90_n"] >= 30
-    assert test["interval90_random_factor"] > 0
+    assert test["intervals"]["on_policy"]["n"] >= 30
+    assert len(test["intervals"]["on_policy"]["covers_thirds_pct"]) == 3
 
 
 def test_too_few_episodes_are_told_not_trained_on(data) -> None:

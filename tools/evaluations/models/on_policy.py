@@ -14,7 +14,7 @@ from tailor.models.episodes.episodes import Episode, merge, read_data_set
 from tailor.models.episodes.examples import duration_examples, split
 from tailor.models.features.planar import projective
 from tailor.models.training import scores
-from tailor.models.training.calibration import MIN_POLICY_EPISODES
+from tailor.models.training.calibration import MIN_EPISODES
 from tailor.models.training.training import fit
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
@@ -104,7 +104,7 @@ def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Na
         mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(arguments.seed))
         figures |= {f"{name}_mae_s": mae, f"{name}_ci95": ci, f"{name}_bias_s": float(off.mean())}
         figures[f"{name}_coverage_pct"] = scores.coverage(off, spread, before)
-    enough = len(judges.held) >= MIN_POLICY_EPISODES  # as in `tailor train`: fewer say little about a tenth of them
+    enough = len(judges.held) >= MIN_EPISODES  # as in `tailor train`: fewer say little about a tenth of them
     after = scores.interval_factor(*_errors(model, judges.held), LEVEL) if enough else before
     figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh), after)
     return {
