@@ -44,14 +44,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seeds", type=at_least(1, "--seeds"), default=3, help="starts and sizes of each letter (default %(default)s)"
     )
-    parser.add_argument("--no-oracle", action="store_true", help="leave perfect greedy and the oracles out")
+    parser.add_argument("--no-oracle", action="store_true", help="leave out what chooses by the controller's own rule")
     configure_report(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if refined letters are faster than all others that were written."""
     seeds = seeds_of("arm", arguments)
-    modes = LEARNED if arguments.no_oracle else (*LEARNED, PERFECT_GREEDY, *ORACLES)
+    modes = (*LEARNED, PERFECT_GREEDY, *(() if arguments.no_oracle else ORACLES))
     keys = [(letter, seed) for seed in seeds.starts(arguments.seeds) for letter in sorted(font())]
     found = measure_letters(modes, keys, arguments.zoo, arguments.jobs)
     rows = rows_of(found)
