@@ -11,6 +11,7 @@ import importlib.util
 import numpy as np
 from rich.console import Console
 from rich.table import Column, Table
+from scipy import stats
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import SolverName
@@ -19,17 +20,19 @@ from tailor.tools.benchmarks import certificates
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.refine_cases import Case, cases
 from tailor.tools.benchmarks.refine_runners import Progress, ours, runners
+from tailor.tools.learning.fresh_seeds import fresh_seed
 
+TASKS, QUICK_TASKS = 20, 5  # of each case
 MOMENTS_MS = (5, 20, 60, 80)
 REFERENCES: tuple[SolverName, ...] = ("chain", "differential")
 LONG_MS = 1500  # the search for the best known value
 
 
 def rows(quick: bool = False) -> list[dict[str, object]]:
-    """One row for each case and solver: mean and worst gap over the tasks in percent at each moment."""
+    """One row for each case and solver: gap over fresh tasks in percent at each moment: mean, 95 % interval, worst."""
     models = Models(*load_robot("agilo"))
     table = []
-    for name, tasks in cases(models, 2 if quick else 5).items():
+    for name, tasks in cases(models, QUICK_TASKS if quick else TASKS, fresh_seed("soccer").seed).items():
         races = [_race(task, models, seed) for seed, task in enumerate(tasks)]
         table += [_row(name, solver, [race[solver] for race in races]) for solver in races[0]]
     return table
@@ -48,12 +51,15 @@ def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
 
 def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
     means = zip(MOMENTS_MS, np.mean(gaps, axis=0), strict=True)
+    with np.errstate(invalid="ignore"):  # infinite where a task had no valid choice at that moment
+        half = stats.t.ppf(0.975, len(gaps) - 1) * np.std(gaps, axis=0, ddof=1) / np.sqrt(len(gaps))
     worst = zip(MOMENTS_MS, np.max(gaps, axis=0), strict=True)
     return {
         "case": case,
         "solver": solver,
         "n": len(gaps),
         **{f"gap_pct_at_{moment}_ms": round(float(gap), 3) for moment, gap in means},
+        **{f"gap_half_ci95_at_{moment}_ms": round(float(h), 3) for moment, h in zip(MOMENTS_MS, half, strict=True)},
         **{f"worst_pct_at_{moment}_ms": round(float(gap), 3) for moment, gap in worst},
     }
 
@@ -76,14 +82,20 @@ def run(console: Console, quick: bool) -> None:
     """
     table = Table(
         *(Column(name, no_wrap=True) for name in ("case", "solver")),
-        title="refinement: mean gap in % to the best known value after CPU time",
+        title=f"refinement: mean gap in % to the best known value after CPU time, {QUICK_TASKS if quick else TASKS} "
+        f"tasks a case, seed {fresh_seed('soccer').seed}",
         box=None,
     )
     for moment in MOMENTS_MS:
         table.add_column(f"{moment} ms", justify="right", no_wrap=True)
+    table.add_column("± 95 % at 60 ms", justify="right")
     table.add_column("worst at 60 ms", justify="right")
     for row in rows(quick):
-        columns = [*(f"gap_pct_at_{moment}_ms" for moment in MOMENTS_MS), "worst_pct_at_60_ms"]
+        columns = [
+            *(f"gap_pct_at_{moment}_ms" for moment in MOMENTS_MS),
+            "gap_half_ci95_at_60_ms",
+            "worst_pct_at_60_ms",
+        ]
         table.add_row(str(row["case"]), str(row["solver"]), *(_percent(row[column]) for column in columns))
     console.print(table)
     if importlib.util.find_spec("cma") is None:

@@ -38,14 +38,16 @@ class Case:
         return SequenceObjective(self.actions, self.variables, models, settings or RefinementSettings())
 
 
-def cases(models: Models, count: int) -> dict[str, list[Case]]:
+def cases(models: Models, count: int, seed: int = 0) -> dict[str, list[Case]]:
     """`count` random tasks for each case."""
     library = domains.load("soccer").actions
     tasks = {
-        name: [_waypoints(library["goToPose"], legs, np.random.default_rng([legs, i])) for i in range(count)]
+        name: [_waypoints(library["goToPose"], legs, np.random.default_rng([seed, legs, i])) for i in range(count)]
         for name, legs in LEGS.items()
     }
-    tasks["5 free, subgoal"] = [_needs_subgoal(library, models, np.random.default_rng([6, i])) for i in range(count)]
+    tasks["5 free, subgoal"] = [
+        _needs_subgoal(library, models, np.random.default_rng([seed, 6, i])) for i in range(count)
+    ]
     return tasks
 
 

@@ -17,7 +17,7 @@ from tailor.executive.refinement.solvers.selection import solver_for
 OURS: tuple[SolverName, ...] = ("chain", "genetic", "differential")
 
 Progress = list[tuple[float, float]]  # (CPU milliseconds of this process, best value so far), in order of time
-Starts = Sequence[Mapping[int, float]]  # initial candidates; external optimisers do not use them
+Starts = Sequence[Mapping[int, float]]  # initial candidates; external optimisers begin with the first
 Runner = Callable[[SequenceObjective, Starts, int, float], Progress]
 
 
@@ -73,25 +73,38 @@ class _Timed:
 
 
 def _scipy(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
+    """Differential evolution with scipy's recommended settings, which evaluates a generation at once."""
     from scipy.optimize import differential_evolution
 
     timed = _Timed(objective, limit_ms)
     bounds = list(zip(objective.ranges.lower, objective.ranges.upper, strict=True))
-    options = {"vectorized": True, "updating": "deferred", "polish": False, "maxiter": 10**6, "tol": 0.0}
+    options = {"strategy": "best1bin", "init": "latinhypercube", "popsize": 15, "polish": False, "maxiter": 10**6}
+    first = objective.vectors(starts)[0] if starts else None
     with contextlib.suppress(_OverError):
-        differential_evolution(lambda x: timed(x.T), bounds, rng=seed, **options)
+        while True:  # a population that has converged is drawn anew
+            differential_evolution(
+                lambda x: timed(x.T), bounds, rng=seed, x0=first, vectorized=True, updating="deferred", **options
+            )
+            seed, first = seed + 1000, None
     return timed.progress
 
 
 def _cma(objective: SequenceObjective, starts: Starts, seed: int, limit_ms: float) -> Progress:
+    """BIPOP-CMA-ES with its authors' settings: 0.3 of the range, restarts from random places, periodic angles free."""
     import cma
 
-    timed, ranges = _Timed(objective, limit_ms), objective.ranges
-    options = {"bounds": [0, 1], "seed": seed + 1, "verbose": -9}
-    search = cma.CMAEvolutionStrategy(np.full(ranges.count, 0.5), 0.3, options)
-    try:
+    timed, ranges, rng = _Timed(objective, limit_ms), objective.ranges, np.random.default_rng(seed)
+    first = [(vector - ranges.lower) / ranges.width for vector in objective.vectors(starts)[:1]] if starts else []
+    limits = [[None if wraps else end for wraps in ranges.periodic.tolist()] for end in (0.0, 1.0)]
+    options = {"bounds": limits, "seed": seed + 1, "verbose": -9, "verb_log": 0, "verb_disp": 0}
+
+    def costs(samples: Sequence[Array]) -> list[float]:
+        return list(timed(ranges.lower + ranges.width * np.array(samples)))
+
+    def place() -> Array:
+        return first.pop() if first else rng.random(ranges.count)
+
+    with contextlib.suppress(_OverError):
         while True:
-            samples = search.ask()
-            search.tell(samples, list(timed(ranges.lower + ranges.width * np.array(samples))))
-    except _OverError:
-        return timed.progress
+            cma.fmin2(None, place, 0.3, options, bipop=True, restarts=9, parallel_objective=costs)
+    return timed.progress

@@ -6,16 +6,11 @@ Nobody can choose settings, models or code by the starts of an evaluation: every
 from __future__ import annotations
 
 import argparse
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tailor.executive import domains
-from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.evaluations.outcome import FIRST_SEED
-from tailor.tools.learning.run_gathering import models_hash
-
-DIGITS = 7  # of the hash: seeds stay below those of gathered runs
+from tailor.tools.learning.fresh_seeds import fresh_seed
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +40,7 @@ def seeds_of(domain: str, arguments: argparse.Namespace) -> Seeds:
     Raises:
       UsageError: No such domain, or its models are missing or altered.
     """
-    source, models = runs_sha256(domain), models_hash(domains.load(domain).robot, arguments.zoo)
-    digest = hashlib.sha256(f"{source} {models}".encode()).hexdigest()
-    first = FIRST_SEED + int(digest[:DIGITS], 16) if arguments.seed is None else arguments.seed
-    return Seeds(
-        first,
-        {"first_seed": first, "seed_derived": arguments.seed is None, "source_sha256": source, "models_sha256": models},
-    )
+    fresh = fresh_seed(domain, arguments.zoo)
+    first = FIRST_SEED + fresh.seed if arguments.seed is None else arguments.seed
+    hashes: dict[str, str | int | bool] = {"source_sha256": fresh.source_sha256, "models_sha256": fresh.models_sha256}
+    return Seeds(first, {"first_seed": first, "seed_derived": arguments.seed is None, **hashes})

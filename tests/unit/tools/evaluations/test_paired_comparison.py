@@ -13,6 +13,7 @@ from tailor.tools.evaluations import seeds
 from tailor.tools.evaluations.costs import costs_of
 from tailor.tools.evaluations.outcome import FIRST_SEED
 from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, ratio_interval
+from tailor.tools.learning import fresh_seeds
 from tailor.tools.lockstep.run import Run
 
 
@@ -78,8 +79,8 @@ def test_p_values_below_the_threshold_are_not_told_apart():
 @pytest.fixture
 def first_seed(monkeypatch):
     def first(source="a", models="b", seed=None):
-        monkeypatch.setattr(seeds, "runs_sha256", lambda domain: source)
-        monkeypatch.setattr(seeds, "models_hash", lambda robot, zoo: models)
+        monkeypatch.setattr(fresh_seeds, "runs_sha256", lambda domain: source)
+        monkeypatch.setattr(fresh_seeds, "models_hash", lambda robot, zoo: models)
         return seeds.seeds_of("soccer", argparse.Namespace(zoo="", seed=seed))
 
     return first
