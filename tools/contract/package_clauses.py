@@ -25,7 +25,7 @@ def holds_together(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("package")
 def axes_contain_rest(subject: Subject, case: str) -> Iterator[str]:
-    """Each axis of the command has a unit and a range with zero in it: zero brings the robot to rest."""
+    """Each axis of the command has a unit and a range with its rest in it: zero, or what a kept axis starts with."""
     for axis in subject.domain.axes:
         if not axis.unit:
             yield f"axis {axis.name} has no unit"
