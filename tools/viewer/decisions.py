@@ -6,7 +6,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, Provenance, RefinementReport, Subgoals, TickReport
+from tailor.schemas.messages import (
+    ActionFinished,
+    Contexts,
+    ExecStatus,
+    Provenance,
+    RefinementReport,
+    Subgoals,
+    TickReport,
+)
 from tailor.tools.viewer.recorded_messages import Timed
 
 
@@ -22,6 +30,7 @@ class Decision:
       ticks: Number of ticks of the search.
       started: Whether an action was started with these subgoals.
       finished: End of that action.
+      objects: Objects near the actions, if there were any.
     """
 
     at_s: float
@@ -31,6 +40,7 @@ class Decision:
     ticks: int
     started: bool = False
     finished: ActionFinished | None = None
+    objects: Contexts | None = None
 
 
 @dataclass(slots=True)
@@ -47,6 +57,7 @@ def decisions_of(messages: Iterable[Timed]) -> DecisionLog:
     deliberation_s = {t.message.tick: _deliberation_s(t.message) for t in received if isinstance(t.message, TickReport)}
     log, action = DecisionLog(), (-1, "")
     search: list[RefinementReport] = []
+    objects: Contexts | None = None
     for t in received:
         message = t.message
         if isinstance(message, Provenance):
@@ -64,8 +75,11 @@ def decisions_of(messages: Iterable[Timed]) -> DecisionLog:
             search = [*search, message] if continues else [message]
             if continues and log.decisions and log.decisions[-1].report is search[-2]:
                 log.decisions[-1] = replace(log.decisions[-1], **_effort(search, deliberation_s))
+        elif isinstance(message, Contexts):
+            objects = message
         elif isinstance(message, Subgoals):
-            log.decisions.append(_decision(t.at_s, message, search, deliberation_s))
+            mine = objects if objects is not None and objects.tick == message.tick else None
+            log.decisions.append(replace(_decision(t.at_s, message, search, deliberation_s), objects=mine))
         elif isinstance(message, ExecStatus):
             now = (message.action_index if message.action else -1, message.action)
             if now != action and message.action and log.decisions:

@@ -11,7 +11,7 @@ from tailor.executive.composition import rebuild_context
 from tailor.executive.core.context import Context
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
-from tailor.schemas.messages import Subgoals
+from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
@@ -30,6 +30,7 @@ class Explainer:
         """`build_context` makes a context from a provenance, or raises UsageError."""
         self._build_context = build_context
         self._context: Context | None = None
+        self._objects: Contexts | None = None  # the newest
         self.missing = "no provenance yet"
 
     def load(self, provenance: str) -> None:
@@ -44,20 +45,26 @@ class Explainer:
             self._context = None
             self.missing = str(error)
 
+    def note(self, objects: Contexts) -> None:
+        """Keep the objects of the subgoals that have the same tick."""
+        self._objects = objects
+
     def explanation(self, message: Subgoals) -> Explanation | None:
         """Explanation of subgoals; None without models, or if no parameter was free."""
         context = self._context
         if context is None:
             return None
         rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
-        return explain(message, context.domain.actions, context.models, context.settings.refinement, rng)
+        objects = self._objects
+        return explain(message, context.domain.actions, context.models, context.settings.refinement, rng, objects)
 
     def best_cost(self, message: Subgoals) -> float:
         """Least objective that a long search finds for the same decision."""
         assert self._context is not None, "explanation() returned None"
         context = self._context
         rng = np.random.default_rng([context.settings.seed, STREAM + 1, message.tick])
-        return best_cost(message, context.domain.actions, context.models, context.settings.refinement, rng)
+        settings, objects = context.settings.refinement, self._objects
+        return best_cost(message, context.domain.actions, context.models, settings, rng, objects=objects)
 
     def fields(self, message: Subgoals) -> Fields | None:
         """The explanation as the page reads it."""

@@ -80,6 +80,8 @@ class RunTimeline:
                 return [("tick", event_fields.tick(message))]
             case m.ActionFinished():
                 return [("finished", event_fields.finished(message))]
+            case m.Contexts():
+                return self._objects(message)
             case m.Subgoals():
                 return self._subgoals(message)
             case m.RefinementReport():
@@ -138,6 +140,12 @@ class RunTimeline:
         if scene is None:
             return []
         return self._sampled(at_s, source, {**event_fields.scene(scene), "index": self._action[0]})
+
+    def _objects(self, message: m.Contexts) -> Rows:
+        """Nothing to show yet: the objects belong to the subgoals that follow in the same tick."""
+        if self._explainer is not None:
+            self._explainer.note(message)
+        return []
 
     def _subgoals(self, message: m.Subgoals) -> Rows:
         rows: Rows = [("subgoals", event_fields.subgoals(message))]

@@ -107,6 +107,8 @@ def _no_decision(decisions: Sequence[Decision], at_s: float | None) -> str:
 
 
 def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
+    if decision.objects is not None:
+        explainer.note(decision.objects)
     explanation = explainer.explanation(decision.subgoals)
     if explanation is None:
         return ExplainedDecision(decision, None)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.action_context import ContextRows
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.alternatives import Alternatives, alternatives
@@ -57,12 +58,14 @@ def explain(
     models: Models,
     settings: RefinementSettings,
     rng: np.random.Generator,
+    objects: m.Contexts | None = None,
 ) -> Explanation | None:
     """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
 
-    The greedy choice is searched anew with the executive's own solver, from `rng`.
+    The greedy choice is searched anew with the executive's own solver, from `rng`. `objects` are those of the decision
+    if they were published in the same tick.
     """
-    sequence = sequence_of(message, library)
+    sequence = sequence_of(message, library, objects)
     if sequence is None:
         return None
     settings = replace(settings, horizon=message.horizon)
@@ -86,7 +89,9 @@ def explain(
     )
 
 
-def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSequence | None:
+def sequence_of(
+    message: m.Subgoals, library: Mapping[str, Action], objects: m.Contexts | None = None
+) -> ActionSequence | None:
     """The instantiated sequence that the message reports; None if it names an action that the library lacks."""
     if not message.actions or any(a.action not in library for a in message.actions):
         return None
@@ -108,11 +113,29 @@ def sequence_of(message: m.Subgoals, library: Mapping[str, Action]) -> ActionSeq
         0, "", "", "", 0.0, 0.0, False, 0.0
     )  # ids have gaps where an asserted subgoal replaced a variable
     variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
+    contexts = _rows_by_action(objects) if objects is not None and objects.tick == message.tick else {}
     actions = tuple(
-        InstantiatedAction(library[a.action], a.step, tuple(p.id for p in a.parameters), a.asserted)
+        InstantiatedAction(
+            library[a.action],
+            a.step,
+            tuple(p.id for p in a.parameters),
+            a.asserted,
+            context=contexts.get(a.action, ()),
+        )
         for a in message.actions
     )
-    return ActionSequence(actions, variables, library)
+    return ActionSequence(actions, variables, library, contexts=contexts)
+
+
+def _rows_by_action(objects: m.Contexts) -> dict[str, ContextRows]:
+    """Rows of the objects near each action, by its name."""
+    return {
+        each.action: tuple(
+            each.values[first : first + len(each.columns)] for first in range(0, len(each.values), len(each.columns))
+        )
+        for each in objects.contexts
+        if each.columns
+    }
 
 
 def _objective(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:

@@ -12,7 +12,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
-from tailor.schemas.messages import Subgoals
+from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.explanations.explanation import accepted, chosen_values, sequence_of
 
 CHECKS = 1500  # live, a decision has some 100 to 300
@@ -25,13 +25,14 @@ def best_cost(
     settings: RefinementSettings,
     rng: np.random.Generator,
     checks: int = CHECKS,
+    objects: Contexts | None = None,
 ) -> float:
     """The least objective that a long search finds, the choice itself included; no proof of the optimum.
 
     Raises:
       ValueError: The library lacks an action of the message.
     """
-    sequence = sequence_of(message, library)
+    sequence = sequence_of(message, library, objects)
     if sequence is None:
         raise ValueError("the library lacks an action of the sequence")
     settings = replace(settings, horizon=message.horizon, patience=checks, checks_max=checks)

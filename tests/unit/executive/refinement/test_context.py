@@ -16,7 +16,9 @@ from tailor.executive.refinement.objective.sequence import ActionSequence, Failu
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.executive.refinement.refinement import Refinement
+from tailor.schemas import messages as m
 from tailor.schemas.errors import UsageError
+from tailor.tools.viewer.explanations.explanation import sequence_of
 from tests.support.synthetic_models import DRIBBLE, MODELS, ConeSuccess, sequence
 from tests.unit.executive.refinement.synthetic_context import (
     APPROACH_AROUND,
@@ -171,3 +173,23 @@ def test_one_of_two_objects_side_by_side_that_leaves_is_a_change():
 def test_actions_without_a_context_are_not_asked():
     assert not ContextMonitor(sequence([DRIBBLE], [START, GOAL])).objects_changed(None)
     assert LIBRARY["dribbleBall"].context is None
+
+
+def test_explanation_of_a_recorded_decision_has_its_objects():
+    given = beside((IN_THE_WAY,), [GO_AROUND], [START, {**GOAL, "phi": (-1.0, 1.0)}])
+    message = recorded(given)
+    objects = m.Contexts(0, 5, (m.ActionObjects("goToPose", CONTEXT.names, IN_THE_WAY),))
+    for noted, rows in ((objects, given.actions[0].context), (None, ()), (replace(objects, tick=4), ())):
+        rebuilt = sequence_of(message, LIBRARY, noted)
+        assert rebuilt is not None
+        assert rebuilt.actions[0].context == rows
+
+
+def recorded(given: ActionSequence) -> m.Subgoals:
+    """The message that reports a sequence of one action, in tick 5."""
+    action = given.actions[0]
+    parameters = tuple(
+        m.Parameter(p.name, v.id, v.label, v.unit, v.value is not None, v.lower, v.upper, v.value or 0.0)
+        for p, v in zip(action.action.parameters, (given.variables[i] for i in action.variables), strict=True)
+    )
+    return m.Subgoals(0, 5, 2, (m.InstantiatedAction("goToPose", 1, False, 1.0, 0.1, parameters),))
