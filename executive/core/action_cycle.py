@@ -56,8 +56,12 @@ def finished_message(
         reason=str(cause.reason) if cause is not None else "",
         predicted_s=running.predicted_s,
         actual_s=running.elapsed_s(state.now_ns),
-        detail=cause.detail if cause is not None else "",
+        detail=cause.detail if cause is not None else _surprise(outcome, running, state.now_ns),
     )
+
+
+def _surprise(outcome: str, running: Running, now_ns: int) -> str:
+    return running.surprise(now_ns) if outcome == "done" else ""
 
 
 def _started(context: Context, state: State) -> State:
@@ -69,7 +73,9 @@ def _started(context: Context, state: State) -> State:
     missing = _missing_support(decision.plan, step, facts)
     if missing is not None:
         return replace(state, task=replace(state.task, decision=None), deliberation=None)
-    return replace(state, task=replace(state.task, running=first_action(decision, state.now_ns)), coasted=0)
+    return replace(
+        state, task=replace(state.task, running=first_action(decision, context.models, state.now_ns)), coasted=0
+    )
 
 
 def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> planning.Literal | None:

@@ -110,7 +110,9 @@ def _adopted(context: Context, state: State, decision: Decision, decided: bool) 
         return _redirected_if_better(context, state, task.running, task.decision, decision)
     if not decided:
         return state
-    return replace(state, task=_redirected(_with_decision(task, decision, new_plan), task.running, state.now_ns))
+    return replace(
+        state, task=_redirected(context, _with_decision(task, decision, new_plan), task.running, state.now_ns)
+    )
 
 
 def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
@@ -124,17 +126,16 @@ def _redirected_if_better(context: Context, state: State, running: Running, old:
     if not early or old.choice.total_s - new.choice.total_s < settings.adopt_gain_s:
         return state
     task = replace(state.task, decision=new)
-    return replace(state, task=_redirected(task, running, state.now_ns))
+    return replace(state, task=_redirected(context, task, running, state.now_ns))
 
 
-def _redirected(task: Task, running: Running, now_ns: int) -> Task:
+def _redirected(context: Context, task: Task, running: Running, now_ns: int) -> Task:
     """The running action with new parameters if the decision begins with it, otherwise the decision's first action."""
     assert task.decision is not None
-    following = first_action(task.decision, now_ns)
+    following = first_action(task.decision, context.models, now_ns)
     if _starts_another(task.decision, running):
         return replace(task, running=following, finished=task.finished + 1)
-    predicted_s = running.elapsed_s(now_ns) + following.predicted_s
-    return replace(task, running=replace(following, started_ns=running.started_ns, predicted_s=predicted_s))
+    return replace(task, running=running.redirected(following, now_ns))
 
 
 def _starts_another(decision: Decision, running: Running) -> bool:

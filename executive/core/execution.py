@@ -10,6 +10,7 @@ import numpy as np
 from tailor.executive.core.deliberation import Decision
 from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.action import Action, Control
+from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array, Belief
 
 
@@ -24,6 +25,7 @@ class Running:
     predicted_s: float
     started_ns: int
     controller_state: Any = None
+    interval_s: tuple[float, float] | None = None  # that the duration lies in with 90 %; None: the model has none
 
     def elapsed_s(self, now_ns: int) -> float:
         """Seconds since the action started."""
@@ -33,6 +35,23 @@ class Running:
         """Seconds until the action fails: predicted duration times the action's factor, but at least its floor."""
         predicted = self.predicted_s if np.isfinite(self.predicted_s) else 0.0
         return max(self.action.time_limit_floor_s, self.action.time_limit_factor * predicted)
+
+    def surprise(self, now_ns: int) -> str:
+        """Text if the action, which ends now, took less or more than its interval; empty otherwise."""
+        if self.interval_s is None or self.interval_s[0] <= self.elapsed_s(now_ns) <= self.interval_s[1]:
+            return ""
+        lower_s, upper_s = self.interval_s
+        return f"outside of {max(lower_s, 0.0):.1f}..{upper_s:.1f} s, the predicted 90 % interval"
+
+    def redirected(self, following: Running, now_ns: int) -> Running:
+        """The next values of the same action, which goes on; its predictions count from its start."""
+        elapsed_s, interval_s = self.elapsed_s(now_ns), following.interval_s
+        return replace(
+            following,
+            started_ns=self.started_ns,
+            predicted_s=elapsed_s + following.predicted_s,
+            interval_s=interval_s and (elapsed_s + interval_s[0], elapsed_s + interval_s[1]),
+        )
 
 
 def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running, Control, Cause | None]:
@@ -56,14 +75,24 @@ def controller_arguments(running: Running) -> Array:
     return arguments
 
 
-def first_action(decision: Decision, now_ns: int) -> Running:
+def first_action(decision: Decision, models: Models, now_ns: int) -> Running:
     """The first action of a decision, started at `now_ns` with the chosen values."""
     first = decision.sequence.actions[0]
     values = decision.choice.values
     variables = decision.sequence.variables
     parameters = tuple(_value(variables[i].value, values.get(i)) for i in first.variables)
     predicted_s = decision.choice.predicted_s[0]
-    return Running(first.action, first.step, first.asserted, parameters, predicted_s, now_ns)
+    interval_s = _interval_s(first.action, models, parameters)
+    return Running(first.action, first.step, first.asserted, parameters, predicted_s, now_ns, interval_s=interval_s)
+
+
+def _interval_s(action: Action, models: Models, parameters: tuple[float, ...]) -> tuple[float, float] | None:
+    """Interval of the duration with these parameters; None if the model has none, or gives no valid one."""
+    model = models.durations.get(action.duration_model)
+    if not getattr(model, "calibrated", False):
+        return None
+    _, (lower_s,), (upper_s,) = model.interval(action.arguments(np.asarray([parameters])))  # type: ignore[union-attr]
+    return (float(lower_s), float(upper_s)) if np.isfinite(upper_s) else None
 
 
 def _value(bound: float | None, chosen: float | None) -> float:

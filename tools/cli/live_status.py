@@ -112,7 +112,8 @@ def _summary(message: Message) -> str:
     if isinstance(message, ActionFinished):
         duration = f"{message.actual_s:.1f} s, predicted {message.predicted_s:.1f} s"
         reason = f" ({reason_text(message.reason, message.detail)})" if message.reason else ""
-        return f"  {message.action} {message.outcome}{reason}: {duration}"
+        surprise = f", {message.detail}" if message.detail and not message.reason else ""
+        return f"  {message.action} {message.outcome}{reason}: {duration}{surprise}"
     if isinstance(message, PlanReport) and message.status == "failed":
         return f"  {reason_text(message.reason, message.detail)}"
     if isinstance(message, ExecStatus):

@@ -42,7 +42,13 @@ def page(title: str, body: Sequence[str]) -> str:
 def action_rows(track: Track) -> list[list[str]]:
     """One row an action: name, how it ended, predicted and actual duration."""
     return [
-        [a.action, a.outcome, f"{a.predicted_s:.2f} s", f"{a.actual_s:.2f} s", f"{a.actual_s - a.predicted_s:+.2f} s"]
+        [
+            a.action,
+            a.outcome,
+            f"{a.predicted_s:.2f} s",
+            f"{a.actual_s:.2f} s",
+            f"{a.actual_s - a.predicted_s:+.2f} s" + (f", {a.detail}" if a.outcome == "done" and a.detail else ""),
+        ]
         for a in track.finished
     ]
 

@@ -81,6 +81,8 @@ def search_text(decision: Decision) -> str:
     if decision.finished is not None:
         end = decision.finished
         parts.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")
+        if end.outcome == "done" and end.detail:
+            parts.append(end.detail)
     return "; ".join(parts) or "no report of the search"
 
 

@@ -51,7 +51,13 @@ def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
         "topics": [_stream(s) for s in sorted(counted.streams.values(), key=lambda s: (s.key, s.first_ns))],
         "episodes": [{"goal": goal, "result": result} for goal, result in counted.results],
         "actions": [
-            {"action": a.action, "outcome": a.outcome, "predicted_s": a.predicted_s, "actual_s": a.actual_s}
+            {
+                "action": a.action,
+                "outcome": a.outcome,
+                "predicted_s": a.predicted_s,
+                "actual_s": a.actual_s,
+                "detail": a.detail,
+            }
             for a in counted.actions
         ],
         "modes": dict(counted.modes),
@@ -135,7 +141,8 @@ def _actions(rows: list[dict[str, Any]]) -> Table:
     for row in rows:
         predicted, actual = row["predicted_s"], row["actual_s"]
         error = f"{(actual / predicted - 1):+.0%}" if predicted > 0 else ""
-        table.add_row(plain(row["action"]), plain(row["outcome"]), f"{predicted:.2f}", f"{actual:.2f}", error)
+        error += f" {row['detail']}" if row["outcome"] == "done" else ""
+        table.add_row(plain(row["action"]), plain(row["outcome"]), f"{predicted:.2f}", f"{actual:.2f}", plain(error))
     return table
 
 
