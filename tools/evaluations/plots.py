@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -66,3 +66,26 @@ def _saved(figure: Figure, path: Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=110)
     return path
+
+
+def draw_curves(
+    curves: Mapping[str, Sequence[tuple[float, float, float, float]]], path: Path, x_label: str, y_label: str
+) -> Path:
+    """Curves with intervals over a logarithmic axis.
+
+    Args:
+      curves: By name, points of x, y, and the lower and upper end of y's interval.
+      path: Of the PNG.
+      x_label: Of the logarithmic axis.
+      y_label: Of the other axis.
+    """
+    figure = Figure(figsize=(7, 4.2), layout="constrained")
+    axis = figure.subplots()
+    for (name, points), colour in zip(curves.items(), (INK, ACCENT, "#b5651d", "#7a5195"), strict=False):
+        x, y, low, high = (np.array(column) for column in zip(*points, strict=True))
+        axis.plot(x, y, marker="o", color=colour, label=name)
+        axis.fill_between(x, low, high, color=colour, alpha=0.15)
+    axis.axhline(0, color=PALE)
+    axis.set(xscale="log", xlabel=x_label, ylabel=y_label)
+    axis.legend(frameon=False)
+    return _saved(figure, path)

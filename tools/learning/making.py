@@ -14,17 +14,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tailor.executive import domains
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
 from tailor.tools.learning import gathering, run_gathering
 from tailor.tools.learning.active_gathering import Active, run_active
+from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.steps import Step, counted
 from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
 from tailor.tools.learning.training_run import train_models
 
 WHOLE = "whole"  # marker of a folder of models, written last
+CHOOSING = ("duration", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +40,7 @@ class Making:
       work: Folder of the episodes and models of all steps.
       jobs: Processes.
       command: Command that makes the same models again, for their cards.
+      kinds: Kinds of models to make; empty: all. Those that only choose further episodes are of `CHOOSING` kinds.
     """
 
     robot: str
@@ -44,6 +48,7 @@ class Making:
     work: Path
     jobs: int
     command: str
+    kinds: tuple[str, ...] = ()
 
     @property
     def domain(self) -> str:
@@ -56,10 +61,15 @@ class Making:
         return self.work / self.robot / f"random-{episodes_sha256(self.domain)[:12]}-{self.recipe.seed}"
 
     @property
+    def beside(self) -> Path:
+        """Folder of the random episodes beside one object."""
+        return self.random.with_name(f"{self.random.name}-beside")
+
+    @property
     def rounds(self) -> Path:
         """Folder of all that depends on learners and refinement, too."""
         about = [runs_sha256(self.domain), episodes_sha256(self.domain), learning_sha256()]
-        key = json.dumps([*about, dataclasses.asdict(self.recipe)])
+        key = json.dumps([*about, dataclasses.asdict(self.recipe), self.kinds])
         return self.work / self.robot / hashlib.sha256(key.encode()).hexdigest()[:12]
 
     @property
@@ -69,7 +79,7 @@ class Making:
 
     @property
     def data(self) -> list[Path]:
-        """Folders with the data sets of the random episodes and of each round."""
+        """Folders with the data sets of the random episodes, and of each round."""
         return [self.random, *(self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds)))]
 
 
@@ -82,9 +92,9 @@ def make(making: Making) -> Iterator[Step]:
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
         zoo = making.rounds / f"zoo-{number}"
-        yield from _trained(making, zoo, making.data[: number + 1])
+        yield from _trained(making, zoo, making.data[: number + 1], CHOOSING)
         yield from _round(making, number, each, zoo)
-    yield from _trained(making, making.zoo, making.data)
+    yield from _trained(making, making.zoo, making.data, making.kinds)
 
 
 def install(made: Path, zoo: Path, robot: str) -> None:
@@ -97,15 +107,20 @@ def install(made: Path, zoo: Path, robot: str) -> None:
 
 
 def _random_episodes(making: Making) -> Iterator[Step]:
-    recipe = making.recipe
-    for action in run_gathering.modelled_actions(making.domain):
-        folder = making.random / action
-        spec = gathering.DataSetSpec(making.domain, action, recipe.episodes, recipe.seed, folder)
+    recipe, declared = making.recipe, domains.load(making.domain).actions
+    actions = run_gathering.modelled_actions(making.domain)
+    wanted = [(action, recipe.episodes, making.random, False) for action in actions]
+    if recipe.beside:
+        near = [action for action in actions if declared[action].context is not None]
+        wanted += [(action, recipe.beside, making.beside, True) for action in near]
+    for action, count, folder, beside in wanted:
+        spec = DataSetSpec(making.domain, action, count, recipe.seed, folder / action, beside=beside)
         gathering.prepare(spec, resume=True)
         missing = gathering.missing_parts(spec)
-        left = sum(min(gathering.PART, spec.episodes - first) for first in missing)
-        running = (count for count, *_ in gathering.gather(spec, missing, making.jobs))
-        yield from counted(f"{action}: random episodes", running, spec.episodes, spec.episodes - left)
+        left = sum(min(gathering.PART, count - first) for first in missing)
+        running = (done for done, *_ in gathering.gather(spec, missing, making.jobs))
+        title = f"{action}: random episodes" + (" beside an object" if beside else "")
+        yield from counted(title, running, count, count - left)
 
 
 def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
@@ -120,20 +135,21 @@ def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step
     yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
 
 
-def _trained(making: Making, zoo: Path, data: list[Path]) -> Iterator[Step]:
+def _trained(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...]) -> Iterator[Step]:
     """Train as `tailor train` does, unless that has been done."""
     title = f"training {zoo.name}"
     if not (zoo / WHOLE).exists():
         yield Step(title, 0, 1)
-        present = tuple(folder for folder in data if any(folder.glob(f"*/{MANIFEST}")))
+        near = [making.beside] if making.recipe.beside else []
+        present = tuple(folder for folder in (*data, *near) if any(folder.glob(f"*/{MANIFEST}")))
         if not present:
             raise UsageError(f"{making.work}: no episodes to train on")
-        train_models(_request(making, zoo, present))
+        train_models(_request(making, zoo, present, kinds))
         (zoo / WHOLE).touch()
     yield Step(title, 1, 1)
 
 
-def _request(making: Making, zoo: Path, data: tuple[Path, ...]) -> TrainingRequest:
+def _request(making: Making, zoo: Path, data: tuple[Path, ...], kinds: tuple[str, ...]) -> TrainingRequest:
     options = making.recipe.training
     named: dict[str, Any] = {
         "features": options.features or None,
@@ -141,4 +157,6 @@ def _request(making: Making, zoo: Path, data: tuple[Path, ...]) -> TrainingReque
         "learner": options.learner or DEFAULT_LEARNER,
         "failure_learner": options.failure_learner or DEFAULT_FAILURE_LEARNER,
     }
-    return TrainingRequest(making.robot, zoo, data=data, seed=options.seed, command=making.command, **named)
+    return TrainingRequest(
+        making.robot, zoo, data=data, seed=options.seed, command=making.command, kinds=kinds, **named
+    )

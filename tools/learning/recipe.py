@@ -48,12 +48,14 @@ class Recipe:
 
     Attributes:
       episodes: Random episodes of each action.
+      beside: Random episodes beside one object, of each action whose success depends on objects.
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
       training: How each model is trained.
     """
 
     episodes: int
+    beside: int = 0
     seed: int = 7
     rounds: tuple[Round, ...] = ()
     training: Training = field(default_factory=Training)

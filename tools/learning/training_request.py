@@ -32,6 +32,7 @@ class TrainingRequest:
       learner: Learner of durations and energies, see `learners.DURATION_LEARNERS`.
       failure_learner: Learner of successes, see `learners.SUCCESS_LEARNERS`.
       seed: Random seed of folds and resampled episodes.
+      kinds: Kinds of models to train; empty: all that the episodes suffice for.
       command: Command that reproduces the models, for their cards; empty: those of gathering and training.
     """
 
@@ -44,6 +45,7 @@ class TrainingRequest:
     learner: str = DEFAULT_LEARNER
     failure_learner: str = DEFAULT_FAILURE_LEARNER
     seed: int = 1
+    kinds: tuple[str, ...] = ()
     command: str = ""
 
 

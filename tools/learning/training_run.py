@@ -88,7 +88,8 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
     own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in _jobs(data, request)]
-    for source, kind, learner, train, space in (*own, *_context_jobs(sets, request, folders[0])):
+    every = (*own, *_context_jobs(sets, request, folders[0]))
+    for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:
             trained = train(source.episodes, space, learner, request.seed)
         except UsageError as error:

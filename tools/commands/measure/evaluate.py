@@ -36,6 +36,10 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "tailor.tools.evaluations.models.on_policy",
         "change by one round of training on the optimiser's own choices",
     ),
+    "learning-curves": (
+        "tailor.tools.evaluations.models.learning_curves",
+        "any domain: gain by refinement over the number of episodes, random, on-policy and active",
+    ),
     "refinement": (
         "tailor.tools.evaluations.refinement.refinement",
         "any domain: refined against greedy, with every cost in its column",
@@ -69,7 +73,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "live runs over the bus against lock-step runs from the same starts",
     ),
 }
-FOR_ANY_DOMAIN = ("refinement", "models", "ablations")  # those that the paper's tables are names for
+FOR_ANY_DOMAIN = ("refinement", "models", "learning-curves", "ablations")  # those that the paper's tables are names for
 ALL = "all"
 RESUME = "--resume"
 STOPPED = 130

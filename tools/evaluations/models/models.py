@@ -57,8 +57,13 @@ def publish(name: str, title: str, made: Sequence[Row], remarks: Sequence[str], 
     publish_report(Report(name, title, shown, remarks, plots, provenance), arguments.json, arguments.report)
 
 
-def rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
+def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> list[Row]:
     """A row for each action with a duration model.
+
+    Args:
+      domain: Name of the domain.
+      arguments: As `configure` declares them.
+      floors: Also measure the noise floors, which do not depend on the models.
 
     Raises:
       UsageError: No such domain, or its models are missing or altered.
@@ -70,12 +75,13 @@ def rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
     made = []
     for name, action in sorted(declared.actions.items()):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
-        floor = fresh.noise_floor(declared.robot, name, seed, arguments.jobs)
+        floor = fresh.noise_floor(declared.robot, name, seed, arguments.jobs) if floors else {}
         row = {"domain": domain, "action": name, **_duration(durations[action.duration_model], data, seed)}
-        row["noise_floor_s"] = floor["mae_s"]
-        if action.success_model:
-            row |= _failures(successes[action.success_model], data)
-            row["floor_accuracy_pct"] = floor["accuracy_pct"]
+        failures = _failures(successes[action.success_model], data) if action.success_model else {}
+        row |= failures
+        if floors:
+            row["noise_floor_s"] = floor["mae_s"]
+            row |= {"floor_accuracy_pct": floor["accuracy_pct"]} if failures else {}
         made.append(row)
     return made
 

@@ -1,0 +1,48 @@
+"""Learning curves of the gain: equal numbers of episodes, fresh models of each set, one row a point."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from tailor.tools.evaluations.models import learning_curves
+from tailor.tools.evaluations.models.learning_curves import FIRST_RECIPE_SEED, METHODS, Point
+from tailor.tools.main import main
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_way_of_gathering_has_as_many_episodes_of_each_action(method: str) -> None:
+    recipe = Point(method, 301).recipe("approach", 9)
+    assert recipe.episodes + sum(each.episodes for each in recipe.rounds) == 301
+    assert [each.source for each in recipe.rounds] == ([] if method == "random" else [method])
+    assert recipe.seed == 9
+
+
+def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypatch, capsys) -> None:
+    made, starts = [], []
+    monkeypatch.setattr(learning_curves, "make", lambda making: made.append(making) or [])
+
+    def run_all(task, variants, seeds, *_):
+        starts.append(tuple(seeds))
+        gain = 0.1 * made[-1].recipe.seed - 0.1 * FIRST_RECIPE_SEED
+        runs = {v.name: {s: SimpleNamespace(achieved=True, duration_s=10.0) for s in seeds} for v in variants}
+        runs["h2"] = {s: SimpleNamespace(achieved=True, duration_s=10.0 * (1 - gain) + 0.1 * (s % 3)) for s in seeds}
+        return runs
+
+    monkeypatch.setattr(learning_curves, "run_all", run_all)
+    monkeypatch.setattr(learning_curves, "_errors", lambda *_: {"error_pct": 2.0})
+    flags = ["--domain", "soccer", "--episodes", "100", "--sets", "2", "--starts", "3", "--methods", "random", "active"]
+    assert main(["evaluate", "learning-curves", *flags, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [(row["gathered"], row["episodes"], row["sets"], row["n"]) for row in rows] == [
+        ("random", 100, 2, 6), ("active", 100, 2, 6)
+    ]  # fmt: skip
+    assert rows[0]["improvement_pct"] == pytest.approx(14.0)
+    assert rows[0]["ci95"][0] < 14.0 < rows[0]["ci95"][1]
+    assert len(set(starts)) == 1  # all sets are judged from the same starts
+    assert len({making.zoo for making in made}) == 4
+
+
+def test_a_domain_must_be_named(capsys) -> None:
+    assert main(["evaluate", "learning-curves"]) == 2
+    assert "expected --domain NAME" in capsys.readouterr().err

@@ -1,0 +1,169 @@
+"""Learning curves of the gain: what refinement gains against how many episodes the models learned from, and which.
+
+Random episodes against half of them chosen by the optimiser (on-policy), or half of those choices on which the models
+disagree most (active). Every point is the mean over sets of models, each gathered for and trained anew.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.source import runs_sha256
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.models import models
+from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.paired_comparison import compare, mean_interval
+from tailor.tools.evaluations.plots import draw_curves
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import DIGITS
+from tailor.tools.evaluations.task_runs import paired, run_all
+from tailor.tools.learning.making import Making, make
+from tailor.tools.learning.recipe import Recipe, Round
+from tailor.tools.learning.steps import show
+
+FIRST_RECIPE_SEED = 6_000  # of gathering; what ships and what replicas learn from has smaller ones
+METHODS = ("random", "on-policy", "active")
+EPISODES, QUICK_EPISODES = (100, 300, 1000, 3000), (100, 300)
+SETS, QUICK_SETS = 5, 2
+STARTS, QUICK_STARTS = 100, 20
+POOL = 4
+NEEDED = ("duration", "success", "clearance")  # kinds of models; energies are not weighed
+DEFAULT = RefinementSettings()
+GREEDY, REFINED = Variant("h1", replace(DEFAULT, horizon=1, gate=False)), Variant("h2", replace(DEFAULT, gate=False))
+REMARKS = (
+    "episodes: most of each action; on-policy: half random, half from runs of the scenario with the models of the "
+    "random half; active: that half from choices on which these models disagree most",
+    "improvement: refined over greedy with the same models; ci95 over sets of models, each learned anew; all sets are "
+    "judged from the same starts; error: mean absolute, of the mean duration, on fresh random episodes",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One way of gathering with one number of episodes."""
+
+    method: str
+    episodes: int
+
+    def recipe(self, scenario: str, seed: int) -> Recipe:
+        """Recipe of a set of models."""
+        if self.method == "random":
+            return Recipe(self.episodes, seed=seed)
+        half = self.episodes // 2
+        source: Any = self.method
+        return Recipe(self.episodes - half, seed=seed, rounds=(Round(source, (scenario,), half, POOL),))
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate learning-curves`."""
+    add = parser.add_argument
+    add("--scenario", default="", help="scenario of the domain (default: its first)")
+    add("--episodes", nargs="+", type=at_least(80, "--episodes"), help=f"of each action (default {EPISODES})")
+    add("--methods", nargs="+", choices=METHODS, default=list(METHODS), help="ways of gathering (default: all)")
+    add("--sets", type=at_least(2, "--sets"), help=f"sets of models of each point (default {SETS})")
+    add("--starts", type=at_least(2, "--starts"), help=f"pairs of runs of each set (default {STARTS})")
+    add("--fresh", type=at_least(20, "--fresh"), default=200, help="random episodes to test on (default %(default)s)")
+    add("--quick", action="store_true", help=f"{QUICK_EPISODES} episodes, {QUICK_SETS} sets, {QUICK_STARTS} starts")
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and publish the report; exit code 0. Resumes where it was interrupted."""
+    if not arguments.domain:
+        raise UsageError("no domain named, expected --domain NAME")
+    domain = arguments.domain
+    quick = arguments.quick
+    episodes = arguments.episodes or (QUICK_EPISODES if quick else EPISODES)
+    settings = argparse.Namespace(
+        **{
+            **vars(arguments),
+            "domain": domain,
+            "scenario": arguments.scenario or domains.scenarios(domain)[0],
+            "sets": arguments.sets or (QUICK_SETS if quick else SETS),
+            "starts": arguments.starts or (QUICK_STARTS if quick else STARTS),
+            "seed": arguments.seed if arguments.seed is not None else _first_seed(domain),
+        }
+    )
+    rows = [_row(Point(method, count), settings) for count in episodes for method in arguments.methods]
+    plots = {}
+    if arguments.report is not None:
+        plots["improvement over episodes"] = _plot(rows, arguments.report / "learning-curves.png")
+    title = f"Learning curves of the gain: {domain}, {settings.scenario}"
+    provenance = {"first_seed": settings.seed, "seed_derived": arguments.seed is None}
+    provenance["source_sha256"] = runs_sha256(domain)
+    publish_report(Report("learning-curves", title, rows, REMARKS, plots, provenance), arguments.json, arguments.report)
+    return 0
+
+
+def _first_seed(domain: str) -> int:
+    """First start, from the source alone: all sets of models are judged from the same starts."""
+    return FIRST_SEED + int(runs_sha256(domain)[:DIGITS], 16)
+
+
+def _row(point: Point, settings: argparse.Namespace) -> dict[str, Any]:
+    sets = [_figures(point, number, settings) for number in range(1, settings.sets + 1)]
+    gains = np.array([figures["improvement_pct"] for figures in sets])
+    means = {key: float(np.mean([figures[key] for figures in sets])) for key in sets[0] if key != "improvement_pct"}
+    return {
+        "gathered": point.method,
+        "episodes": point.episodes,
+        "sets": len(sets),
+        "n": settings.starts * len(sets),
+        "improvement_pct": float(gains.mean()),
+        "ci95": mean_interval(gains),
+        **means,
+    }
+
+
+def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[str, float]:
+    """What one set of models gains, and how far it errs."""
+    robot = domains.load(settings.domain).robot
+    recipe = point.recipe(settings.scenario, FIRST_RECIPE_SEED + number)
+    work = settings.store / "learning-curves" / str(recipe.episodes)
+    making = Making(robot, recipe, work, settings.jobs, "tailor evaluate learning-curves", NEEDED)
+    title = f"{point.method} {point.episodes}, set {number}: "
+    show(make(making), settings.json, {}, title)
+    task = Task(settings.domain, settings.scenario, zoo=str(making.zoo))
+    seeds = range(settings.seed, settings.seed + settings.starts)
+    runs = run_all(task, (GREEDY, REFINED), seeds, settings.jobs, settings.store, title)
+    gain = compare(*paired(runs[GREEDY.name], runs[REFINED.name]))
+    return {
+        "improvement_pct": gain.improvement_pct,
+        "mean_greedy_s": gain.mean_baseline_s,
+        "mean_refined_s": gain.mean_s,
+        "slower_pct": gain.slower_pct,
+        "failed_pct": 100 * (1 - gain.n / settings.starts),
+        **_errors(settings, making.zoo),
+    }
+
+
+def _errors(settings: argparse.Namespace, zoo: Path) -> dict[str, float]:
+    """Mean over the actions of errors on fresh random episodes; missed failures if failures are learned."""
+    asked = {**vars(settings), "zoo": str(zoo), "episodes": settings.fresh}
+    made = models.rows(settings.domain, argparse.Namespace(**asked), floors=False)
+    columns = {"error_pct": "relative_pct", "missed_failures_pct": "missed_failures_pct"}
+    return {
+        name: float(np.mean([row[key] for row in made if key in row]))
+        for name, key in columns.items()
+        if any(key in row for row in made)
+    }
+
+
+def _plot(rows: Sequence[dict[str, Any]], path: Path) -> Path:
+    return draw_curves(dict(_curves(rows)), path, "episodes of each action", "improvement by refinement (%)")
+
+
+def _curves(rows: Sequence[dict[str, Any]]) -> Iterator[tuple[str, list[tuple[float, float, float, float]]]]:
+    """Points of each way of gathering: episodes, improvement, and its interval."""
+    for method in dict.fromkeys(row["gathered"] for row in rows):
+        mine = [row for row in rows if row["gathered"] == method]
+        yield method, [(row["episodes"], row["improvement_pct"], *row["ci95"]) for row in mine]
