@@ -38,7 +38,7 @@ STARTS, QUICK_STARTS = 100, 20
 POOL = 4
 NEEDED = ("duration", "success", "clearance")  # kinds of models; energies are not weighed
 DEFAULT = RefinementSettings()
-GREEDY, REFINED = Variant("h1", replace(DEFAULT, horizon=1, gate=False)), Variant("h2", replace(DEFAULT, gate=False))
+GREEDY, REFINED = Variant("h1", replace(DEFAULT, horizon=1)), Variant("h2", DEFAULT)
 REMARKS = (
     "episodes: most of each action; on-policy: half random, half from runs of the scenario with the models of the "
     "random half; active: that half from choices on which these models disagree most",
@@ -98,8 +98,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         plots["improvement over episodes"] = _plot(rows, arguments.report / "learning-curves.png")
     title = f"Learning curves of the gain: {domain}, {settings.scenario}"
-    provenance = {"first_seed": settings.seed, "seed_derived": arguments.seed is None}
-    provenance["source_sha256"] = runs_sha256(domain)
+    about = {"first_seed": settings.seed, "seed_derived": arguments.seed is None, "source_sha256": runs_sha256(domain)}
+    provenance = {**about, "models_sha256": "of each set its own"}
     publish_report(Report("learning-curves", title, rows, REMARKS, plots, provenance), arguments.json, arguments.report)
     return 0
 
