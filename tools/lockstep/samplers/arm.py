@@ -12,6 +12,7 @@ from tailor.executive.domains.arm.action_library import PASSING_RADPS, fastest_r
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.load import COULOMB_NM, TYPICAL_RADPS, VISCOUS_NMS
 from tailor.executive.domains.arm.predicates import named
+from tailor.executive.domains.arm.robot import JOINTS
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, JointState, Message
@@ -96,8 +97,9 @@ class ArmSampler:
         """Errors of the joints' angles (rad) and velocities (rad/s); a reach ends one period before its waypoint."""
         if not isinstance(truth, JointState):
             return {}
-        velocities = np.array(truth.velocities)
-        angles = np.array(truth.positions) + velocities * PERIOD_S
+        at = [truth.names.index(name) for name in JOINTS]
+        velocities = np.array(truth.velocities)[at]
+        angles = np.array(truth.positions)[at] + velocities * PERIOD_S
         return {
             "position_rad": float(np.linalg.norm(angles - arguments[[AG, BG]])),
             "speed_radps": float(np.linalg.norm(velocities - arguments[[WAG, WBG]])),

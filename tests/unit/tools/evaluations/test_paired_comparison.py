@@ -7,12 +7,14 @@ import pytest
 from scipy import stats
 
 from tailor.executive import domains
+from tailor.schemas.installed import domain_names
 from tailor.schemas.messages import ActionFinished, InstantiatedAction, Parameter, Subgoals
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.evaluations import seeds
 from tailor.tools.evaluations.costs import costs_of
-from tailor.tools.evaluations.outcome import FIRST_SEED
+from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, ratio_interval
+from tailor.tools.evaluations.task_runs import run_one
 from tailor.tools.learning import fresh_seeds
 from tailor.tools.lockstep.run import Run
 
@@ -118,3 +120,12 @@ def test_costs_are_those_of_the_ground_truth():
     assert costs.contacts == 0
     assert dict(costs.arrival) == pytest.approx({"position_m": 0.1, "heading_rad": 0.1, "speed_mps": 0.3})
     assert costs.energy_j > 0.1
+
+
+@pytest.mark.parametrize("name", domain_names())
+def test_a_run_of_every_domain_has_costs(name):
+    outcome = run_one(Task(name, domains.scenarios(name)[0]), Variant("h1"), 1)
+    assert outcome.achieved
+    assert outcome.costs.energy_j > 0
+    assert {column.partition("_")[0] for column, _ in outcome.costs.arrival} >= {"position", "speed"}
+    assert all(0 <= error < 1 for _, error in outcome.costs.arrival)
