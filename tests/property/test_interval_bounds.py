@@ -1,0 +1,58 @@
+"""Bounds of models with prediction intervals hold; a model with a network has none."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tailor.models.bounds.interval_boxes import UPPER_SCORE
+from tailor.models.bounds.model_bounds import model_bounds
+from tailor.models.export.onnx_export import export_duration
+from tailor.models.features.planar import projective
+from tailor.models.regression import network_training
+from tailor.models.regression.blend import BlendedRegressor
+from tailor.models.regression.calibrated import CalibratedRegressor
+from tailor.models.runtime import open_session
+
+SHAPE = (1, 1, 1)
+LIMITS = np.array([[-3.5, -2.25, -np.pi, 0] * 2, [3.5, 2.25, np.pi, 0.6] * 2])
+
+
+def fitted(weights: dict[str, float]) -> bytes:
+    rng = np.random.default_rng(1)
+    features = projective(rng.uniform(*LIMITS, (600, 8)))
+    seconds = 1 + features[:, 2] + np.abs(features[:, 4]) + (0.05 + features[:, 3] ** 2) * rng.exponential(0.3, 600)
+    learner = CalibratedRegressor(BlendedRegressor(weights=weights)).fit(features, seconds)
+    return export_duration(learner, projective, {}).SerializeToString()
+
+
+@pytest.fixture(scope="module")
+def model():
+    content = fitted({"bag": 1.0})
+    return open_session(content), model_bounds(content, "projective", 5)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1.0, UPPER_SCORE, 3.0]))
+def test_no_prediction_lies_below_its_bound(model, seed, k_std) -> None:
+    session, bounds = model
+    rng = np.random.default_rng(seed)
+    lower = rng.uniform(*LIMITS)
+    upper = lower + (LIMITS[1] - lower) * rng.choice([0.0, 1e-4, 0.05, 0.5], 8)
+    rows = lower + rng.choice([0.0, 0.5, 1.0], (300, 8)) * (upper - lower)
+    mean, _, end = (values.astype(float) for values in session.run(None, {"arguments": rows}))
+    ends = tuple(tuple(np.full(SHAPE, value) for value in side) for side in (lower, upper))
+    for bound in (bounds, bounds.within(*ends)):
+        assert bound.lower_bound(*ends, k_std).item() <= (mean + k_std * (end - mean) / UPPER_SCORE).min()
+
+
+def test_the_bound_includes_the_spread(model) -> None:
+    _, bounds = model
+    point = tuple(np.full(SHAPE, value) for value in (0.0, 0.0, 0.0, 0.0, 2.0, 1.0, 0.5, 0.0))
+    assert bounds.lower_bound(point, point, 1.0).item() > bounds.lower_bound(point, point, 0.0).item() + 0.01
+
+
+def test_a_model_with_a_network_has_no_bounds(monkeypatch) -> None:
+    monkeypatch.setattr(network_training, "STEPS", 50)
+    for weights in ({"network": 1.0}, {"bag": 0.5, "network": 0.5}):
+        assert model_bounds(fitted(weights), "projective", 5) is None
