@@ -14,6 +14,7 @@ from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.assertion.subgoal_comparison import has_limit, with_any_risk
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.choice import Choice
@@ -127,6 +128,10 @@ class Deliberation:
         if isinstance(sequence, Failure):
             self._fail(Cause(Reason.NO_SUBGOAL, sequence.reason))
             return
+        self._begin_refinement(sequence)
+
+    def _begin_refinement(self, sequence: ActionSequence) -> None:
+        assert self._pattern is not None
         self.sequence = sequence
         self._watch = BeliefMonitor(self._pattern, sequence)
         self.refinement = Refinement(
@@ -140,10 +145,12 @@ class Deliberation:
         if not self.refinement.finished:
             return
         choice = self.refinement.choice
-        if choice is None or not choice.valid:
+        if choice is not None and choice.valid:
+            self.stage = "decided"
+        elif self.sequence is not None and has_limit(self.sequence):
+            self._begin_refinement(with_any_risk(self.sequence))
+        else:
             self._fail(Cause(Reason.NO_VALID_CHOICE))
-            return
-        self.stage = "decided"
 
     def _fail(self, cause: Cause | None) -> None:
         self.stage = "failed"

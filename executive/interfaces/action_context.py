@@ -47,12 +47,14 @@ class ActionContext:
         in spite of one object. Its arguments are Action.arguments followed by one row.
       failure: Failure that the object causes, as the task sampler returns it, e.g. "obstacle". Only this failure is
         learned by `success_model`; all others belong to Action.success_model.
+      failure_cost_s: Seconds that meeting an object costs, if that is more than refinement's `risk_cost_s`.
     """
 
     columns: tuple[ContextColumn, ...]
     rows: Callable[[Belief], Array]
     success_model: str
     failure: str
+    failure_cost_s: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:

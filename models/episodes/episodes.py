@@ -24,6 +24,7 @@ from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
+SHORT_EPISODES = 1000  # of a single tick, in one row group
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
 PER_EPISODE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
 UNOBSERVED = "unobserved"  # "failure" of an episode whose success was not observed
@@ -61,21 +62,30 @@ def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) ->
 
     Args:
       path: The file.
-      episodes: One row group each.
+      episodes: One row group each; those of a single tick share one.
       names: Names of the arguments, k.
     """
     temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    writer = None
+    writer, tables = None, []
     try:
         for episode in episodes:
-            table = _table(episode, names)
-            writer = writer or pq.ParquetWriter(temporary, table.schema, compression="zstd", write_page_checksum=True)
-            writer.write_table(table)
+            tables.append(_table(episode, names))
+            if len(episode.ticks) > 1 or len(tables) == SHORT_EPISODES:
+                writer = writer or _writer(temporary, tables[0])
+                writer.write_table(pa.concat_tables(tables))
+                tables = []
+        if tables:
+            writer = writer or _writer(temporary, tables[0])
+            writer.write_table(pa.concat_tables(tables).combine_chunks())
     finally:
         if writer is not None:
             writer.close()
     if writer is not None:
         temporary.replace(path)
+
+
+def _writer(path: Path, table: pa.Table) -> pq.ParquetWriter:
+    return pq.ParquetWriter(path, table.schema, compression="zstd", write_page_checksum=True)
 
 
 def _table(episode: Episode, names: Sequence[str]) -> pa.Table:

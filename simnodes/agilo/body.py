@@ -81,12 +81,20 @@ class AgiloBody:
                 self._drive()
             boundary_ns = (self._time_ns // fw.PERIOD_NS + 1) * fw.PERIOD_NS
             until_ns = min(boundary_ns, end_ns)
-            mujoco.mj_step(self._model, self._data, nstep=(until_ns - self._time_ns) // self._step_ns)
+            self._step((until_ns - self._time_ns) // self._step_ns)
             self._time_ns = until_ns
-            self._opponents.watch()
             if until_ns == boundary_ns:
                 readings += self._sense()
         return readings
+
+    def _step(self, count: int) -> None:
+        """Step the physics; among opponents one by one, since a graze may last for one step alone."""
+        if not self._opponents.standing:
+            mujoco.mj_step(self._model, self._data, nstep=count)
+            return
+        for _ in range(count):
+            mujoco.mj_step(self._model, self._data)
+            self._opponents.watch()
 
     def ground_truth(self) -> SoccerGroundTruth:
         """True poses and velocities of robot and ball, field frame."""

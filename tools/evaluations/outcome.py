@@ -23,12 +23,14 @@ class Variant:
       refinement: Settings of refinement.
       pins: Choices that the run is forced to make: label, quantity, value.
       noise: Added to the seed of the body's noise.
+      hand_made: Whether controllers drive around objects by geometry (detour_controller.py), for a baseline.
     """
 
     name: str
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
     pins: tuple[tuple[str, str, float], ...] = ()
     noise: int = 0
+    hand_made: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.evaluations.bodies import body_of
+from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
@@ -94,7 +95,7 @@ def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple
 
 
 def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str, float]]:
-    domain = domains.load(task.domain)
+    domain = with_detours(domains.load(task.domain)) if variant.hand_made else domains.load(task.domain)
     scenario, start = domains.seeded_scenario(task.domain, task.scenario, seed)
     pins = {(label, quantity): value for label, quantity, value in variant.pins}
     drawing = np.random.default_rng([seed, PIN_STREAM])

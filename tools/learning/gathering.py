@@ -27,6 +27,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
+from tailor.tools.learning.object_gathering import runs_beside_objects
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
@@ -39,7 +40,10 @@ RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
 
 @dataclass(frozen=True, slots=True)
 class DataSetSpec:
-    """One data set to gather: episodes of one action with random arguments."""
+    """One data set to gather: episodes of one action with random arguments.
+
+    With `objects` of the action's context, each run gives as many episodes: see `object_gathering.py`.
+    """
 
     domain: str
     action: str
@@ -48,6 +52,7 @@ class DataSetSpec:
     folder: Path
     stream: int = TRAINING_STREAM
     beside: bool = False  # each episode beside one random object of the action's context
+    objects: int = 0
 
     def rng(self, number: int) -> np.random.Generator:
         """Random generator of one episode: its arguments and all its noise."""
@@ -99,9 +104,14 @@ def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
     """
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
-    episodes = [run_one(spec, domain, body, number) for number in range(first, min(first + PART, spec.episodes))]
+    numbers = range(first, min(first + PART, spec.episodes))
+    if spec.objects:
+        episodes, simulated_s = runs_beside_objects(spec.objects, domain, spec.action, body, numbers, spec.rng)
+    else:
+        episodes = [run_one(spec, domain, body, number) for number in numbers]
+        simulated_s = sum(episode.duration_s for episode in episodes)
     write_part(part_path(spec, first), episodes, [entry["name"] for entry in _columns(spec, domain)])
-    return len(episodes), sum(episode.duration_s for episode in episodes), time.perf_counter() - started
+    return len(numbers), simulated_s, time.perf_counter() - started
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
@@ -172,6 +182,7 @@ def _manifest(spec: DataSetSpec) -> dict[str, Any]:
         "action": spec.action,
         "arguments": argument_ranges(domain, spec),
         **(context_entry(domain, spec.action, columns) if columns else {}),
+        **({"objects": spec.objects} if spec.objects else {}),
         "episodes": spec.episodes,
         "seed": spec.seed,
         "stream": spec.stream,

@@ -141,6 +141,8 @@ def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
         return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
     scenarios = manifest.get("scenarios")
     what = manifest["action"] if scenarios is None else f"--on-policy {' '.join(scenarios)}"
-    if (manifest.get("context") or {}).get("names"):
+    if manifest.get("objects"):
+        what += f" --beside-objects {manifest['objects']}"
+    elif (manifest.get("context") or {}).get("names"):
         what += " --beside-object"
     return f"tailor gather {robot} {what} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"

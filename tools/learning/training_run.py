@@ -104,12 +104,12 @@ def _context_jobs(
     """The model of success beside one object, if the episodes have objects."""
     from tailor.models.episodes.context_columns import beside_context
     from tailor.models.episodes.episodes import merge
-    from tailor.models.training.training import train_success
 
     beside = [each for each in map(beside_context, sets) if each is not None]
     if beside:
         data = merge(beside)
-        yield data, "clearance", request.failure_learner, train_success, context_space(data.names, folder)
+        train = partial(_beside_objects, data.manifest.get("objects", 1))
+        yield data, "clearance", request.failure_learner, train, context_space(data.names, folder)
 
 
 def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:
@@ -118,6 +118,8 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     from tailor.models.episodes.regression_targets import ENERGY
     from tailor.models.training import training
 
+    if data.manifest.get("objects"):
+        return  # a run counts once for the action by itself, not once for every object
     yield "duration", request.learner, training.train_duration
     with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
     if with_energy >= training.MIN_EPISODES:
@@ -125,6 +127,13 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
     if failures >= MIN_FAILURE_SHARE * len(data.episodes):
         yield "success", request.failure_learner, training.train_success
+
+
+def _beside_objects(objects: int, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Train success beside objects; the episodes of one run have its number, and are never split."""
+    from tailor.models.training.training import train_success
+
+    return train_success([replace(each, number=each.number // objects) for each in episodes], space, learner, seed)
 
 
 def _publish(

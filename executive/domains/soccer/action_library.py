@@ -14,10 +14,11 @@ from tailor.executive.actions.dribble_ball import DribbleBall
 from tailor.executive.actions.fetch_ball import FetchBall
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.rail_grip import RailGrip
-from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer import opponents, robot
 from tailor.executive.domains.soccer.behind import Behind
 from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
 from tailor.executive.interfaces.action import Action, Parameter
+from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 
 FIELD_X_M = 3.5
 FIELD_Y_M = 2.25
@@ -25,6 +26,9 @@ PASSING_MPS = 0.6  # maximum arrival speed of goToPose
 AT_BALL_MPS = 0.3  # maximum speed of `atball` (paper 6.1)
 # a running approach is deliberated anew when its goal has moved so far: two deviations of a ball seen from 3 m
 BALL_MOVED_M = 0.25
+OPPONENT_MOVED_M = 0.12  # when an opponent turns out to stand elsewhere by this, the way is decided anew
+TOUCHED = "touched opponent"
+TOUCH_COST_S = 30.0  # a robot that has driven against an opponent mostly stays there: two actions run out of time
 
 
 def _places(start_mps: float, goal_mps: float, ball_tolerance: float | None = None) -> tuple[Parameter, ...]:
@@ -50,7 +54,27 @@ _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways)
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 
-GO_TO_POSE = Action("goToPose", _places(PASSING_MPS, PASSING_MPS), _go, "goToPose/duration")
+# goToPose ignores opponents, and so does an approach, which is goToPose: one model tells of both
+OPPONENTS = ActionContext(
+    (
+        ContextColumn("obstacle_x", "m", -FIELD_X_M, FIELD_X_M, OPPONENT_MOVED_M),
+        ContextColumn("obstacle_y", "m", -FIELD_Y_M, FIELD_Y_M, OPPONENT_MOVED_M),
+        ContextColumn("obstacle_r", "m", *opponents.RADII_M),
+    ),
+    opponents.rows,
+    "goToPose/clearance",
+    TOUCHED,
+    TOUCH_COST_S,
+)
+
+GO_TO_POSE = Action(
+    "goToPose",
+    _places(PASSING_MPS, PASSING_MPS),
+    _go,
+    "goToPose/duration",
+    subgoal_action="goToPose",
+    context=OPPONENTS,
+)
 APPROACH_BALL = Action(
     "approachBall",
     _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
@@ -61,6 +85,7 @@ APPROACH_BALL = Action(
     subgoal_risk=BallContactRisk(_ways),
     arguments=behind_goal,
     spans=behind_goal.spans,
+    context=OPPONENTS,
 )
 DRIBBLE_BALL = Action(
     "dribbleBall",

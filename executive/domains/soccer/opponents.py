@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from tailor.executive.belief.obstacle_tracks import ObstacleTrack, Sighting, confirmed, in_map
 from tailor.executive.belief.obstacle_tracks import see as see_obstacles
 from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
 
 MOST = 4  # of another team, that are told of in telemetry
@@ -17,7 +21,7 @@ VIEW_RAD = 0.7
 VIEW_M = (0.5, 4.5)
 CREDIBLE_M = 20.0  # a percept farther off is none
 VARIANCES = (1e-6, 25.0)  # m²: a millimetre's, and that of 5 m; senders without a covariance send zeros
-RADII_M = (0.05, 0.5)
+RADII_M = (0.05, 0.35)
 NAMES = tuple(
     f"opponent{number}_{quantity} (m)" for number in range(1, MOST + 1) for quantity in ("x", "y", "radius", "sigma")
 )
@@ -63,6 +67,12 @@ def values(opponents: Opponents) -> tuple[float, ...]:
         return ()
     shown = {track.number: (track.x, track.y, track.radius_m, track.sigma_m) for track in opponents.standing}
     return tuple(value for number in range(MOST) for value in shown.get(number, (0.0, 0.0, 0.0, -1.0)))
+
+
+def rows(belief: Any) -> Array:
+    """Centre and radius of each opponent (m, map frame), shape (m, 3), of a SoccerBelief."""
+    standing = belief.opponents.standing
+    return np.array([(t.x, t.y, t.radius_m) for t in standing], dtype=np.float64).reshape(-1, 3)
 
 
 def _sighting(seen: OpponentPercept) -> Sighting:

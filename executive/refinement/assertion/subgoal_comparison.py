@@ -40,10 +40,11 @@ class SubgoalComparison:
     ) -> None:
         limited = replace(settings, checks_max=settings.comparison_checks)
         arrival_ids = frozenset(direct.actions[position - 1].variables) if position else frozenset()
-        sides = (
-            (with_accepted_risk(direct, position, 1.0), position + 1),
-            (with_accepted_risk(with_subgoal, position + 1, settings.p_fail_settle), position + 2),
-        )
+        if direct.actions[position].context:  # both ways may meet an object: neither has a limit, both have the price
+            with_subgoal = with_any_risk(with_subgoal)
+        else:
+            with_subgoal = with_accepted_risk(with_subgoal, position + 1, settings.p_fail_settle)
+        sides = (with_accepted_risk(direct, position, 1.0), position + 1), (with_subgoal, position + 2)
         self._solvers = []
         for sequence, end in sides:
             actions = sequence.actions[position:end]
@@ -65,3 +66,14 @@ def with_accepted_risk(sequence: ActionSequence, position: int, risk: float) -> 
     actions = list(sequence.actions)
     actions[position] = replace(actions[position], risk=risk)
     return replace(sequence, actions=tuple(actions))
+
+
+def has_limit(sequence: ActionSequence) -> bool:
+    """Whether subgoals were asserted, and an action of the sequence may not risk more than a limit."""
+    subgoals = any(instance.asserted for instance in sequence.actions)
+    return subgoals and any(instance.may_fail and instance.risk != 1.0 for instance in sequence.actions)
+
+
+def with_any_risk(sequence: ActionSequence) -> ActionSequence:
+    """The sequence without limits, where no choice keeps them: the least expected cost wins, failures priced."""
+    return replace(sequence, actions=tuple(replace(instance, risk=1.0) for instance in sequence.actions))

@@ -66,7 +66,7 @@ class StageBound:
             cost = cost + settings.energy_weight * self.energy.lower_bound(*arguments).mean(axis=0)
         if self.success is not None:
             failure = np.maximum(1 - self.success.upper_bound(*arguments), 0.0)
-            cost = cost + settings.risk_cost_s * failure.mean(axis=0)
+            cost = cost + self.stage.failure_cost_s * failure.mean(axis=0)
             cost = np.where(failure.max(axis=0) > self.stage.p_fail_max, np.inf, cost)
         return np.broadcast_to(cost, (len(before), len(own)))
 

@@ -62,6 +62,7 @@ class Stage:
         self._settings = settings
         self._risk_to_next = risk_to_next
         self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
+        self.failure_cost_s = failure_cost_s(instance, settings)
         self._template = np.array([variables[i].value or 0.0 for i in ids])
         self.slots = np.array([j for j, i in enumerate(ids) if i in columns], dtype=np.intp)
         self.sources = np.searchsorted(self.columns, [columns[i] for i in ids if i in columns])
@@ -100,7 +101,7 @@ class Stage:
         prediction, settings = self.predict(samples), self._settings
         cost: Array = prediction.duration_s + settings.k_std * prediction.std_s
         if self.models.success is not None or self._risk_to_next is not None:
-            cost += settings.risk_cost_s * prediction.failure
+            cost += self.failure_cost_s * prediction.failure
         if self.models.energy is not None:
             cost += settings.energy_weight * prediction.energy_j
         valid = np.isfinite(cost) & (prediction.worst_failure <= self.p_fail_max)
@@ -124,6 +125,14 @@ class Stage:
         upper = np.maximum(exact[:, :, columns], self._upper)
         displaced[:, :, columns] = np.minimum(np.maximum(displaced[:, :, columns], lower), upper)
         return displaced
+
+
+def failure_cost_s(instance: InstantiatedAction, settings: RefinementSettings) -> float:
+    """Price of a failed action; higher beside objects that cost more to meet. Settings without a price keep none."""
+    context = instance.action.context
+    if context is None or not instance.context or settings.risk_cost_s == 0:
+        return settings.risk_cost_s
+    return max(settings.risk_cost_s, context.failure_cost_s)
 
 
 def _mean(values: Array, arrivals: int) -> Array:

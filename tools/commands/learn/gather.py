@@ -25,6 +25,7 @@ examples:
   tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
   tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
   tailor gather agilo goToPose --beside-object --episodes 3000 --out data/agilo-beside
+  tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
@@ -62,6 +63,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="put one random object near each way: episodes for the action's clearance model",
     )
+    other.add_argument(
+        "--beside-objects",
+        type=at_least(1, "--beside-objects"),
+        default=0,
+        metavar="N",
+        help="the same with N objects noted after each way, where the controller would have ignored them",
+    )
     parser.add_argument(
         "--pool",
         type=at_least(1, "--pool"),
@@ -80,9 +88,18 @@ def run(arguments: argparse.Namespace) -> int:
     out = arguments.out or Path("data") / arguments.robot
     if arguments.recordings or arguments.on_policy or arguments.active:
         return _from_runs(arguments, name, out)
+    beside = arguments.beside_object or arguments.beside_objects > 0
     specs = [
-        DataSetSpec(name, action, arguments.episodes, arguments.seed, out / action, beside=arguments.beside_object)
-        for action in actions_of(name, arguments.actions, arguments.beside_object)
+        DataSetSpec(
+            name,
+            action,
+            arguments.episodes,
+            arguments.seed,
+            out / action,
+            beside=beside,
+            objects=arguments.beside_objects,
+        )
+        for action in actions_of(name, arguments.actions, beside)
     ]
     for spec in specs:
         gathering.prepare(spec, arguments.resume)

@@ -63,6 +63,10 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "tailor.tools.evaluations.refinement.figure11",
         "duration over the angle of approach, predicted and simulated",
     ),
+    "assertion": (
+        "tailor.tools.evaluations.assertion.assertion",
+        "success among objects: without and with asserted subgoals, and by hand-made geometry",
+    ),
     "figure15": (
         "tailor.tools.evaluations.assertion.figure15",
         "cost of an asserted subgoal by place, and the runs without and with it",

@@ -9,16 +9,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.actions.planar import PHIG, VG, XG, YG, X, Y
+from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, X, Y
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.action_library import TOUCHED
 from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, Message, Odometry
 from tailor.schemas.messages.soccer import OpponentsTruth, SoccerGroundTruth
+from tailor.tools.lockstep.samplers import opponents
+from tailor.tools.lockstep.samplers.beside import Beside
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
@@ -29,6 +32,8 @@ BALL_SIGMA_M = 0.02
 # Ends of 199 random approaches: gap between rail and ball 0.041 ± 0.014 m, ball aside ± 0.019 m
 BALL_GAP_M = (0.015, 0.07)
 ASIDE_SIGMA_M = 0.02
+SHORT_SHARE, SHORT_M = 0.5, (0.3, 2.5)  # of the runs among opponents
+LATEST = 0.8  # of a run: the last tick from which its rest is looked at
 DRIBBLE_X_M = 2.5  # dribbles are sampled in the area of the scenarios
 DRIBBLE_Y_M = 1.8
 DRIBBLE_M = (0.9, 2.9)  # from the ball to its target
@@ -52,6 +57,41 @@ class SoccerSampler:
             arguments: Array = action.arguments(places[None, :])[0]
             if self._sensible(places) if dribble else self._has_room(arguments):
                 return arguments
+
+    def sample_among_objects(self, action: Action, rng: np.random.Generator) -> Array:
+        """Like `sample`, half of it short: ways around opponents are."""
+        arguments = self.sample(action, rng)
+        if rng.random() < SHORT_SHARE:
+            distance, bearing = rng.uniform(*SHORT_M), rng.uniform(-math.pi, math.pi)
+            for at, off, parameter in ((XG, math.cos(bearing), X), (YG, math.sin(bearing), Y)):
+                limit = action.parameters[at].upper
+                arguments[at] = min(limit, max(-limit, arguments[parameter] + distance * off))
+        return arguments
+
+    def beside(self, action: Action, truths: Sequence[Message], count: int, rng: np.random.Generator) -> list[Beside]:
+        """Opponents beside a run, half of them beside its rest from some tick on."""
+        states = [truth for truth in truths if isinstance(truth, SoccerGroundTruth)]
+        ticks = [0 if k % 2 else int(rng.integers(max(1, round(LATEST * len(states))))) for k in range(count)]
+        failure = action.context.failure if action.context is not None else ""
+        drawn = []
+        for tick in ticks:
+            poses = opponents.poses_of(states[tick:])
+            opponent = opponents.draw_beside(poses, rng)
+            touched = opponents.clearances(poses, np.array([opponent[:2]])).min() < opponent[2]
+            row = np.array(opponents.believed(opponent, poses[0], rng))
+            drawn.append(Beside(tick, row, failure if touched else ""))
+        return drawn
+
+    def context(self, action: Action, arguments: Array, rng: np.random.Generator) -> Array:
+        """An opponent near the straight way, as it is believed: x, y, radius."""
+        ends = np.array([arguments[[X, Y, PHI]], arguments[[XG, YG, PHIG]]])
+        way = ends[0] + np.linspace(0.0, 1.0, 50)[:, None] * (ends[1] - ends[0])
+        return np.array(opponents.draw_beside(way, rng))
+
+    def context_start(self, action: Action, row: Array, rng: np.random.Generator) -> dict[str, float]:
+        """The opponent, off by what a robot errs that has looked for a second."""
+        x, y, radius = opponents.believed((row[0], row[1], row[2]), row[:2] + opponents.TYPICAL_M, rng)
+        return {"opponent1_x": x, "opponent1_y": y, "opponent1_radius": radius}
 
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
         """Start state of the body.
@@ -110,7 +150,7 @@ class SoccerSampler:
     def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
         """Return what the truth shows: the robot touched an opponent, or an approach displaced the ball."""
         if isinstance(truth, OpponentsTruth):
-            return "touched opponent" if truth.touched else ""
+            return TOUCHED if truth.touched else ""
         if action.name != "approachBall" or not isinstance(truth, SoccerGroundTruth):
             return ""
         moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])

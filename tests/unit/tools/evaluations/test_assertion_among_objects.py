@@ -1,0 +1,99 @@
+"""Detours by hand-made geometry, and the figures of `evaluate assertion`."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tailor.executive import domains
+from tailor.executive.actions.arrival_path import ArrivalPath
+from tailor.executive.domains.soccer import robot
+from tailor.schemas.messages.soccer import OpponentsTruth
+from tailor.tools.evaluations.assertion import assertion
+from tailor.tools.evaluations.costs import Costs
+from tailor.tools.evaluations.detour_controller import with_detours
+from tailor.tools.evaluations.detour_graph import DetourGraph
+from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.lockstep.action_run import new_body, newest
+
+WAYS = ArrivalPath(robot.V_MAX_MPS)
+START, GOAL = (-1.5, 0.0, 0.0), (1.5, 0.0, 0.0)
+FIELD = (3.5, 2.25)
+
+
+def around(*discs):
+    return DetourGraph(WAYS, discs, FIELD).shortest(START, GOAL, 0.0)
+
+
+def test_a_free_way_has_no_poses():
+    assert around() == ()
+    assert around((0.0, 1.0, 0.2)) == ()
+
+
+@pytest.mark.parametrize("discs", [[(0.0, 0.0, 0.2)], [(0.0, 0.1, 0.2), (0.2, -0.6, 0.25), (-0.3, 0.8, 0.15)]])
+def test_the_poses_lead_past_every_disc(discs):
+    poses = around(*discs)
+    assert poses
+    graph = DetourGraph(WAYS, tuple(discs), FIELD)
+    stops = [START, *poses, GOAL]
+    assert all(graph.clear(a, b, 0.5 if b in poses else 0.0) for a, b in itertools.pairwise(stops))
+
+
+def test_it_takes_the_shorter_side():
+    ((_, y, _),) = around((0.0, 0.15, 0.2))
+    assert y < 0
+
+
+def test_a_goal_inside_a_ring_of_discs_has_no_way():
+    ring = [(1.5 + 0.6 * math.cos(k), 0.6 * math.sin(k), 0.25) for k in np.arange(0, math.tau, 0.5)]
+    assert around(*ring) is None
+
+
+@pytest.mark.parametrize("detours", [False, True])
+def test_controllers_with_detours_touch_no_opponent_in_the_way(detours):
+    domain = domains.load("soccer")
+    domain = with_detours(domain) if detours else domain
+    body, belief, state, touched = new_body(domain), domain.initial_belief(), None, False
+    body.reset(np.random.default_rng(1), {"x": -1.5, "opponent1_x": 0.0, "opponent1_y": 0.05, "opponent1_radius": 0.2})
+    control = None
+    for tick in range(1, 200):
+        readings = body.advance(10**8)
+        touched |= any(r.message.touched for r in readings if isinstance(r.message, OpponentsTruth))
+        belief = domain.update(belief, tick * 10**8, newest(readings), (0.0, 0.0))
+        if tick > 15:
+            arguments = np.array([-1.5, 0, 0, 0, *GOAL, 0.0])
+            control = domain.actions["goToPose"].controller(state, tick * 10**8, belief, arguments)
+            state = control.state
+            if control.outcome != "running":
+                break
+            body.command(control.command)
+    assert touched is not detours
+    if detours:
+        assert control.outcome == "done"
+        assert math.dist((body.ground_truth().x, body.ground_truth().y), GOAL[:2]) < 0.2
+
+
+NONE = Outcome(0, "", True, 5.0, "achieved", (), (), (), (), False, 0.0, (), ())
+
+
+def outcome(seconds=5.0, contacts=0, asserted=False, achieved=True):
+    return replace(NONE, duration_s=seconds, asserted=asserted, achieved=achieved, costs=Costs(contacts, 0.0, ()))
+
+
+def test_a_row_counts_contacts_as_failures_and_needless_subgoals():
+    found = {
+        "before": {0: outcome(), 1: outcome(5.0), 2: outcome(contacts=1), 3: outcome(achieved=False)},
+        "after": {0: outcome(), 1: outcome(5.5, asserted=True), 2: outcome(6.0, asserted=True), 3: outcome(contacts=2)},
+        "baseline": {0: outcome(5.5), 1: outcome(5.5), 2: outcome(6.0), 3: outcome(7.0)},
+    }
+    row = assertion.row(found, range(4))
+    assert (row["success_before_pct"], row["success_after_pct"], row["baseline_success_pct"]) == (50, 75, 100)
+    assert row["needless_pct"] == 25
+    assert math.isnan(row["needless_slower_pct"]), "one start has no mean"
+    assert row["baseline_slower_pct"] == pytest.approx(10)
+    assert row["after_slower_pct"] == pytest.approx(5)
+    assert not assertion.reached(row)
+    assert assertion.reached({"success_after_pct": 98.5, "needless_slower_pct": 7.0})
+    assert not assertion.reached({"success_after_pct": 99.5, "needless_slower_pct": 9.0})

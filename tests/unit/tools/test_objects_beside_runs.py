@@ -1,0 +1,68 @@
+"""Opponents noted after a run: those that the simulated robot would have touched, and no others."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tailor.executive import domains
+from tailor.schemas.messages.soccer import OpponentsTruth
+from tailor.simnodes.agilo.scene import RAIL
+from tailor.tools.learning.object_gathering import runs_beside_objects
+from tailor.tools.lockstep.action_run import new_body, run_action, sampler_of
+from tailor.tools.lockstep.samplers import opponents
+
+DOMAIN = domains.load("soccer")
+ACTION = DOMAIN.actions["goToPose"]
+GRAZED_M = 0.02  # nearer to a touch than this, both may be right
+
+
+def driven_beside(body, run, start, opponent):
+    """Whether the robot touches a simulated opponent with the commands of a run, from its start."""
+    x, y, radius = opponent
+    body.reset(np.random.default_rng(0), {**start, "opponent1_x": x, "opponent1_y": y, "opponent1_radius": radius})
+    for tick in run.trace[:-1]:
+        body.command(tick.command)
+        readings = body.advance(10**8)
+        if any(reading.message.touched for reading in readings if isinstance(reading.message, OpponentsTruth)):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_a_noted_touch_is_a_touch_in_simulation(number):
+    sampler, body = sampler_of(DOMAIN), new_body(DOMAIN)
+    arguments = sampler.sample_among_objects(ACTION, np.random.default_rng([5, number]))
+    run = run_action(body, DOMAIN, "goToPose", arguments, np.random.default_rng([6, number]), traced=True)
+    start = sampler.start(ACTION, arguments, np.random.default_rng(0))
+    poses = opponents.poses_of([tick.truth for tick in run.trace])
+    for k in range(6):
+        opponent = opponents.draw_beside(poses, np.random.default_rng([7, number, k]))
+        clear_m = opponents.clearances(poses, np.array([opponent[:2]])).min() - opponent[2]
+        if abs(clear_m) > GRAZED_M:
+            assert driven_beside(body, run, start, opponent) is bool(clear_m < 0), (opponent, clear_m)
+
+
+def test_the_outline_is_the_simulated_one():
+    model = new_body(DOMAIN)._model
+    ends = [model.geom(name).pos[:2] for name in RAIL]
+    middles = (opponents.RAIL[1:] + opponents.RAIL[:-1]) / 2
+    assert all(np.hypot(*(middles - end).T).min() < 2e-3 for end in ends)
+    at = np.zeros((1, 3))
+    places = np.array([[-0.5, 0.0], [0.0, 0.4], [0.6, 0.0], [0.318, 0.0]])
+    clear = opponents.clearances(at, places)[:, 0]
+    assert clear == pytest.approx([0.27, 0.24, math.hypot(0.6 - 0.288, 0.119) - 0.005, 0.118], abs=4e-3)
+
+
+def test_one_run_gives_many_episodes_with_one_object_each():
+    def rng_of(number):
+        return np.random.default_rng([3, number])
+
+    episodes, simulated_s = runs_beside_objects(12, DOMAIN, "goToPose", new_body(DOMAIN), range(2, 4), rng_of)
+    again, _ = runs_beside_objects(12, DOMAIN, "goToPose", new_body(DOMAIN), range(3, 4), rng_of)
+    assert [episode.number for episode in episodes] == list(range(24, 48))
+    assert all(np.array_equal(a.arguments, b.arguments) for a, b in zip(episodes[12:], again, strict=True))
+    assert simulated_s > 1.0
+    assert {episode.arguments.shape for episode in episodes} == {(11,)}
+    assert {episode.failure for episode in episodes} == {"", ACTION.context.failure}
+    assert all(episode.success is (episode.failure == "") for episode in episodes)

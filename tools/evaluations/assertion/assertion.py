@@ -1,0 +1,113 @@
+"""Subgoal assertion among objects: success without it, with it, and by hand-made geometry, from equal starts."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.paired_comparison import share_interval
+from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.evaluations.task_runs import run_all
+
+SCENARIOS = {"soccer": ("opponents", "opponents-approach", "opponents-dribble")}  # with objects, by domain
+DOMAINS = tuple(SCENARIOS)
+BEFORE, AFTER, BASELINE = "before", "after", "baseline"
+MIN_SUCCESS_PCT, MAX_SLOWER_PCT = 98.0, 8.0
+REMARKS = (
+    "before: the same controllers, nothing is predicted to fail. after: learned success, asserted subgoals. baseline: "
+    "the same controllers on ways around the believed objects, from a graph of poses and arcs.",
+    "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
+    "succeeds. *_slower_pct: in the mean, against before, where both succeed; of after where the subgoal was needless.",
+    "after_to_baseline_pct: how much slower after is than the baseline where both succeed; 95 % interval by start.",
+)
+
+Outcomes = Mapping[int, Outcome]  # by seed
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor evaluate assertion`."""
+    parser.add_argument(
+        "--episodes", type=at_least(2, "--episodes"), default=500, help="starts of each scenario (default %(default)s)"
+    )
+    parser.add_argument("--scenarios", nargs="+", metavar="NAME", help="scenarios (default: all with objects)")
+    configure_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate and publish the report; 0 if every row reaches the targets."""
+    domain = arguments.domain or DOMAINS[0]
+    scenarios = arguments.scenarios or SCENARIOS[domain]
+    seeds = seeds_of(domain, arguments)
+    rows = []
+    for scenario in scenarios:
+        if scenario not in SCENARIOS[domain]:
+            raise UsageError(f"--scenarios {scenario}: expected some of: {', '.join(SCENARIOS[domain])}")
+        task, starts = Task(domain, scenario, zoo=arguments.zoo), seeds.starts(arguments.episodes)
+        found = run_all(task, variants(), starts, arguments.jobs, arguments.store, scenario)
+        rows.append({"scenario": scenario, **row(found, starts)})
+    report = Report("assertion", "Subgoal assertion among objects", rows, REMARKS, {}, seeds.provenance)
+    publish_report(report, arguments.json, arguments.report)
+    return 0 if all(map(reached, rows)) else 1
+
+
+def variants() -> tuple[Variant, ...]:
+    """Settings that are compared; without assertion nothing is predicted to fail, and failures cost nothing."""
+    base = RefinementSettings()
+    blind = replace(base, p_fail_max=1.0, p_fail_assert=1.0, risk_cost_s=0.0)
+    return Variant(BEFORE, blind), Variant(AFTER, base), Variant(BASELINE, blind, hand_made=True)
+
+
+def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
+    """Figures of one scenario, in percent of all starts."""
+    before, after, baseline = (found[name] for name in (BEFORE, AFTER, BASELINE))
+    n = len(seeds)
+    successes = {name: [seed for seed in seeds if succeeded(found[name][seed])] for name in found}
+    needless = [seed for seed in successes[BEFORE] if after[seed].asserted]
+    return {
+        "n": n,
+        "success_before_pct": 100 * len(successes[BEFORE]) / n,
+        "success_after_pct": 100 * len(successes[AFTER]) / n,
+        "ci95_after": share_interval(len(successes[AFTER]), n),
+        "needless_pct": 100 * len(needless) / n,
+        "needless_slower_pct": slower_pct(before, after, needless)[0],
+        "baseline_success_pct": 100 * len(successes[BASELINE]) / n,
+        "ci95_baseline": share_interval(len(successes[BASELINE]), n),
+        "baseline_slower_pct": slower_pct(before, baseline, successes[BEFORE])[0],
+        "after_slower_pct": slower_pct(before, after, successes[BEFORE])[0],
+        "after_to_baseline_pct": slower_pct(baseline, after, seeds)[0],
+        "ci95_after_to_baseline": slower_pct(baseline, after, seeds)[1],
+        "asserted_pct": 100 * sum(after[seed].asserted for seed in seeds) / n,
+        "lost_pct": 100 * len(set(successes[BEFORE]) - set(successes[AFTER])) / n,
+        "contacts_after_pct": 100 * sum(after[seed].costs.contacts > 0 for seed in seeds) / n,
+        "contacts_baseline_pct": 100 * sum(baseline[seed].costs.contacts > 0 for seed in seeds) / n,
+    }
+
+
+def succeeded(outcome: Outcome) -> bool:
+    """Whether the goal was achieved without touching anything."""
+    return outcome.achieved and outcome.costs.contacts == 0
+
+
+def slower_pct(first: Outcomes, second: Outcomes, seeds: Sequence[int]) -> tuple[float, tuple[float, float]]:
+    """Mean of how much longer the second takes where both succeed, and its 95 % interval; NaN for under two starts."""
+    both = [seed for seed in seeds if succeeded(first[seed]) and succeeded(second[seed])]
+    if len(both) < 2:
+        return float("nan"), (float("nan"), float("nan"))
+    more = np.array([100 * (second[seed].duration_s / first[seed].duration_s - 1) for seed in both])
+    mean, half = float(more.mean()), 1.96 * float(more.std(ddof=1)) / len(both) ** 0.5
+    return mean, (mean - half, mean + half)
+
+
+def reached(figures: Mapping[str, Any]) -> bool:
+    """Whether a row reaches the targets; without needless subgoals they cost nothing."""
+    slower = figures["needless_slower_pct"]
+    return figures["success_after_pct"] >= MIN_SUCCESS_PCT and not slower > MAX_SLOWER_PCT
