@@ -106,12 +106,12 @@ def compare_means(first: ArrayLike, second: ArrayLike, units: Units | None = Non
 def compare_shares(first: ArrayLike, second: ArrayLike, units: Units | None = None) -> Difference:
     """Compare how often something happened, in percent, by McNemar's exact test; boolean, shapes (n,).
 
-    The interval is the adjusted Wald interval of Bonett and Price (2012). With units of several pairs, both are those
-    of `compare_means` over the units' shares.
+    The interval is the adjusted Wald interval of Bonett and Price (2012). Where units of several pairs differ, both are
+    those of `compare_means` over the units' shares.
     """
-    one, other = _paired(first, second)
-    if units is not None:
-        return compare_means(100 * one, 100 * other, units)
+    one, other = (by_unit(values, units) for values in _paired(first, second))
+    if units is not None and (one != other).any():
+        return compare_means(100 * one, 100 * other)
     n, lost, gained = len(one), int(np.sum(one > other)), int(np.sum(other > one))
     p_value = float(stats.binomtest(gained, lost + gained).pvalue) if lost + gained else 1.0
     p10, p01 = (lost + 1) / (n + 2), (gained + 1) / (n + 2)

@@ -45,6 +45,15 @@ def test_an_interval_of_a_share_is_not_empty_where_nothing_happened():
     assert found.p_value == 1.0
     assert found.ci95[0] < 0.0 < found.ci95[1]
     assert found.ci95[1] < 5.0
+    few = compare_shares(nothing, nothing, np.repeat(range(10), 10).tolist())
+    assert few.ci95[1] > found.ci95[1]
+
+
+def test_units_with_other_shares_are_compared_as_a_whole():
+    first, second = np.zeros(40, bool), np.array([1, 0, 0, 0] * 9 + [0] * 4, bool)
+    found = compare_shares(first, second, np.repeat(range(10), 4).tolist())
+    assert (found.first, found.second) == (0.0, 22.5)
+    assert found.ci95[0] > 0
 
 
 def test_the_interval_of_shares_covers_the_truth_as_often_as_it_promises():
