@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tailor.executive.domains.arm.action_library import ACTIONS
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
+from tailor.tools.lockstep.samplers.arm import ArmSampler
 from tailor.tools.writing.measures import waypoint_errors_rad
 from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
 
@@ -59,3 +61,11 @@ def test_a_word_is_written_letter_by_letter():
     down = track.pen_down().astype(int)
     assert np.count_nonzero(np.diff(down) == 1) == 2, "the pen goes down once a letter"
     assert waypoint_errors_rad(track).max() < 0.010
+
+
+def test_arrival_errors_are_those_of_the_two_writing_joints():
+    body = RecordedBody()
+    body.reset(np.random.default_rng(0), {"a": 0.3, "b": -0.2})
+    arguments = np.array([0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.1, 0.4])
+    errors = ArmSampler().arrival_errors(ACTIONS["reach"], arguments, body.ground_truth())
+    assert errors == {"position_rad": pytest.approx(0.3, abs=0.01), "speed_radps": pytest.approx(0.4, abs=0.01)}
