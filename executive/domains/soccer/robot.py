@@ -8,7 +8,7 @@ IN_RAIL_M = 0.31  # from the axle to the centre of a ball that lies in the rail
 RAIL_TIP_M = (0.288, 0.119)  # of the left tip, ahead of the axle and left of it
 BALL_AND_RAIL_M = 0.115  # from the axis of the rail's rod to the centre of a ball that touches it
 # Between ball and rail where an approach ends. From 0.03 to 0.09 as few of 800 random approaches (2.0 to 2.6 %) bump
-# the ball and they take as long; nearer than 0.05 the tips of the rail would touch a ball that lies 2 cm aside.
+# the ball and they take as long; at 0.03 the tips of the rail would touch a ball that lies 2 cm aside.
 CLEARANCE_M = 0.05
 BEHIND_BALL_M = IN_RAIL_M + CLEARANCE_M  # from the axle to the ball where an approach ends
 BALL_ROLLING_MPS2 = 0.53  # deceleration of the free ball
