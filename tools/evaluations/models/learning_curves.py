@@ -24,8 +24,8 @@ from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, mean_interval
 from tailor.tools.evaluations.plots import draw_curves
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
-from tailor.tools.evaluations.seeds import DIGITS
 from tailor.tools.evaluations.task_runs import paired, run_all
+from tailor.tools.learning.fresh_seeds import DIGITS
 from tailor.tools.learning.making import Making, make
 from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.steps import show
