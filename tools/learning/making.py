@@ -87,7 +87,8 @@ def make(making: Making) -> Iterator[Step]:
     """Gather and train all that is missing; yields progress. The models are in `making.zoo` at the end.
 
     Raises:
-      UsageError: An unknown scenario, learner or feature space, or too few episodes.
+      UsageError: An unknown scenario, learner or feature space, too few episodes, or a model that an action names and
+        that could not be learned.
     """
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
@@ -95,6 +96,20 @@ def make(making: Making) -> Iterator[Step]:
         yield from _trained(making, zoo, making.data[: number + 1], CHOOSING)
         yield from _round(making, number, each, zoo)
     yield from _trained(making, making.zoo, making.data, making.kinds)
+    check_complete(making)
+
+
+def check_complete(making: Making) -> None:
+    """Check that the zoo has every model of durations and successes that the robot's actions name.
+
+    Raises:
+      UsageError: One is missing: no episode failed, say.
+    """
+    for action in domains.load(making.domain).actions.values():
+        for name in filter(None, (action.duration_model, action.success_model)):
+            if not (making.zoo / making.robot / f"{name}.onnx").exists():
+                count = making.recipe.episodes
+                raise UsageError(f"{action.name} needs {name}, which {count} random episodes do not suffice to learn")
 
 
 def install(made: Path, zoo: Path, robot: str) -> None:

@@ -8,7 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tailor.executive import domains
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.learning.training_request import (
     TrainingRequest,
     context_space,
@@ -112,6 +114,14 @@ def _context_jobs(
         yield data, "clearance", request.failure_learner, train, context_space(data.names, folder)
 
 
+def _needs_success(robot: str, data: DataSet) -> bool:
+    """Whether the action of the episodes names a model of success, without which the executive refuses to start."""
+    if robot not in robot_names():
+        return False
+    actions = domains.load(spec_of_robot(robot).name).actions.values()
+    return f"{data.manifest['action']}/success" in {action.success_model for action in actions}
+
+
 def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:
     """Kind, learner and training function of each model that the episodes suffice for."""
     from tailor.models.episodes.episodes import UNOBSERVED
@@ -125,7 +135,7 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     if with_energy >= training.MIN_EPISODES:
         yield "energy", request.learner, partial(training.train_regression, ENERGY)
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
-    if failures >= MIN_FAILURE_SHARE * len(data.episodes):
+    if failures >= MIN_FAILURE_SHARE * len(data.episodes) or (failures and _needs_success(request.robot, data)):
         yield "success", request.failure_learner, training.train_success
 
 

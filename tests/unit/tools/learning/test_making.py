@@ -26,6 +26,7 @@ def trained(monkeypatch) -> list:
         (folder / "duration.card.json").write_text(f"of {len(request.data)}")
 
     monkeypatch.setattr(making_module, "train_models", train)
+    monkeypatch.setattr(making_module, "check_complete", lambda _: None)
     monkeypatch.setattr(making_module.run_gathering, "models_hash", lambda *_: "models")
     monkeypatch.setattr(making_module.run_gathering, "_run", lambda *_: [])
     monkeypatch.setattr(making_module.gathering, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
@@ -40,6 +41,15 @@ def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, tr
     ]  # fmt: skip
     assert all(request.command == "make" for request in trained)
     assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
+
+
+def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_others(tmp_path: Path) -> None:
+    making = Making("powercube", Recipe(40), tmp_path, 1, "make")
+    with pytest.raises(UsageError, match="reach needs reach/duration, which 40 random episodes do not suffice"):
+        making_module.check_complete(making)
+    (making.zoo / "powercube" / "reach").mkdir(parents=True)
+    (making.zoo / "powercube" / "reach" / "duration.onnx").touch()
+    making_module.check_complete(making)
 
 
 def test_what_was_made_is_not_made_again(tmp_path: Path, trained: list) -> None:
