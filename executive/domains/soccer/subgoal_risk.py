@@ -1,4 +1,4 @@
-"""Risk that the way to an asserted subgoal runs into the ball: hand-made geometry, because goToPose's models have no ball.
+"""Risk that the way to an asserted subgoal meets the ball: hand-made geometry, as goToPose's models have no ball.
 
 Nothing here is learned. It repeats the path planner of the controller and takes the distance from the ball for a risk.
 """
