@@ -47,9 +47,13 @@ def short_hashes(files: Mapping[str, str]) -> dict[str, str]:
 def probe_of(manifest: Manifest, ends: Sequence[Sequence[float]]) -> dict[str, Any] | None:
     """How the first PROBE episodes of a data set with random arguments ended; None for other data sets."""
     drawn = manifest.get("seed") is not None and manifest.get("stream") is not None
+    beside = bool((manifest.get("context") or {}).get("names"))
+    if "beside" in str(manifest.get("source")) and not beside:
+        return None  # the object that the episodes were run beside is not among their columns
     if not drawn or len(ends) < PROBE or manifest.get("on_policy"):
         return None
-    return {"seed": manifest["seed"], "stream": manifest["stream"], "ends": list(map(list, ends))}
+    about = {"seed": manifest["seed"], "stream": manifest["stream"], "ends": list(map(list, ends))}
+    return about | ({"beside": True} if beside else {})
 
 
 def end_of(duration_s: float, ticks: NDArray[np.float64]) -> list[float]:

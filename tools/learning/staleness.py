@@ -48,7 +48,8 @@ def differing_episodes(card: Card) -> str:
     domain = domains.load(name)
     if action not in domain.actions:
         return f"{name} has no action '{action}'"
-    spec = gathering.DataSetSpec(name, action, len(probe["ends"]), probe["seed"], Path(), probe["stream"])
+    drawn = (len(probe["ends"]), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")))
+    spec = gathering.DataSetSpec(name, action, *drawn)
     body = action_run.new_body(domain)
     for number, then in enumerate(probe["ends"]):
         episode = gathering.run_one(spec, domain, body, number)

@@ -111,3 +111,12 @@ def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_p
 def test_action_without_a_context_is_refused() -> None:
     with pytest.raises(UsageError, match="'dribbleBall' of soccer has no context"):
         gathering.check_action("soccer", "dribbleBall", beside=True)
+
+
+def test_episodes_of_a_clearance_model_are_known_again_and_the_action_s_are_not_confused(beside) -> None:
+    data = read_data_set(beside[0])
+    judged = beside_context(data)
+    assert judged is not None
+    assert merge([judged]).manifest["probe"]["beside"]
+    assert merge([without_context(data)]).manifest["probe"] is None
+    assert "beside" not in merge([read_data_set(beside[1]), without_context(data)]).manifest["probe"]
