@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.interval_boxes import interval_boxes
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
+from tailor.models.bounds.network_bounds import NetworkBounds, network_bounds
 from tailor.models.bounds.tree_boxes import tree_boxes
 from tailor.models.features.feature_intervals import FEATURE_SPANS
 from tailor.models.features.intervals import Array, Span
@@ -29,21 +30,28 @@ MIN_SELECTION = 200  # pairs of boxes, by case; below, selecting the possible on
 
 @dataclass(frozen=True, slots=True)
 class ModelBounds:
-    """The bounds of one model, computed from its trees and its feature space.
+    """The bounds of one model, computed from its trees, its networks and its feature space.
 
-    `spread` are the bounds of the tree of intervals; None: the standard deviation is that over the trees.
+    Attributes:
+      space: Name of the feature space.
+      trees: Bounds of the trees; None: the model has none.
+      spread: Bounds of the tree of intervals; None: the standard deviation is that over the trees.
+      networks: Bounds of the networks; None: the model has none.
+      share: Weight of the trees, 0..1; that of the networks is the rest.
     """
 
     space: str
-    trees: LeafBounds
+    trees: LeafBounds | None
     spread: LeafBounds | None = None
+    networks: NetworkBounds | None = None
+    share: float = 1.0
 
     def within(self, lower: Columns, upper: Columns) -> ModelBounds:
         """The bounds restricted to arguments between these, with fewer leaves: much faster to compute."""
         cases = FEATURE_SPANS[self.space](tuple(map(Span, lower, upper)))
         hulls = tuple(reduce(Span.hull, spans) for spans in zip(*(case.features for case in cases), strict=True))
         spread = self.spread and self.spread.within((*hulls, ANY_STD), MARGIN)
-        return replace(self, trees=self.trees.within(hulls, MARGIN), spread=spread)
+        return replace(self, trees=self.trees and self.trees.within(hulls, MARGIN), spread=spread)
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """Lower bound of the mean plus `k_std` standard deviations over boxes of arguments.
@@ -61,18 +69,16 @@ class ModelBounds:
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """Upper bound of the mean over boxes of arguments, as `lower_bound`."""
-        trees = self.trees
-        return -self._over_cases(
-            tuple(map(Span, lower, upper)),
-            lambda _, overlap: trees.least(overlap, Side.OPPOSITE)[0].mean(axis=0) - trees.slack,
-        )
+        arguments = tuple(map(Span, lower, upper))
+        return -self._over_cases(arguments, lambda features, overlap: self._mean(features, overlap, Side.OPPOSITE))
 
     @property
     def effort(self) -> int:
         """Maximum number of leaves that one bound considers."""
-        return self.trees.leaves + (0 if self.spread is None else self.spread.leaves)
+        leaves = sum(part.leaves for part in (self.trees, self.spread) if part is not None)
+        return leaves + (0 if self.networks is None else self.networks.effort)
 
-    def _over_cases(self, arguments: Spans, least: Callable[[Spans, Overlap], Floats]) -> Array:
+    def _over_cases(self, arguments: Spans, least: Callable[[Spans, Overlap | None], Floats]) -> Array:
         """Minimum over all cases of the features, each where it is possible.
 
         If a tree has no leaf for a case, there are no such arguments: the case and sums with it are ignored.
@@ -84,25 +90,40 @@ class ModelBounds:
             if not possible.any():
                 continue
             features, at = _selected(case.features, possible)
-            overlap = self.trees.overlap(features)
-            if not overlap.empty:
+            overlap = None if self.trees is None else self.trees.overlap(features)
+            if overlap is None or not overlap.empty:
                 with np.errstate(invalid="ignore"):
                     values = np.fmin(bound[at], least(features, overlap))
                 bound[at] = np.where(possible[at], values, bound[at])
         return bound
 
-    def _mean_and_std(self, features: Spans, overlap: Overlap, k_std: float) -> Floats:
+    def _mean_and_std(self, features: Spans, overlap: Overlap | None, k_std: float) -> Floats:
         """Lower bound of the mean plus k standard deviations, shape (...)."""
-        trees, slack = self.trees, np.float32(self.trees.slack)
-        if self.spread is not None and k_std > 0:
+        if k_std <= 0:
+            return self._mean(features, overlap, Side.LEAST)
+        if self.spread is not None:
             spread = self.spread.least(self.spread.overlap((*features, ANY_STD)), Side.LEAST)[0, 0] - OFFSET_ROUNDING
-            total: Floats = trees.least(overlap, Side.LEAST)[0].mean(axis=0) - slack + np.float32(k_std) * spread
+            total: Floats = self._mean(features, overlap, Side.LEAST) + np.float32(k_std) * spread
             return total
-        if k_std <= 0 or trees.trees == 1:
-            mean: Floats = trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack
-            return mean
+        trees = self.trees
+        if trees is None or overlap is None:
+            raise ValueError("a network without intervals has no bounds of its standard deviation")
+        slack = np.float32(trees.slack)
+        if trees.trees == 1:
+            return np.asarray(trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack)
         least, opposite = trees.least(overlap, Side.BOTH)
         return bag_lower_bound(least, 2 * slack - opposite, k_std) - slack
+
+    def _mean(self, features: Spans, overlap: Overlap | None, side: Side) -> Floats:
+        """Lower bound of the mean, or of minus the mean (Side.OPPOSITE), shape (...)."""
+        total: Floats = np.zeros((), np.float32)
+        if self.trees is not None and overlap is not None:
+            least = self.trees.least(overlap, side)[0].mean(axis=0) - np.float32(self.trees.slack)
+            total = total + np.float32(self.share) * least
+        if self.networks is not None:
+            sign = 1 if side is Side.LEAST else -1
+            total = total + np.float32(1 - self.share) * self.networks.least(features, sign)
+        return total
 
 
 def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
@@ -114,13 +135,18 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
       features: Number of features.
 
     Returns:
-      The bounds; None if the model is not made of trees, or the feature space has no intervals.
+      The bounds; None if the model is not made of trees and networks, or the feature space has no intervals.
     """
-    boxes = tree_boxes(model, features) if space in FEATURE_SPANS else None
-    if boxes is None:
+    if space not in FEATURE_SPANS:
         return None
+    networks = network_bounds(model)
+    boxes = tree_boxes(model, features, blended=networks is not None)
+    if boxes is None and networks is None:
+        return None
+    share = float(boxes is not None) if networks is None or boxes is None else networks.trees_share
     spread = interval_boxes(model, features)
-    return ModelBounds(space, LeafBounds(boxes), None if spread is None else LeafBounds(spread))
+    trees, widths = (None if part is None else LeafBounds(part) for part in (boxes, spread))
+    return ModelBounds(space, trees, widths, networks, share)
 
 
 def _selected(features: Spans, possible: NDArray[np.bool_]) -> tuple[Spans, Any]:

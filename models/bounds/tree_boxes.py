@@ -58,12 +58,15 @@ class TreeBoxes:
         return replace(self, lower=lower, upper=upper)
 
 
-def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
-    """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes."""
+def tree_boxes(model: bytes, features: int, blended: bool = False) -> TreeBoxes | None:
+    """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes.
+
+    Trees that are blended with networks do not predict alone what the model does: only if `blended` are they returned.
+    """
     try:
         graph = read_graph(model)
-        if any(node.op == "Relu" for node in graph.nodes):
-            return None  # a network, alone or blended with trees
+        if not blended and any(node.op == "Relu" for node in graph.nodes):
+            return None
         trees = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
         ensembles = [node for node in trees if node.name != tree_names.INTERVALS]
         boxes = _boxes(ensembles, features) if ensembles else boxes_of_cells(graph, features)

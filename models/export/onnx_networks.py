@@ -20,8 +20,8 @@ def add_networks(sink: Sink, features: str, learner: NetworkRegressor) -> MeanSt
     """Mean and standard deviation over networks, shapes (n,), of rows of features (f, n)."""
     values = features
     for number, layer in enumerate(learner.layers_):
-        product = sink.add("MatMul", sink.constant(layer.weights), values)
-        values = sink.add("Add", product, sink.constant(layer.bias))
+        product = sink.add("MatMul", sink.constant(layer.weights, tree_names.NETWORK_WEIGHTS.format(number)), values)
+        values = sink.add("Add", product, sink.constant(layer.bias, tree_names.NETWORK_BIAS.format(number)))
         if number < len(learner.layers_) - 1:
             values = sink.add("Relu", values)
     each = sink.add("Reshape", values, sink.constant(np.array([learner.networks, -1])))  # (k, n)
@@ -29,8 +29,9 @@ def add_networks(sink: Sink, features: str, learner: NetworkRegressor) -> MeanSt
     mean = sink.add("MatMul", share, each)
     off = sink.add("Sub", each, mean)
     std = sink.add("Sqrt", sink.add("MatMul", share, sink.add("Mul", off, off)))
-    low, high = (sink.constant(np.asarray(end, np.float32)) for end in (learner.low_, learner.high_))
-    return str(sink.add("Clip", mean, low, high)), str(std)
+    ends = {tree_names.NETWORK_LOW: learner.low_, tree_names.NETWORK_HIGH: learner.high_}
+    limits = [sink.constant(single(float(end)), name) for name, end in ends.items()]
+    return str(sink.add("Clip", mean, *limits)), str(std)
 
 
 def add_mixture(sink: Sink, parts: Sequence[MeanStd], weights: Sequence[float]) -> MeanStd:
@@ -59,7 +60,8 @@ def add_intervals(sink: Sink, features: str, mean: str, std: str, intervals: Int
 
 
 def _weighted(sink: Sink, values: Sequence[str], weights: Sequence[float]) -> str:
-    parts = [sink.add("Mul", value, sink.constant(single(w))) for value, w in zip(values, weights, strict=True)]
+    constants = (sink.constant(single(w), tree_names.MEMBER_WEIGHT.format(k)) for k, w in enumerate(weights))
+    parts = [sink.add("Mul", value, constant) for value, constant in zip(values, constants, strict=True)]
     total = parts[0]
     for part in parts[1:]:
         total = sink.add("Add", total, part)

@@ -103,6 +103,7 @@ def _first_tree(model: object) -> OneTree:
     assert isinstance(model, OnnxDuration)
     assert model.bounds is not None
     bounds = model.bounds
+    assert bounds.trees is not None
     boxes = bounds.trees.boxes
     end = int(boxes.first[1]) if len(boxes.first) > 1 else len(boxes.low)
     parts = (getattr(boxes, name)[:end] for name in ("lower", "upper", "slopes", "intercept", "low", "high"))
