@@ -14,7 +14,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 TEST_MODULES = [
     p.relative_to(ROOT).as_posix() for folder in ("tests", "examples") for p in (ROOT / folder).rglob("*.py")
 ]
-OURS = {"tailor", "tests"}
+OURS = {"tailor", "tests", "truck"}  # truck: a robot's package that tests install
 DISTRIBUTIONS = packages_distributions()
 
 
@@ -30,7 +30,7 @@ def declared(requirements: list[str]) -> set[str]:
 RUN = declared(PROJECT["dependencies"])
 TEST = declared(PROJECT["optional-dependencies"]["test"])
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
-OPTIONAL = {"cma", "pytest"}  # `tailor bench refine` leaves CMA-ES out where it is not installed; pytest's plug-in
+OPTIONAL = {"cma", "kairos-planner", "pytest"}  # benchmarks leave out what is not installed; pytest's plug-in
 
 
 def imported_distributions(paths: list[str]) -> dict[str, str]:
