@@ -126,10 +126,14 @@ def _random_episodes(making: Making) -> Iterator[Step]:
     actions = run_gathering.modelled_actions(making.domain)
     wanted = [(action, recipe.episodes, making.random, False) for action in actions]
     if recipe.beside:
-        near = [action for action in actions if declared[action].context is not None]
+        contexts = {action: declared[action].context for action in actions}
+        near = [
+            action for action, context in contexts.items() if context and context.success_model.startswith(f"{action}/")
+        ]
         wanted += [(action, recipe.beside, making.beside, True) for action in near]
     for action, count, folder, beside in wanted:
-        spec = DataSetSpec(making.domain, action, count, recipe.seed, folder / action, beside=beside)
+        objects = recipe.objects if beside else 0
+        spec = DataSetSpec(making.domain, action, count, recipe.seed, folder / action, beside=beside, objects=objects)
         gathering.prepare(spec, resume=True)
         missing = gathering.missing_parts(spec)
         left = sum(min(gathering.PART, count - first) for first in missing)

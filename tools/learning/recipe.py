@@ -48,7 +48,9 @@ class Recipe:
 
     Attributes:
       episodes: Random episodes of each action.
-      beside: Random episodes beside one object, of each action whose success depends on objects.
+      beside: Random runs beside objects, of each action that has a model of success beside an object.
+      objects: Objects noted after each of these runs, an episode each (see `object_gathering.py`); 0: one that is
+        there while it runs.
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
       training: How each model is trained.
@@ -56,6 +58,7 @@ class Recipe:
 
     episodes: int
     beside: int = 0
+    objects: int = 0
     seed: int = 7
     rounds: tuple[Round, ...] = ()
     training: Training = field(default_factory=Training)

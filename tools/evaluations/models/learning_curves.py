@@ -36,7 +36,6 @@ EPISODES, QUICK_EPISODES = (100, 300, 1000, 3000), (100, 300)
 SETS, QUICK_SETS = 5, 2
 STARTS, QUICK_STARTS = 100, 20
 POOL = 4
-DIGITS = 7  # of the hash: seeds stay below those of gathered runs
 NEEDED = ("duration", "success", "clearance")  # kinds of models; energies are not weighed
 DEFAULT = RefinementSettings()
 GREEDY, REFINED = Variant("h1", replace(DEFAULT, horizon=1)), Variant("h2", DEFAULT)
