@@ -105,7 +105,8 @@ SENSORS = {
     "truth", "opponents_truth", "joint_truth", "planar_truth",
 }  # fmt: skip
 REPORTS = {
-    "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick", "provenance"
+    "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick",
+    "provenance",
 }  # fmt: skip
 MAY_PUBLISH = {
     "executive": {"cmd_vel", "joint_cmd", "self_arm", *REPORTS},
