@@ -83,7 +83,8 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     from tailor.models.episodes.episodes import merge, read_data_set
 
     sets = [read_data_set(folder) for folder in folders]
-    data = merge([without_context(each) for each in sets])
+    alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
+    data = merge([without_context(each) for each in alone or sets])
     if data.manifest["robot"] != request.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
     spaces = feature_spaces(request, data.names, folders[0])
@@ -129,7 +130,7 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     from tailor.models.training import training
 
     if data.manifest.get("objects"):
-        return  # a run counts once for the action by itself, not once for every object
+        return
     yield "duration", request.learner, training.train_duration
     with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
     if with_energy >= training.MIN_EPISODES:
