@@ -30,7 +30,7 @@ def one_obstacle(columns: Spans) -> tuple[Case, ...]:
     cases = []
     for at, beyond in wrapped(phig - line):
         cases += [Case((*known, at, along, across, *beside), left & beyond)]
-        cases += [Case((*known, -at, along, across, *beside), right & beyond)]
+        cases += [Case((*known, -at, along, -across, *beside), right & beyond)]
     return tuple(cases)
 
 
