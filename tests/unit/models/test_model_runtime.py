@@ -35,10 +35,10 @@ def test_all_shipped_models_load_and_name_their_makers() -> None:
     durations, successes = runtime.load_robot("agilo")
     assert set(durations) >= {"goToPose/duration", "approachBall/duration", "dribbleBall/duration"}
     assert {name.split("/")[1] for name in durations} <= {"duration", "energy"}
-    assert set(successes) == {"approachBall/success"}
+    assert set(successes) == {"approachBall/success", "goToPose/clearance"}
     for model in (*durations.values(), *successes.values()):
         assert model.card["episodes"]["count"] >= 1000
-        assert model.card["command"].startswith("tailor gather agilo")
+        assert model.card["command"] == "tailor make-models agilo"
         assert len(model.card["golden"]["arguments"]) == 32
 
 
