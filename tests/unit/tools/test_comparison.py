@@ -77,7 +77,8 @@ def test_info_summarises_a_recording(tmp_path, capsys):
         "rejected": {},
     }
     assert info["episodes"] == [{"goal": "(g)", "result": "achieved"}]
-    assert info["actions"] == [{"action": "goToPose", "outcome": "done", "predicted_s": 4.0, "actual_s": 5.0}]
+    done = {"action": "goToPose", "outcome": "done", "predicted_s": 4.0, "actual_s": 5.0, "detail": ""}
+    assert info["actions"] == [done]
     assert info["modes"] == {"EXECUTING": 19, "FAULT": 1}
     assert (info["faults"], info["driver_stops"]) == (["no"], ["agilo: r"])
     assert info["ticks"]["late_ms"] == {"p50": 10.5, "p99": 19.81, "max": 20.0}
