@@ -1,6 +1,5 @@
 """tailor models, train and evaluate: what they say, and that they refuse in one line."""
 
-import itertools
 import json
 from functools import partial
 from pathlib import Path
@@ -14,7 +13,9 @@ from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.tools.commands.learn import train
+from tailor.tools.learning.recipe import read_recipe, recipe_path
 from tailor.tools.learning.target_zoo import target_zoo
+from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER
 from tailor.tools.main import main
 
 
@@ -80,7 +81,7 @@ def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert rule.startswith("if ")
 
 
-@pytest.mark.parametrize("name", ["agilo/goToPose", "agilo/approachBall/success"])
+@pytest.mark.parametrize("name", ["powercube/reach", "agilo/approachBall/success"])
 def test_rules_of_any_single_tree_can_be_asked_for(name: str, capsys) -> None:
     assert main(["models", "rules", name, "--of", "bag:3"]) == 0
     first, _, rule, then, *_ = capsys.readouterr().out.splitlines()
@@ -175,11 +176,12 @@ CARDS = sorted(path for path in runtime.ZOO.glob("*/*/*.card.json") if path.pare
 
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: "/".join(card.parts[-3:]))
-def test_the_command_in_a_card_names_learners_that_exist(card: Path) -> None:
-    words = json.loads(card.read_text())["command"].split(" && ")[-1].split()
-    flags = dict(itertools.pairwise(words))
-    assert learner_name("duration", flags["--learner"]) in DURATION_LEARNERS
-    assert learner_name("success", flags["--failure-learner"]) in SUCCESS_LEARNERS
+def test_the_command_in_a_card_names_a_recipe_with_learners_that_exist(card: Path) -> None:
+    *command, robot = json.loads(card.read_text())["command"].split()
+    training = read_recipe(recipe_path(robot)).training
+    assert command == ["tailor", "make-models"]
+    assert learner_name("duration", training.learner or DEFAULT_LEARNER) in DURATION_LEARNERS
+    assert learner_name("success", training.failure_learner or DEFAULT_FAILURE_LEARNER) in SUCCESS_LEARNERS
 
 
 def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) -> None:

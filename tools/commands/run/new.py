@@ -17,7 +17,7 @@ Then, in the new folder:
   tailor gather courier && tailor train courier
   tailor up courier --once
 
-Its README.md tells what to change first; docs/new-robot.md is the tutorial."""
+Its README.md states what to change first; docs/new-robot.md is the tutorial."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
