@@ -177,9 +177,9 @@ CARDS = sorted(path for path in runtime.ZOO.glob("*/*/*.card.json") if path.pare
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: "/".join(card.parts[-3:]))
 def test_the_command_in_a_card_names_a_recipe_with_learners_that_exist(card: Path) -> None:
-    *command, robot = json.loads(card.read_text())["command"].split()
-    training = read_recipe(recipe_path(robot)).training
-    assert command == ["tailor", "make-models"]
+    made = json.loads(card.read_text())
+    training = read_recipe(recipe_path(made["robot"])).training
+    assert made["command"].startswith(("tailor make-models", "tailor gather"))
     assert learner_name("duration", training.learner or DEFAULT_LEARNER) in DURATION_LEARNERS
     assert learner_name("success", training.failure_learner or DEFAULT_FAILURE_LEARNER) in SUCCESS_LEARNERS
 
