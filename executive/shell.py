@@ -24,8 +24,8 @@ DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
 PROVENANCE_TICKS = 10  # once a second, also for a recorder that starts late
 TOPICS = (
-    "self_arm", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "status", "tick",
-    "provenance",
+    "self_arm", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "status",
+    "tick", "provenance",
 )  # fmt: skip
 
 
