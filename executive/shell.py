@@ -19,14 +19,11 @@ from tailor.runtime.loop import Loop, Period
 from tailor.runtime.processes.external_planner import ExternalPlanner
 from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
+from tailor.schemas.topics import reports
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
 PROVENANCE_TICKS = 10  # once a second, also for a recorder that starts late
-TOPICS = (
-    "self_arm", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "status",
-    "tick", "provenance",
-)  # fmt: skip
 
 
 class Shell:
@@ -56,7 +53,7 @@ class Shell:
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
         self._goals = session.service_server("exec/goal")
-        topics = (*(outlet.topic for outlet in outlets_of(domain)), *TOPICS)
+        topics = (*(outlet.topic for outlet in outlets_of(domain)), "self_arm", *reports())
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         external = context.settings.external
         self._planner = ExternalPlanner(external.command, external.limit_s)

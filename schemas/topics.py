@@ -13,7 +13,7 @@ from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.package_topics import PackageTopics, add_topics
 from tailor.schemas.packages.topic import Priority, Source, Topic
 
-__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "key_of"]
+__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "key_of", "reports"]
 
 STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
 
@@ -75,6 +75,11 @@ class TopicTable(Mapping[str, Topic]):
 
 
 TOPICS = TopicTable()
+
+
+def reports() -> tuple[str, ...]:
+    """Names of the topics on which every executive reports, whatever its robot."""
+    return tuple(name for name, topic in _SHIPPED.items() if topic.key.startswith("exec/"))
 
 
 @lru_cache(maxsize=1024)  # a tick looks up a dozen, always the same

@@ -49,8 +49,8 @@ def recording(measured_run):
     return measured_run[0]
 
 
-def live_run(path):
-    flags = ("--once", "--seed", 1, "--record", path, "--connect", free_endpoint())
+def live_run(path, *more):
+    flags = ("--once", "--seed", 1, "--record", path, "--connect", free_endpoint(), *more)
     done = command("up", "soccer", *flags)
     assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "achieved"), done.stdout + done.stderr
     return path
@@ -65,6 +65,13 @@ def test_recorded_live_run_is_repeated_by_the_core_bit_for_bit(recording):
     assert verdict["difference"] is None
     assert verdict["ticks"] > 50
     assert verdict["compared"] > 2 * verdict["ticks"]
+
+
+@pytest.mark.xdist_group("live")
+def test_a_run_beside_opponents_is_repeated_too(tmp_path):
+    verified = command("verify", live_run(tmp_path / "opponents.mcap", "--scenario", "opponents"), "--json")
+    assert verified.returncode == 0
+    assert json.loads(verified.stdout)[0]["difference"] is None
 
 
 @pytest.mark.xdist_group("live")
