@@ -44,6 +44,7 @@ class Driver:
         self.held = HeldSwitches()
         self._arm_refused: Counter[ArmRefusal] = Counter()
         self._outlets = tuple((_suffix(TOPIC_TABLE[o.topic].key), o.axes) for o in spec.all_outlets())
+        self._numbers = {suffix: number for number, (suffix, _) in enumerate(self._outlets)}
         self._parts = CommandParts([len(axes) for _, axes in self._outlets])
         self._published: tuple[str, str, str] | None = None
         self._due_ns = 0
@@ -106,8 +107,7 @@ class Driver:
 
     def _part(self, sample: Sample) -> Part:
         """The set-points of one outlet: that of the sample's key, or the only one."""
-        keys = [suffix for suffix, _ in self._outlets]
-        outlet = keys.index(_suffix(sample.key)) if len(keys) > 1 and _suffix(sample.key) in keys else 0
+        outlet = self._numbers.get(_suffix(sample.key), 0)
         message = sample.message
         values, stamp_ns = command_values(message, self._outlets[outlet][1]), getattr(message, "stamp_ns", 0)
         return Part(outlet, sample.sequence, values, stamp_ns)
