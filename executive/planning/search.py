@@ -93,21 +93,23 @@ class Search:
     def _make_engine(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
         """The engine of the settings."""
         settings = self._settings
+        if settings.engine == "pocl":
+            return self._partial_order(task, grounded, rng)
         forward = ForwardEngine(task, grounded, settings.node_limit, settings.step_limit)
         if settings.engine == "forward":
             return forward
         partial = self._partial_order(task, grounded, rng)
-        if settings.engine == "pocl" or not forward.applies:
-            return partial
-        return Portfolio(partial, forward, forward.expected_steps)
+        return Portfolio(partial, forward, forward.expected_steps) if forward.applies else partial
 
     def _partial_order(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
         settings = self._settings
-        space: PlanSpace[Any] = GroundSpace(task, grounded.world, settings, rng)
-        if not settings.ground:
+        space: PlanSpace[Any]
+        if settings.ground:
+            space = GroundSpace(task, grounded.world, settings, rng)
+        else:
             order = rng if settings.random_open_conditions else None
             space = LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)
-        return BestFirst(space, settings) if settings.search == "A" else Deepening(space, settings)
+        return BestFirst[Any](space, settings) if settings.search == "A" else Deepening[Any](space, settings)
 
     def _ground(self) -> Iterator[None]:
         """Grounds the problem unless the cached grounding fits."""
