@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import MATCHING, Search, parse_domain, parse_problem
+from tailor.tools.benchmarks.planning_scale import problem_text
 
 DATA = Path(__file__).parents[1] / "data" / "pddl"
 SHARED = Path(__file__).parents[3] / "shared" / "pddl"
@@ -51,10 +52,4 @@ def reference(folder, config, status="solved"):
 
 def many_cups(cups):
     """Kitchen domain, and a problem with n cups to carry from one table to another: 4 n steps."""
-    names = [f"cup{n}" for n in range(cups)]
-    initial = " ".join(f"(cup-at {name} table1)" for name in names)
-    goal = " ".join(f"(cup-at {name} table2)" for name in names)
-    problem = f"""(define (problem cups-{cups}) (:domain kitchen)
-      (:objects dock table1 table2 - place {" ".join(names)} - cup)
-      (:init (robot-at dock) (hand-empty) {initial}) (:goal (and {goal})))"""
-    return read((DATA / "own" / "kitchen-domain.pddl").read_text(), problem)
+    return read((DATA / "own" / "kitchen-domain.pddl").read_text(), problem_text(cups))
