@@ -34,16 +34,16 @@ def sample_opponents(
     Raises:
       ValueError: The ranges are contradictory.
     """
-    asked = declared["opponents"]
-    stops, legs = _stops(start, places, asked["clear_m"]), _legs(start, places)
+    wanted = declared["opponents"]
+    stops, legs = _stops(start, places, wanted["clear_m"]), _legs(start, places)
     drawn: list[tuple[float, float, float]] = []
-    fewest, most = asked["number"]
+    fewest, most = wanted["number"]
     for _ in range(int(rng.integers(fewest, most, endpoint=True))):
-        near, radius = rng.random() < asked["near_share"], rng.uniform(*asked["radius_m"])
+        near, radius = rng.random() < wanted["near_share"], rng.uniform(*wanted["radius_m"])
         for tries in range(MAX_TRIES):
             beside = near and tries < BESIDE_TRIES
-            x, y = _beside(legs[0], asked["aside_m"], rng) if beside else _anywhere(declared["field"], rng)
-            if _stands_clear((x, y), radius, stops, legs[1:], drawn, asked["clear_m"]):
+            x, y = _beside(legs[0], wanted["aside_m"], rng) if beside else _anywhere(declared["field"], rng)
+            if _stands_clear((x, y), radius, stops, legs[1:], drawn, wanted["clear_m"]):
                 break
         else:
             raise ValueError("the ranges of the scenario's opponents are contradictory")
