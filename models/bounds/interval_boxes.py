@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tailor.models.bounds.onnx_reader import read_graph
+from tailor.models.bounds.onnx_reader import Contents
 from tailor.models.bounds.tree_boxes import TreeBoxes, boxes_of_node
 from tailor.models.trees import tree_names
 
 UPPER_SCORE = 1.6448536  # standard deviations between mean and 95 % quantile of a normal distribution
 
 
-def interval_boxes(model: bytes, features: int) -> TreeBoxes | None:
+def interval_boxes(graph: Contents, features: int) -> TreeBoxes | None:
     """The spread, (upper end - mean) / UPPER_SCORE, by leaf; None if the model has no intervals.
 
     The last of the `features + 1` columns is the learner's standard deviation.
@@ -20,7 +20,6 @@ def interval_boxes(model: bytes, features: int) -> TreeBoxes | None:
       ValueError: The tree is not of the form that the export writes.
       KeyError: A constant is missing.
     """
-    graph = read_graph(model)
     nodes = [node for node in graph.nodes if node.name == tree_names.INTERVALS]
     if not nodes:
         return None

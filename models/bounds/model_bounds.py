@@ -14,7 +14,8 @@ from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.interval_boxes import interval_boxes
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
 from tailor.models.bounds.network_bounds import NetworkBounds, network_bounds
-from tailor.models.bounds.tree_boxes import tree_boxes
+from tailor.models.bounds.onnx_reader import read_graph
+from tailor.models.bounds.tree_boxes import trees_of_graph
 from tailor.models.features.feature_intervals import FEATURE_SPANS
 from tailor.models.features.intervals import Array, Span
 from tailor.models.features.sight_intervals import Spans
@@ -139,12 +140,16 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
     """
     if space not in FEATURE_SPANS:
         return None
-    networks = network_bounds(model)
-    boxes = tree_boxes(model, features, blended=networks is not None)
+    try:
+        graph = read_graph(model)
+    except ValueError:
+        return None
+    networks = network_bounds(graph)
+    boxes = trees_of_graph(graph, features, blended=networks is not None)
     if boxes is None and networks is None:
         return None
     share = float(boxes is not None) if networks is None or boxes is None else networks.trees_share
-    spread = interval_boxes(model, features)
+    spread = interval_boxes(graph, features)
     trees, widths = (None if part is None else LeafBounds(part) for part in (boxes, spread))
     return ModelBounds(space, trees, widths, networks, share)
 

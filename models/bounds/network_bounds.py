@@ -7,12 +7,13 @@ the mean of all networks, which is minimised over the box: far tighter than the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.leaf_bounds import FARTHEST, ROUNDING
-from tailor.models.bounds.onnx_reader import Contents, read_graph
+from tailor.models.bounds.onnx_reader import Contents
 from tailor.models.features.intervals import Span
 from tailor.models.trees import tree_names
 
@@ -21,7 +22,7 @@ LAYERS = 3
 OPERATIONS = 10  # for each neuron of a network, about
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class NetworkBounds:
     """The bounds of the mean of k networks with two rectified hidden layers, clipped to [low, high]."""
 
@@ -49,7 +50,7 @@ class NetworkBounds:
         clipped: Floats = np.clip(bound - np.float32(self.slack), np.float32(low), np.float32(high))
         return clipped.reshape(shape)
 
-    @property
+    @cached_property
     def slack(self) -> float:
         """Bound of the rounding error of single precision, here and in the model."""
         size = np.full((1, self.weights[0].shape[2], 1), FARTHEST)
@@ -98,12 +99,8 @@ class _Rectified:
         return total
 
 
-def network_bounds(model: bytes) -> NetworkBounds | None:
+def network_bounds(graph: Contents) -> NetworkBounds | None:
     """Bounds of the networks of an ONNX model; None if it has none."""
-    try:
-        graph: Contents = read_graph(model)
-    except ValueError:
-        return None
     if tree_names.NETWORK_LOW not in graph.constants:
         return None
     weights, bias = (

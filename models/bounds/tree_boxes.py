@@ -58,13 +58,20 @@ class TreeBoxes:
         return replace(self, lower=lower, upper=upper)
 
 
-def tree_boxes(model: bytes, features: int, blended: bool = False) -> TreeBoxes | None:
-    """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes.
+def tree_boxes(model: bytes, features: int) -> TreeBoxes | None:
+    """Trees of an ONNX model over `features` features; None if it is not of the form that the export writes."""
+    try:
+        return trees_of_graph(read_graph(model), features)
+    except (ValueError, KeyError, IndexError):
+        return None
+
+
+def trees_of_graph(graph: Contents, features: int, blended: bool = False) -> TreeBoxes | None:
+    """The same of a graph that has been read.
 
     Trees that are blended with networks do not predict alone what the model does: only if `blended` are they returned.
     """
     try:
-        graph = read_graph(model)
         if not blended and any(node.op == "Relu" for node in graph.nodes):
             return None
         trees = [node for node in graph.nodes if node.op == "TreeEnsembleRegressor"]
