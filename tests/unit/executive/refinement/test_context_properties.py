@@ -11,15 +11,13 @@ from hypothesis import strategies as st
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.assertion import Assertion
-from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, box_of
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
-from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.executive.refinement.refinement import Refinement
-from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
+from tests.property.test_stage_bounds import assert_no_stage_costs_less
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import DRIBBLE
 from tests.unit.executive.refinement.synthetic_context import APPROACH_AROUND, BESIDE, CONTEXT, GO_AROUND, beside
@@ -96,20 +94,12 @@ def task(
 def test_no_values_in_a_pair_of_boxes_cost_less_than_the_bound_beside_objects(belief, seed, spread, p_fail_max):
     rng = np.random.default_rng(seed)
     cost, chosen = task(belief, seed, p_fail_max, spread)
-    blocks = blocks_of(cost.stages)
     centre, half = cost.ranges.draw(1, rng)[0], cost.ranges.width * 10.0 ** rng.uniform(-4, 0, cost.ranges.count)
     lower = np.clip(centre - half, cost.ranges.lower, cost.ranges.upper)
     upper = np.clip(centre + half, cost.ranges.lower, cost.ranges.upper)
     share = rng.choice([0.0, 1.0, np.nan], (200, cost.ranges.count))
     inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
-    whole, before = NO_PARAMETERS, NO_PARAMETERS
-    for stage, link, block in zip(cost.stages, links_of(cost.stages, blocks), blocks, strict=True):
-        everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
-        bound = stage_bound(stage, link, chosen)
-        assert isinstance(bound, StageBound)
-        least = bound.within(whole, everywhere).lower_bound(before, own).item()
-        assert least <= stage.cost(inside[:, stage.columns]).min()
-        whole, before = everywhere, own
+    assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
 
 
 @settings(max_examples=15, deadline=None)
