@@ -19,7 +19,8 @@ from tailor.models.trees import tree_names
 
 Floats = NDArray[np.float32]
 LAYERS = 3
-OPERATIONS = 10  # for each neuron of a network, about
+OPERATIONS = 5  # for each neuron of a network, about: they take as long as so many comparisons of leaves
+CHUNK = 64  # boxes: their arrays fit into the cache
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,9 @@ class NetworkBounds:
             for ends in zip(*((span.lower, span.upper) for span in features), strict=True)
         )
         half = np.float32(0.5)
-        bound = self._linear_bound(half * (lower + upper), half * (upper - lower), np.float32(sign))
+        middle, radius = half * (lower + upper), half * (upper - lower)
+        parts = (slice(first, first + CHUNK) for first in range(0, middle.shape[1], CHUNK))
+        bound = np.concatenate([self._linear_bound(middle[:, n], radius[:, n], np.float32(sign)) for n in parts])
         low, high = sorted((sign * self.low, sign * self.high))
         clipped: Floats = np.clip(bound - np.float32(self.slack), np.float32(low), np.float32(high))
         return clipped.reshape(shape)
@@ -61,42 +64,64 @@ class NetworkBounds:
     def _linear_bound(self, middle: Floats, radius: Floats, sign: np.float32) -> Floats:
         """Minimum of the linear lower bound over boxes (f, n), shape (n,)."""
         (w1, w2, w3), (b1, b2, b3) = self.weights, self.bias
-        first = _Rectified(w1 @ middle + b1, np.abs(w1) @ radius)
-        low, high = (np.maximum(end, 0) for end in (first.lower, first.upper))
-        second = _Rectified(w2 @ ((low + high) / 2) + b2, np.abs(w2) @ ((high - low) / 2))
-        factor = sign / np.float32(len(w3)) * w3.transpose(0, 2, 1)  # (k, h, 1)
-        constant = sign * b3.mean() + second.constant(factor)
-        factor = second.slopes(factor)
-        constant = constant + (factor * b2).sum(axis=(0, 1))
-        factor = w2.transpose(0, 2, 1) @ factor
-        constant = constant + first.constant(factor)
-        factor = first.slopes(factor)
-        constant = constant + (factor * b1).sum(axis=(0, 1))
-        slopes = (w1.transpose(0, 2, 1) @ factor).sum(axis=0)  # (f, n), of all networks together
+        inputs = w1 @ middle + b1
+        first = _Rectified(*_ends(inputs, np.abs(w1) @ radius))
+        second = _Rectified(*self._second_inputs(first, inputs, radius))
+        factor, constant = second.below(sign / np.float32(len(w3)) * w3.transpose(0, 2, 1))
+        constant = sign * b3.mean() + constant + _total(factor, b2)
+        factor, offset = first.below(w2.transpose(0, 2, 1) @ factor)
+        constant += offset + _total(factor, b1)
+        slopes = w1.reshape(-1, len(middle)).T @ factor.reshape(-1, middle.shape[1])  # of all networks together
         bound: Floats = constant + (slopes * middle).sum(axis=0) - (np.abs(slopes) * radius).sum(axis=0)
         return bound
 
+    def _second_inputs(self, first: _Rectified, inputs: Floats, radius: Floats) -> tuple[Floats, Floats]:
+        """Both ends of the second layer's inputs: two relaxations of the first layer, intersected.
+
+        Each output apart lies between the ends of its range; as a function of the features it lies in a strip.
+        """
+        w1, w2, b2 = self.weights[0], self.weights[1], self.bias[1]
+        half, size = np.float32(0.5), np.abs(w2)
+        low: Floats = np.maximum(first.lower, 0)
+        centre: Floats = half * (low + first.high)
+        apart = _ends(w2 @ centre + b2, size @ (first.high - centre))
+        width: Floats = half * first.offset
+        reach: Floats = size @ width
+        for feature, extent in enumerate(radius):
+            slopes = w2 @ (w1[:, :, feature, None] * first.above)
+            reach += np.abs(slopes, out=slopes) * extent
+        strip = _ends(w2 @ (first.above * inputs + width) + b2, reach)
+        return np.maximum(apart[0], strip[0]), np.minimum(apart[1], strip[1])
+
+
+def _ends(middle: Floats, radius: Floats) -> tuple[Floats, Floats]:
+    return middle - radius, middle + radius
+
+
+def _total(factor: Floats, bias: Floats) -> Floats:
+    """Sum over networks and neurons of (k, h, n) times (k, h, 1), shape (n,)."""
+    total: Floats = bias.ravel() @ factor.reshape(bias.size, -1)
+    return total
+
 
 class _Rectified:
-    """Lines below and above max(x, 0) for inputs `middle ± radius`, (k, h, n)."""
+    """Lines below and above max(x, 0) for inputs between `lower` and `upper`, (k, h, n).
 
-    def __init__(self, middle: Floats, radius: Floats) -> None:
-        self.lower, self.upper = middle - radius, middle + radius
-        crossing = (self.lower < 0) & (self.upper > 0)
-        active = self.lower >= 0
-        chord = self.upper / np.maximum(self.upper - self.lower, np.float32(1e-12))
-        self._above = np.where(crossing, chord, active.astype(np.float32))
-        self._offset = np.where(crossing, -chord * self.lower, np.float32(0))
-        self._below = np.where(crossing, self.upper > -self.lower, active).astype(np.float32)
+    The line above has the slope `above` and passes `offset` over 0; that below passes 0, with slope 0 or 1.
+    """
 
-    def slopes(self, factor: Floats) -> Floats:
-        """Factors of the inputs for a lower bound of `factor` times the outputs."""
-        return factor * np.where(factor >= 0, self._below, self._above)
+    def __init__(self, lower: Floats, upper: Floats) -> None:
+        self.lower = lower
+        low, self.high = np.minimum(lower, 0), np.maximum(upper, 0)
+        self.above = self.high / np.maximum(self.high - low, np.float32(1e-12))
+        self.offset = -self.above * low
+        self._steep = self.high > -low
 
-    def constant(self, factor: Floats) -> Floats:
-        """Sum of the offsets of that bound, shape (n,)."""
-        total: Floats = (np.minimum(factor, 0) * self._offset).sum(axis=(0, 1))
-        return total
+    def below(self, factor: Floats) -> tuple[Floats, Floats]:
+        """Lower bound of `factor` times the outputs: factors of the inputs, and the sum of all offsets, (n,)."""
+        negative = np.minimum(factor, 0)
+        offset: Floats = (negative * self.offset).sum(axis=(0, 1))
+        return np.maximum(factor, 0) * self._steep + negative * self.above, offset
 
 
 def network_bounds(graph: Contents) -> NetworkBounds | None:
