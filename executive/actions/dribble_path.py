@@ -34,6 +34,7 @@ class DribblePath:
     asides_m: tuple[float, ...] = (0.0, 0.1, -0.1, 0.2, -0.2)  # and so far aside of it
     slant_s_per_rad: float = 2.0  # if it is quicker by as much
     aside_s_per_m: float = 4.0
+    widest_aside_m: float = 0.3  # of a stop straight ahead: near the goal and in motion, each bend would cost a circle
     _ends: tuple[tuple[float, float, float], ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -49,7 +50,8 @@ class DribblePath:
         """The best path that can be driven from a pose at speed v (m/s) to a goal (x, y, phi, ...)."""
         start = straight_on((pose.x, pose.y, pose.phi), self.run_in_m)
         speeds = [(radius, self.bend_mps(radius)) for radius in self._radii(v)]
-        best, best_s = None, math.inf
+        straight, best_s = self._straight_ahead(pose, v, goal)
+        best = None
         for penalty_s, slant, aside in self._ends:
             end = self._end(goal, slant, aside)
             distance, turned = math.dist(start[:2], end[:2]), abs(difference(end[2], start[2]))
@@ -60,8 +62,21 @@ class DribblePath:
                 cost_s = self.driving_s(pieces, bend, v, goal[3]) + penalty_s
                 if cost_s < best_s:
                     best, best_s = (radius, pieces), cost_s
-        assert best is not None  # the first end has a path
-        return DubinsPath(start, *best).between(self.run_in_m, self.run_out_m)
+        return straight if best is None else DubinsPath(start, *best).between(self.run_in_m, self.run_out_m)
+
+    def _straight_ahead(self, pose: Pose, v: float, goal: tuple[float, ...]) -> tuple[DubinsPath, float]:
+        """The straight line on which the ball comes nearest to its place, and its cost, s; infinite: too far aside."""
+        slant = abs(difference(goal[2], pose.phi))
+        ball_x, ball_y, _ = straight_on((goal[0], goal[1], goal[2]), self.ahead_m)
+        c, s = math.cos(pose.phi), math.sin(pose.phi)
+        dx, dy = ball_x - pose.x, ball_y - pose.y
+        length = max(0.0, c * dx + s * dy - self.ahead_m, (v * v - goal[3] * goal[3]) / (2.0 * self.braking_mps2))
+        aside = math.hypot(c * dx + s * dy - self.ahead_m - length, c * dy - s * dx)
+        path = DubinsPath((pose.x, pose.y, pose.phi), self.radii_m[-1], ((0, length),))
+        if aside > self.widest_aside_m or slant > self.slants_rad[-2]:
+            return path, math.inf
+        penalty_s = self.slant_s_per_rad * slant + self.aside_s_per_m * aside
+        return path, self._straight_s(length, v, goal[3]) + penalty_s
 
     def _least_s(self, distance: float, bend_m: float, bend: float) -> float:
         """Lower bound of `driving_s` for paths of at least `distance` with at least `bend_m` (m) in bends."""

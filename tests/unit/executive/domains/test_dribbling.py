@@ -76,6 +76,17 @@ def test_planned_path_begins_straight_and_brings_the_ball_to_its_target(phi):
     assert abs(math.remainder(heading - phi, math.tau)) <= max(PATHS.slants_rad) + 1e-9
 
 
+@pytest.mark.parametrize(("aside", "circles"), [(0.0, False), (0.15, False), (0.29, False), (0.31, True)])
+def test_near_its_target_and_in_motion_the_ball_is_stopped_straight_ahead_rather_than_led_around(aside, circles):
+    path = planned((0.45, aside, 0.0, 0.0), v=0.45)
+    assert (path.length > 1.0) == circles
+
+
+def test_a_straight_stop_is_never_planned_shorter_than_the_ball_can_be_braked():
+    path = planned((0.1, 0.0, 0.0, 0.0), v=0.45)
+    assert path.length == pytest.approx(0.45**2 / (2.0 * PATHS.braking_mps2))
+
+
 def test_speed_that_the_run_in_takes_off_does_not_widen_the_bends():
     goal = (0.9, 0.6, 2.0, 0.0)
     assert planned(goal, 0.34).radius == planned(goal, 0.28).radius
