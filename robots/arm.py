@@ -13,5 +13,6 @@ SPEC = DomainSpec(
     sampler="tailor.tools.lockstep.samplers.arm:ArmSampler",
     features="tailor.models.features.joints:SPACES",
     generator="tailor.executive.domains.arm.letters",
+    scene="tailor.robots.arm_scene",
     models="tailor.models:zoo",
 )

@@ -15,5 +15,6 @@ SPEC = DomainSpec(
     features="tailor.models.features.obstacle:SPACES",
     scenarios="tailor.executive.domains.soccer:scenarios",
     draw="tailor.executive.domains.soccer.scenario_sampling:sample_scenario",
+    scene="tailor.robots.soccer_scene",
     models="tailor.models:zoo",
 )

@@ -20,10 +20,11 @@ MAX_TRAILING_BYTES = 7  # padding that real ROS 2 serializers append
 
 @cache
 def _codec(kind: type) -> tuple[Any, Any, str]:
+    from tailor.schemas import scene_markers, standard
     from tailor.schemas.own import converters
-    from tailor.schemas.standard import CONVERTERS
 
-    write, read = CONVERTERS[kind] if kind in CONVERTERS else converters(kind)
+    known = standard.CONVERTERS | scene_markers.CONVERTERS
+    write, read = known[kind] if kind in known else converters(kind)
     return write, read, ros_type(kind)
 
 

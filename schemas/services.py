@@ -1,10 +1,15 @@
-"""Table of services: requests with a response, who serves them and who may call them."""
+"""Roles of the processes on a bus, and the table of services: requests with a response, who serves and who may call.
+
+What each role may do derives from this table and that of topics.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
-from tailor.schemas.roles import Role
+Role = Literal["executive", "driver", "people", "recorder", "observer", "scene", "player"]
+ROLES: tuple[Role, ...] = get_args(Role)
 
 
 @dataclass(frozen=True, slots=True)

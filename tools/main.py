@@ -39,6 +39,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "draw the paths of recordings as in the paper's Figure 1",
     ),
     "view": ("tailor.tools.commands.look.view", "show a run in the browser, recorded or live"),
+    "scene": ("tailor.tools.commands.look.scene", "give 3D viewers markers and transforms of a run, recorded or live"),
     "why": ("tailor.tools.commands.look.why", "explain the choice of subgoals, compared with greedy"),
     "new": ("tailor.tools.commands.run.new", "write the package of a new robot"),
     "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, VHPOP-style"),

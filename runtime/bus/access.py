@@ -10,8 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from tailor.schemas.messages import ArmRequest, EStop
-from tailor.schemas.roles import ROLES, Role
-from tailor.schemas.services import SERVICES
+from tailor.schemas.services import ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
 
 GATEWAY = "gateway"  # user name of the process that listens for other machines; it has applied these rules already
@@ -22,6 +21,7 @@ _PUBLISHERS: dict[Source, tuple[Role, ...]] = {
     "executive": ("executive", "player"),
     "driver": ("driver", "player"),
     "simulator": ("driver", "player"),
+    "scene": ("scene", "player"),
     "people": ("people",),
     "player": ("player",),
     "launcher": (),  # publishes as the router itself

@@ -12,7 +12,7 @@ from tailor.runtime.bus.run_folder import SOCKET, RunFolder, hosted, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import ROLES, Role
+from tailor.schemas.services import ROLES, Role
 
 SELF_CONNECT_MS = 500
 PROBE_S = 0.5

@@ -15,7 +15,7 @@ from tailor.runtime.bus import access
 from tailor.runtime.bus.credentials import Identity, Password
 from tailor.runtime.bus.run_folder import CERTIFICATE_USER, RunFolder
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import ROLES, Role
+from tailor.schemas.services import ROLES, Role
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 1000  # a peer that is silent for longer counts as gone

@@ -12,4 +12,5 @@ from tailor.schemas.messages.planning import *
 from tailor.schemas.messages.recording import *
 from tailor.schemas.messages.refining import *
 from tailor.schemas.messages.sample import *
+from tailor.schemas.messages.scenes import *
 from tailor.schemas.messages.sensing import *

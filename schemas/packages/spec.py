@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 NAME = re.compile(r"[a-z][a-z0-9_-]*")  # part of keys on the bus, of file names and of commands
 OBJECT = re.compile(r"[A-Za-z_][\w.]*(:[A-Za-z_]\w*)?")
 REQUIRED = ("domain", "driver")
-OBJECTS = ("domain", "body", "topics", "sampler", "features", "draw", "generator")  # the other parts are files
+OBJECTS = ("domain", "body", "topics", "sampler", "features", "draw", "generator", "scene")  # the other parts are files
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +31,7 @@ class DomainSpec:
       scenarios: Folder of scenario files, from which `draw` draws.
       draw: Function `(declared, rng) -> (start, places, events)` of a scenario file's contents.
       generator: Object with `scenarios()` and `load_scenario(name, rng)`, instead of `scenarios` and `draw`.
+      scene: What robot and surroundings look like, a tailor.schemas.packages.scene.SceneView; empty: by convention.
       models: Folder of trained models, `models/<robot>/<action>/`.
       package: Package that holds the files; discovery sets it.
     """
@@ -46,6 +47,7 @@ class DomainSpec:
     scenarios: str = "scenarios"
     draw: str = ""
     generator: str = ""
+    scene: str = ""
     models: str = "models"
     package: str = ""
 

@@ -8,7 +8,7 @@ from typing import Literal
 from tailor.schemas.messages import ArmRequest, Message
 
 Priority = Literal["real_time", "interactive_high", "data"]
-Source = Literal["driver", "executive", "people", "simulator", "player", "launcher"]
+Source = Literal["driver", "executive", "people", "simulator", "scene", "player", "launcher"]
 
 
 @dataclass(frozen=True, slots=True)

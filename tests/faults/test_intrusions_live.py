@@ -19,7 +19,7 @@ from tailor.runtime.processes.child import tailor
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import ArmRequest, EStop, VelocityCommand
 from tailor.schemas.own import example
-from tailor.schemas.roles import ROLES
+from tailor.schemas.services import ROLES
 from tailor.schemas.topics import TOPICS, key_of
 from tests.support.bus_system import guarded_robot, moving, outputs, secured_system
 from tests.support.driven import Driven
@@ -108,13 +108,15 @@ REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick",
     "provenance",
 }  # fmt: skip
+SCENES = {"scene", "scene_truth", "transforms"}
 MAY_PUBLISH = {
     "executive": {"cmd_vel", "joint_cmd", "self_arm", *REPORTS},
     "driver": SENSORS,
     "people": {"arm_request", "estop"},
     "recorder": set(),
     "observer": set(),
-    "player": {*SENSORS, *REPORTS, "clock"},
+    "scene": SCENES,
+    "player": {*SENSORS, *REPORTS, *SCENES, "clock"},
 }
 
 

@@ -13,7 +13,7 @@ from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
-from tailor.schemas.roles import Role
+from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import BusSettings
 
 

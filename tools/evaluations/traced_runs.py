@@ -29,7 +29,7 @@ def trace_run(task: Task, variant: Variant, seed: int) -> tuple[TracedRun, Conte
     run, context = run_task(task, variant, seed)
     messages: Sequence[Message] = run.messages
     outcome = outcome_of(run, context.domain, variant.name, seed)
-    return TracedRun(outcome, track_of(variant.name, messages), tuple(run.subgoals)), context
+    return TracedRun(outcome, track_of(variant.name, messages, context.domain.name), tuple(run.subgoals)), context
 
 
 def trace_all(

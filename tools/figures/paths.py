@@ -10,13 +10,12 @@ from typing import Any
 from matplotlib import collections as mc
 from matplotlib.figure import Figure
 
-from tailor.schemas.messages import InstantiatedAction
-from tailor.tools.figures.track import Point, Track
+from tailor.tools.figures.track import Track, TrackPoint
+from tailor.tools.scenes.flat import Outline
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
 SCALE_MPS = 0.5
-OBJECT_RADIUS_M = 0.11
 
 
 def draw_paths(tracks: list[Track], path: Path) -> None:
@@ -31,11 +30,14 @@ def draw_paths(tracks: list[Track], path: Path) -> None:
 def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
     """Draw one run an axis, all to one scale; the first shows the scale of the speed."""
     limits = _limits(tracks)
+    headed = any(p.phi is not None for track in tracks for p in track.points)
+    names = ("x (m)", "y (m)") if headed else ("right (m)", "up (m)")
     for axis, track in zip(axes, tracks, strict=True):
         draw_path(axis, track)
-        axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x (m)", ylabel="y (m)")
+        axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=names[0], ylabel=names[1])
         axis.grid(alpha=0.25)
-    _draw_scale(axes[0], limits)
+    if headed:
+        _draw_scale(axes[0], limits)
 
 
 def _draw_scale(axis: Any, limits: tuple[tuple[float, float], tuple[float, float]]) -> None:
@@ -51,7 +53,10 @@ def draw_path(axis: Any, track: Track) -> None:
     for number in sorted({point.action for point in track.points}):
         points = [point for point in track.points if point.action == number]
         colour = COLOURS[len(names) % len(COLOURS)]
-        axis.add_collection(mc.LineCollection([_across(p) for p in points], colors=colour, linewidths=1.4))
+        if any(p.phi is not None for p in points):
+            axis.add_collection(mc.LineCollection([_across(p) for p in points], colors=colour, linewidths=1.4))
+        else:
+            axis.plot([p.x for p in points], [p.y for p in points], color=colour, linewidth=1.8)
         axis.plot([], [], color=colour, label=_label(track, number, points[0].name))
         names.append(points[0].name)
     _draw_objects(axis, track)
@@ -60,10 +65,11 @@ def draw_path(axis: Any, track: Track) -> None:
     axis.legend(loc="best", fontsize="small")
 
 
-def _across(point: Point) -> list[tuple[float, float]]:
+def _across(point: TrackPoint) -> list[tuple[float, float]]:
     """The line across the heading, its length the speed."""
     half = HALF_WIDTH_PER_SPEED_S * abs(point.v) + 0.005
-    dx, dy = -math.sin(point.phi) * half, math.cos(point.phi) * half
+    phi = point.phi or 0.0
+    dx, dy = -math.sin(phi) * half, math.cos(phi) * half
     return [(point.x - dx, point.y - dy), (point.x + dx, point.y + dy)]
 
 
@@ -75,44 +81,38 @@ def _label(track: Track, number: int, name: str) -> str:
 
 
 def _draw_objects(axis: Any, track: Track) -> None:
-    """Path of every object, with a disc at its start and a circle at its end."""
-    from matplotlib.patches import Circle
-
-    for name in sorted({name for point in track.points for name in point.objects}):
+    """Path of every object, with its outline filled at the start and bare at the end."""
+    for name in sorted(track.outlines):
         places = [point.objects[name] for point in track.points if name in point.objects]
-        axis.plot(*zip(*places, strict=True), color="orangered", linewidth=0.8, alpha=0.5, zorder=0)
-        axis.add_patch(Circle(places[0], OBJECT_RADIUS_M, color="orangered", zorder=3))
-        axis.add_patch(Circle(places[-1], OBJECT_RADIUS_M, fill=False, color="orangered", zorder=3))
+        outline, colour = track.outlines[name], track.outlines[name].colour[:3]
+        axis.plot([p[0] for p in places], [p[1] for p in places], color=colour, linewidth=0.8, alpha=0.5, zorder=0)
+        axis.fill(*_corners(outline, places[0]), facecolor=colour, zorder=3)
+        axis.fill(*_corners(outline, places[-1]), fill=False, edgecolor=colour, zorder=3)
+
+
+def _corners(outline: Outline, place: tuple[float, float, float]) -> tuple[list[float], list[float]]:
+    """Coordinates of an outline at a place, x and y apart."""
+    x, y, phi = place
+    c, s = math.cos(phi), math.sin(phi)
+    return [x + c * a - s * b for a, b in outline.points], [y + s * a + c * b for a, b in outline.points]
 
 
 def _draw_goals(axis: Any, track: Track) -> None:
-    """An arrow at every subgoal as last chosen for its action; grey for free ones."""
-    for action in _executed(track):
-        values = {p.name: p for p in action.parameters}
-        if not {"xg", "yg", "phig"} <= values.keys():
-            continue
-        free = not values["phig"].bound
-        x, y, phi = (values[name].value for name in ("xg", "yg", "phig"))
-        style = {"color": "dimgrey" if free else "black", "width": 0.012, "head_width": 0.09, "zorder": 4}
-        axis.arrow(x, y, 0.3 * math.cos(phi), 0.3 * math.sin(phi), length_includes_head=True, **style)
-        axis.plot([x], [y], marker="+" if free else "*", color=style["color"], zorder=4)
-
-
-def _executed(track: Track) -> list[InstantiatedAction]:
-    """The executed actions: the first of every published sequence, each in its last version."""
-    latest: dict[tuple[int, bool, str], InstantiatedAction] = {}
-    for subgoals in track.subgoals:
-        if subgoals.actions:
-            action = subgoals.actions[0]
-            latest[(action.step, action.asserted, action.action)] = action
-    return list(latest.values())
+    """A mark at every subgoal as last chosen for its action, an arrow if it has a heading; grey for free ones."""
+    for goal in track.goals:
+        (x, y), colour = goal.place, "dimgrey" if goal.free else "black"
+        if goal.phi is not None:
+            style = {"color": colour, "width": 0.012, "head_width": 0.09, "zorder": 4}
+            dx, dy = 0.3 * math.cos(goal.phi), 0.3 * math.sin(goal.phi)
+            axis.arrow(x, y, dx, dy, length_includes_head=True, **style)
+        axis.plot([x], [y], marker="+" if goal.free else "*", color=colour, zorder=4)
 
 
 def _limits(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Common limits with a margin, metres; a unit square without any motion."""
     points = [point for track in tracks for point in track.points]
-    goals = [{p.name: p.value for p in action.parameters} for track in tracks for action in _executed(track)]
-    xs = [p.x for p in points] + [g["xg"] for g in goals if "xg" in g] or [0.0, 1.0]
-    ys = [p.y for p in points] + [g["yg"] for g in goals if "yg" in g] or [0.0, 1.0]
-    margin = 0.5
+    goals = [goal.place for track in tracks for goal in track.goals]
+    xs = [p.x for p in points] + [x for x, _ in goals] or [0.0, 1.0]
+    ys = [p.y for p in points] + [y for _, y in goals] or [0.0, 1.0]
+    margin = 0.5 if any(p.phi is not None for p in points) else 0.1
     return (min(xs) - margin, max(xs) + margin), (min(ys) - margin, max(ys) + margin)

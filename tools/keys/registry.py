@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import ROLES, Role
+from tailor.schemas.services import ROLES, Role
 
 ROUTER = "router"  # the key of the gateway itself
 FILE = "roles.json"

@@ -15,6 +15,7 @@ from tailor.tools.viewer.timeline import Event
 
 KEEP_S = 600.0  # of samples; all other events are kept from the start
 MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
+OUTLINE = "outline "  # starts the kinds of outlines, which a moving arm sends as often as samples; the newest is kept
 SAMPLED = {"tick", "belief", "truth", "believed", "seen", "odom"}
 
 
@@ -96,7 +97,8 @@ class EventBroadcast:
         if self._events[0].at_s >= now_s - self._keep_s - 60:
             return
         oldest = now_s - self._keep_s
-        self._events = [e for e in self._events if e.at_s >= oldest or not _is_sample(e)]
+        newest = {e.kind: e for e in self._events if e.kind.startswith(OUTLINE)}
+        self._events = [e for e in self._events if e.at_s >= oldest or not _is_sample(e) or e is newest.get(e.kind)]
 
 
 def encoded(events: Sequence[Event]) -> str:
@@ -105,4 +107,4 @@ def encoded(events: Sequence[Event]) -> str:
 
 
 def _is_sample(event: Event) -> bool:
-    return event.kind in SAMPLED or event.kind.startswith("series ")
+    return event.kind in SAMPLED or event.kind.startswith(("series ", OUTLINE))

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 from tailor.schemas import messages as m
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.viewer.planar_scene import PlanarScene
+from tailor.tools.scenes.flat import FlatScene, Outline
 
 Fields = dict[str, Any]  # JSON values only
 
@@ -24,11 +24,32 @@ def number(value: float) -> float | None:
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 
-def scene(scene: PlanarScene) -> Fields:
-    """A robot on the plane, and the objects around it."""
-    pose = {"x": number(scene.x), "y": number(scene.y), "phi": number(scene.phi), "v": number(scene.v)}
-    objects = {name: [number(x), number(y)] for name, (x, y) in scene.objects.items()}
-    return pose | ({"objects": objects} if objects else {})
+def scene(scene: FlatScene) -> Fields:
+    """Place of the robot, and of the shapes around it; `phi` is None where it has no heading."""
+    phi = None if scene.phi is None else number(scene.phi)
+    pose = {"x": number(scene.x), "y": number(scene.y), "phi": phi, "v": number(scene.speed_mps)}
+    places = {name: [number(value) for value in place] for name, place in scene.places.items()}
+    return pose | ({"places": places} if places else {})
+
+
+def outline(outline: Outline) -> Fields:
+    """Outline of a shape in its own plane."""
+    red, green, blue, alpha = outline.colour
+    colour = f"rgb({round(255 * red)} {round(255 * green)} {round(255 * blue)} / {round(100 * alpha)}%)"
+    return {
+        "points": [[number(x), number(y)] for x, y in outline.points],
+        "closed": outline.closed,
+        "colour": colour,
+        "width": number(outline.width_m),
+        "words": outline.words,
+        "onRobot": outline.on_robot,
+        "robots": outline.robots,
+    }
+
+
+def place(point: tuple[float, float]) -> list[float | None]:
+    """Place of a subgoal on the page."""
+    return [number(point[0]), number(point[1])]
 
 
 def action(message: m.InstantiatedAction) -> Fields:

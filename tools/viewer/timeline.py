@@ -9,17 +9,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
+from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
+from tailor.tools.scenes.flat import flat, projected
+from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, planar_pose
 from tailor.tools.viewer import event_fields
 from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.plan_graph import plan_graph
-from tailor.tools.viewer.planar_scene import TRUTH_KEYS, PlanarScene, scene_of_belief, scene_of_message
 from tailor.tools.viewer.run_facts import run_facts
 
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
-NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer)
+NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms)
 
 Rows = list[tuple[str, Fields]]  # kind and fields of events
 
@@ -48,7 +50,7 @@ class RunTimeline:
     def __init__(self, explainer: Explainer | None = None, robot: str = "") -> None:
         self._robot = robot
         self._explainer = explainer
-        self._belief_names: tuple[str, ...] = ()
+        self._scenes = RobotScenes()
         self._action = (-1, "")
         self._last: dict[str, Any] = {}  # by kind: last fields of states
         self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
@@ -73,9 +75,9 @@ class RunTimeline:
             case m.ExecStatus():
                 return self._status(at_s, message)
             case m.Odometry():
-                return self._path(at_s, "odom", scene_of_message(message))
+                return self._path(at_s, "odom", planar_pose(message))
             case m.PoseEstimate():
-                return self._path(at_s, "seen", scene_of_message(message))
+                return self._path(at_s, "seen", planar_pose(message))
             case m.TickReport():
                 return [("tick", event_fields.tick(message))]
             case m.ActionFinished():
@@ -95,10 +97,10 @@ class RunTimeline:
         return self._other(at_s, key, message)
 
     def _other(self, at_s: float, key: str, message: m.Message) -> Rows:
-        """Ground truth on the plane, else a series of numbers."""
+        """Ground truth that can be drawn, else a series of numbers."""
         if isinstance(message, NOT_SHOWN):
             return []
-        if key.partition("/")[2] in TRUTH_KEYS and (scene := scene_of_message(message)):
+        if key.partition("/")[2] in TRUTH_KEYS and (scene := self._scenes.of_truth(message)):
             return self._path(at_s, "truth", scene)
         return self._sampled(at_s, f"series {key.rpartition('/')[2]}", event_fields.numbers(message))
 
@@ -107,7 +109,7 @@ class RunTimeline:
             return []
         self._last["provenance"] = message.json
         facts = run_facts(message.json)
-        self._belief_names = tuple(facts.get("beliefNames", ()))
+        self._scenes = RobotScenes(facts.get("domain", ""))
         self._robot = self._robot or facts.get("robot", "")
         if self._explainer is not None:
             self._explainer.load(message.json)
@@ -133,13 +135,18 @@ class RunTimeline:
             "values": [event_fields.number(value) for value in message.belief],
         }
         rows += self._sampled(at_s, "belief", belief)
-        return rows + self._path(at_s, "believed", scene_of_belief(self._belief_names, message.belief))
+        return rows + self._path(at_s, "believed", self._scenes.of_belief(message.belief))
 
-    def _path(self, at_s: float, source: str, scene: PlanarScene | None) -> Rows:
-        """Scene of a source, with the action in execution."""
-        if scene is None:
+    def _path(self, at_s: float, source: str, scene: Scene | None) -> Rows:
+        """Scene of a source, with the action in execution: outlines on change, places at a limited rate."""
+        shown = None if scene is None else flat(scene, self._scenes.seen_from)
+        if shown is None:
             return []
-        return self._sampled(at_s, source, {**event_fields.scene(scene), "index": self._action[0]})
+        rows = self._sampled(at_s, source, {**event_fields.scene(shown), "index": self._action[0]})
+        if not rows:
+            return []
+        outlines = ((f"outline {source} {name}", each) for name, each in shown.outlines.items())
+        return [row for kind, each in outlines for row in self._changed(kind, event_fields.outline(each))] + rows
 
     def _objects(self, message: m.Contexts) -> Rows:
         """Nothing to show yet: the objects belong to the subgoals that follow in the same tick."""
@@ -148,7 +155,11 @@ class RunTimeline:
         return []
 
     def _subgoals(self, message: m.Subgoals) -> Rows:
-        rows: Rows = [("subgoals", event_fields.subgoals(message))]
+        places = {
+            goal.label: event_fields.place(projected((goal.pose.x, goal.pose.y, goal.pose.z), self._scenes.seen_from))
+            for goal in self._scenes.of_subgoals(message)
+        }
+        rows: Rows = [("subgoals", {**event_fields.subgoals(message), "places": places})]
         explanation = self._explainer.fields(message) if self._explainer is not None else None
         return rows + ([("why", explanation)] if explanation else [])
 

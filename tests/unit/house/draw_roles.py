@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from tailor.runtime.bus.access import may_publish
-from tailor.schemas.roles import ROLES, Role
-from tailor.schemas.services import SERVICES
+from tailor.schemas.services import ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "security.md"

@@ -13,7 +13,7 @@ from tailor.runtime.bus.run_folder import run_folder
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import ROLES
+from tailor.schemas.services import ROLES
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.keys.registry import ROUTER, registered_roles
 

@@ -12,7 +12,7 @@ from typing import get_args
 
 from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
 from tailor.schemas.errors import UsageError
-from tailor.schemas.roles import Role
+from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import KEYS
 from tailor.tools.keys.registry import ROUTER, check_name, registered_roles, write_roles
 

@@ -124,7 +124,7 @@ def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
         result = "succeeded" if succeeded(traced.outcome) else f"ball moved {traced.outcome.disturbance_m:.2f} m"
         tracks.append(replace(traced.track, title=f"{title} ({result})"))
     first = tracks[0].points[0]
-    draw_subgoal_map(ground, first.objects["ball"], tracks, f"start {seed}", path)
+    draw_subgoal_map(ground, first.objects["ball"][:2], tracks, f"start {seed}", path)
     return path
 
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.simnodes.agilo.dimensions import BALL_RADIUS_M
 from tailor.tools.evaluations.assertion.subgoal_map import Array, SubgoalMap
-from tailor.tools.figures.paths import OBJECT_RADIUS_M, draw_side_by_side
+from tailor.tools.figures.paths import draw_side_by_side
 from tailor.tools.figures.track import Track
 
 ARROW_M = 0.3
@@ -70,7 +71,7 @@ def _map(
     limits = (0.0, 1.0) if cmap != "viridis" else (None, None)
     shown = axis.pcolormesh(ground.x, ground.y, table, cmap=cmap, shading="nearest", vmin=limits[0], vmax=limits[1])
     figure.colorbar(shown, ax=axis, shrink=0.85)
-    axis.add_patch(Circle(ball, OBJECT_RADIUS_M, color="orangered", zorder=3))
+    axis.add_patch(Circle(ball, BALL_RADIUS_M, color="orangered", zorder=3))
     axis.plot(*ground.start, "s", color="black", markersize=7, zorder=4)
     axis.annotate("start", ground.start, xytext=(6, 6), textcoords="offset points", fontsize="small")
     for (x, y, phi), colour in ((ground.goal, "black"), (ground.subgoal, "dimgrey")):

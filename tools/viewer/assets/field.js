@@ -1,8 +1,7 @@
-// The field from above like the paper's Figure 1: lines across the heading, whose length is the speed.
+// The scene on a plane: shapes that the robot's package draws, and its way. From above like the paper's Figure 1: lines
+// across the heading, whose length is the speed. A robot without a heading, such as an arm's pen, leaves a line.
 
 const LINE_S = 0.32; // metres of line for each metre a second: 0.9 m/s draws 0.29 m
-const ROBOT = [0.41, 0.32]; // length and breadth of the drawn robot, metres
-const OBJECT_M = 0.11; // radius of a drawn object
 
 class Field {
   constructor(run, target) {
@@ -37,7 +36,7 @@ class Field {
     );
     const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving);
     this.panel.body.replaceChildren(html("div", { class: "layers" }, below, above));
-    this.panel.title.textContent = "Field";
+    this.panel.title.textContent = "Scene";
     this.panel.note.replaceChildren(this.legend());
   }
 
@@ -46,7 +45,7 @@ class Field {
     this.from = from;
     this.path = this.run.between(this.run.source(), from, to);
     this.segments = segmentsOf(this.path);
-    for (const segment of this.segments) segment.element = svg("path", { d: this.strokes(segment.points) });
+    for (const segment of this.segments) segment.element = svg("path", { d: this.way(segment.points) });
     const ghost =
       this.run.source() === "truth" ? this.run.between("believed", from, to).map((p) => this.map(p.x, p.y)) : [];
     this.still.replaceChildren(
@@ -56,15 +55,17 @@ class Field {
     );
   }
 
-  /** Path and start of every object. */
+  /** Path and start of every object: of shapes that are no part of the robot and more than a line. */
   objectPaths() {
-    const names = new Set(this.path.flatMap((p) => Object.keys(p.objects ?? {})));
+    const names = new Set(this.path.flatMap((p) => Object.keys(p.places ?? {})));
     return [...names].flatMap((name) => {
-      const places = this.path.map((p) => (p.objects?.[name] ? this.map(...p.objects[name]) : null));
-      const first = places.find((place) => place !== null);
+      const outline = this.outline(name, Infinity);
+      if (outline.robots || !outline.closed) return [];
+      const first = this.path.find((p) => p.places?.[name]).places[name];
+      const points = this.path.map((p) => (p.places?.[name] ? this.map(...p.places[name]) : null));
       return [
-        svg("path", { class: "objectpath", d: through(places) }),
-        svg("circle", { class: "objectstart", cx: first[0], cy: first[1], r: OBJECT_M * this.map.perMetre }),
+        svg("path", { class: "objectpath", style: `stroke:${outline.colour}`, d: through(points) }),
+        svg("path", { class: "objectstart", style: `stroke:${outline.colour}`, d: this.corners(outline, first) }),
       ];
     });
   }
@@ -72,7 +73,7 @@ class Field {
   colourStrokes(at) {
     for (const segment of this.segments) {
       const ahead = segment.points[segment.points.length - 1].at > at;
-      const kind = `strokes ${ahead ? "ahead " : ""}${colour(segment.index)}`;
+      const kind = `${this.headed ? "strokes" : "trace"} ${ahead ? "ahead " : ""}${colour(segment.index)}`;
       if (segment.element.getAttribute("class") !== kind) segment.element.setAttribute("class", kind);
     }
   }
@@ -81,12 +82,14 @@ class Field {
   frame() {
     const path = this.run.all(this.run.source());
     const places = this.run.all("subgoals").flatMap(placesOf);
-    const objects = path.flatMap((p) => Object.values(p.objects ?? {}));
+    this.headed = path.some((p) => p.phi !== null);
+    const objects = path.flatMap((p) => this.objectsIn(p));
     const xs = [...path.map((p) => p.x), ...places.map((p) => p.x), ...objects.map((o) => o[0])];
     const ys = [...path.map((p) => p.y), ...places.map((p) => p.y), ...objects.map((o) => o[1])];
     let [left, right] = extent(xs, 0);
     let [bottom, top] = extent(ys, 0);
-    [left, right, bottom, top] = [left - 0.55, right + 0.55, bottom - 0.55, top + 0.55];
+    const margin = this.headed ? 0.55 : 0.12;
+    [left, right, bottom, top] = [left - margin, right + margin, bottom - margin, top + margin];
     const wanted = 1.06; // the frame's shape, so that the page does not jump
     const lacking = (right - left) / (top - bottom) - wanted;
     if (lacking < 0) {
@@ -123,43 +126,79 @@ class Field {
         svg("text", { x: 3, y: py - 3, text: y === 0 ? "0" : String(y) }),
       ];
     });
-    return [...vertical, ...horizontal, svg("text", { x: width - 4, y: 12, "text-anchor": "end", text: "x, y in m" })];
+    return [...vertical, ...horizontal, svg("text", { x: width - 4, y: 12, "text-anchor": "end", text: this.headed ? "x, y in m" : "m" })];
   }
 
   movingParts(at) {
     const parts = this.segments
       .filter((s) => s.points[0].at <= at && s.points[s.points.length - 1].at > at)
       .map((s) =>
-        svg("path", { class: `strokes ${colour(s.index)}`, d: this.strokes(s.points.filter((p) => p.at <= at)) }),
+        svg("path", {
+          class: `${this.headed ? "strokes" : "trace"} ${colour(s.index)}`,
+          d: this.way(s.points.filter((p) => p.at <= at)),
+        }),
       );
-    const robot = this.run.last(this.run.source(), at);
-    if (robot) parts.push(...this.robot(robot));
-    for (const place of Object.values(robot?.objects ?? {})) {
-      const [x, y] = this.map(...place);
-      parts.push(svg("circle", { class: "object", cx: x, cy: y, r: OBJECT_M * this.map.perMetre }));
-    }
-    return [...parts, ...new SubgoalMarks(this.run, this.map).at(at)];
+    const now = this.run.last(this.run.source(), at);
+    const shapes = now ? this.shapes(now, at) : [];
+    return [...shapes.map((s) => s.element), ...parts, ...new SubgoalMarks(this.run, this.map).at(at)];
   }
 
-  robot(pose) {
-    const [length, breadth] = ROBOT;
-    const corner = (ahead, left) =>
-      this.map(
-        pose.x + ahead * Math.cos(pose.phi) - left * Math.sin(pose.phi),
-        pose.y + ahead * Math.sin(pose.phi) + left * Math.cos(pose.phi),
-      );
-    const body = [
-      corner(length / 2, breadth / 2.6),
-      corner(length / 4, breadth / 2),
-      corner(-length / 2, breadth / 2),
-      corner(-length / 2, -breadth / 2),
-      corner(length / 4, -breadth / 2),
-      corner(length / 2, -breadth / 2.6),
-    ];
-    return [
-      svg("path", { class: "robot", d: `${through(body)}Z` }),
-      svg("path", { class: "robot nose", d: through([corner(0, 0), corner(length / 2, 0)]) }),
-    ];
+  /** All shapes of a moment: those of the robot last, so that nothing hides it. */
+  shapes(now, at) {
+    const prefix = `outline ${this.run.source()} `;
+    const names = [...this.run.kinds.keys()].filter((kind) => kind.startsWith(prefix)).map((k) => k.slice(prefix.length));
+    return names
+      .map((name) => ({ outline: this.outline(name, at), place: now.places?.[name] }))
+      .filter(({ outline, place }) => outline && (place || outline.onRobot))
+      .map(({ outline, place }) => ({
+        robots: outline.robots,
+        element: this.shape(outline, outline.onRobot ? [now.x, now.y, now.phi] : place),
+      }))
+      .sort((a, b) => a.robots - b.robots);
+  }
+
+  outline(name, at) {
+    return this.run.last(`outline ${this.run.source()} ${name}`, at);
+  }
+
+  /** Places of the things in a sample that are no part of the robot. */
+  objectsIn(sample) {
+    return Object.entries(sample.places ?? {})
+      .filter(([name]) => {
+        const outline = this.outline(name, Infinity);
+        return outline && outline.closed && !outline.robots;
+      })
+      .map(([, place]) => place);
+  }
+
+  shape(outline, place) {
+    if (outline.words) {
+      const [x, y] = this.map(place[0], place[1]);
+      return svg("text", { class: "strong halo", x, y, text: outline.words });
+    }
+    const d = this.corners(outline, place);
+    if (!outline.closed) {
+      const width = Math.max(1.2, outline.width * this.map.perMetre);
+      return svg("path", {
+        class: outline.robots ? "robot nose" : "backdrop",
+        style: `stroke-width:${width.toFixed(1)}${outline.robots ? "" : `;stroke:${outline.colour}`}`,
+        d,
+      });
+    }
+    const pale = this.headed ? "" : " pale"; // an arm would hide what it writes
+    return svg("path", { class: outline.robots ? `robot${pale}` : "object", style: `fill:${outline.colour}`, d });
+  }
+
+  /** The outline at a place: x, y and heading. */
+  corners(outline, [x, y, phi]) {
+    const [c, s] = [Math.cos(phi ?? 0), Math.sin(phi ?? 0)];
+    const points = outline.points.map(([a, b]) => this.map(x + c * a - s * b, y + s * a + c * b));
+    return through(points) + (outline.closed ? "Z" : "");
+  }
+
+  /** The way of the robot: lines across its heading, or a line. */
+  way(points) {
+    return this.headed ? this.strokes(points) : through(points.map((p) => this.map(p.x, p.y)));
   }
 
   strokes(points) {

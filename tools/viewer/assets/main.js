@@ -15,9 +15,10 @@ const views = [
 ];
 let scene = null;
 
-/** A field for a robot on the plane, small multiples for other robots. */
+/** The scene of a robot with a heading on the plane, the scene and small multiples of others. */
 function sceneNow() {
-  const wanted = run.source() ? Field : Series;
+  const source = run.source();
+  const wanted = !source ? Series : run.all(source).some((p) => p.phi !== null) ? Field : FieldAndSeries;
   if (!(scene instanceof wanted)) scene = new wanted(run, panel("scene"));
   return scene;
 }

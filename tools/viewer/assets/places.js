@@ -1,4 +1,4 @@
-// Places on the plane that the actions' parameters speak of: a label with an x and a y, maybe a heading.
+// Subgoals on the page: a label with the place that the robot's scene gives it, maybe a heading.
 
 /** The places of a subgoals row by label: {label, x, y, phi, free: [parameter], goal: whether an action ends there}. */
 function placesOf(row) {
@@ -15,6 +15,7 @@ function placesOf(row) {
       places.set(parameter.place, place);
     }
   }
+  for (const place of places.values()) [place.x, place.y] = row.places?.[place.label] ?? [null, null];
   return [...places.values()].filter((place) => Number.isFinite(place.x) && Number.isFinite(place.y));
 }
 

@@ -1,4 +1,4 @@
-// Small multiples over time: what stands in the field's place for a robot that is no point on a plane.
+// Small multiples over time: every value of the belief, for a robot that is more than a place with a heading.
 
 const PLOT = { width: 380, height: 92, left: 40, right: 8, top: 16, bottom: 16 };
 
@@ -17,12 +17,10 @@ class Series {
       this.lay(view);
     }
     for (const plot of this.plots) plot.move(at);
-    this.plane?.move(at);
   }
 
   lay(view) {
     const [beliefs, others] = [this.beliefs(), this.others()].map((lines) => lines.map((line) => timePlot(line, view)));
-    this.plane = this.waypoints.length ? new JointPlane(this.run, this.waypoints, this.episode) : null;
     this.plots = [...beliefs, ...others];
     const wasOpen = this.panel.body.querySelector("details")?.open ?? false;
     const more = html(
@@ -33,33 +31,12 @@ class Series {
     );
     const empty = html("p", { class: "empty", text: "No numbers yet." });
     this.panel.body.replaceChildren(
-      ...[this.plane?.element, beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean),
+      ...[beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean),
     );
     this.panel.title.textContent = "State";
     this.panel.note.textContent = beliefs.length
       ? "believed values; dots: goals of the actions at their end, hollow: free parameters"
       : "";
-  }
-
-  /** For each action that was started in the episode the values that its goal has for the two quantities that the belief names first. */
-  get waypoints() {
-    const [from, to] = this.episode;
-    return this.run
-      .actions()
-      .filter((action) => action.begin >= from && action.begin < to)
-      .flatMap((action) => {
-        const goal = this.goalOf(action);
-        const [first, second] = this.axes().map((name) => goal.find((p) => p.name === `${name}g`));
-        return first && second ? [{ action, place: first.place, x: first.value, y: second.value }] : [];
-      });
-  }
-
-  /** The first two angles of the belief: an arm's Figure 13 is drawn over them. */
-  axes() {
-    return (this.run.about().beliefNames ?? [])
-      .filter((name) => name.endsWith("(rad)"))
-      .slice(0, 2)
-      .map(bare);
   }
 
   goalOf(action) {

@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.runtime.bus import access
-from tailor.schemas.roles import ROLES
+from tailor.schemas.services import ROLES
 from tailor.schemas.topics import TOPICS
 
 SUBJECTS = [{"id": role, "usernames": [role]} for role in (*ROLES, access.GATEWAY)]

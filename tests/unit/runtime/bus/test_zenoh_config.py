@@ -9,7 +9,7 @@ import pytest
 from tailor.runtime.bus import access, zenoh_config
 from tailor.runtime.bus.credentials import Identity, Password
 from tailor.runtime.bus.run_folder import RunFolder
-from tailor.schemas.roles import ROLES
+from tailor.schemas.services import ROLES
 
 ENDPOINT = "tcp/127.0.0.1:7999"
 ROUTER = json.loads(zenoh_config.router(ENDPOINT))

@@ -11,8 +11,8 @@ from tailor.schemas import messages as m
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import message_types
+from tailor.tools.scenes import planar_convention
 from tailor.tools.viewer.event_fields import numbers
-from tailor.tools.viewer.planar_scene import scene_of_belief
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 
@@ -40,10 +40,28 @@ def test_a_soccer_run_has_path_actions_plan_subgoals_and_ticks() -> None:
     assert [event.fields["action"] for event in events if event.kind == "finished"] == ["approachBall", "dribbleBall"]
 
 
-def test_an_arm_has_belief_values_and_never_a_pose_on_the_plane() -> None:
+def test_a_robot_of_which_nothing_is_known_has_belief_values_and_never_a_pose() -> None:
     events = events_of(synthetic_run.arm_run())
     assert not kinds(events) & {"truth", "believed", "seen", "odom"}
     assert len(next(event for event in events if event.kind == "belief").fields["values"]) == 4
+
+
+def test_an_arm_has_a_pen_without_a_heading_and_links_that_turn() -> None:
+    timeline = RunTimeline()
+    timeline.events_of(0.0, "exec/provenance", m.Provenance(0, json.dumps(synthetic_run.order("arm", 0))))
+    first, second = (
+        [event for event in timeline.events_of(at_s, "exec/status", arm_status(lift)) if event.kind != "state"]
+        for at_s, lift in ((0.1, 0.0), (0.2, 0.4))
+    )
+    drawn = next(event for event in second if event.kind == "believed")
+    assert drawn.fields["phi"] is None
+    assert "lift link" in drawn.fields["places"]
+    assert "outline believed lift link" in kinds(first) & kinds(second), "seen from behind its outline changes"
+    assert "outline believed column" in kinds(first) - kinds(second), "what does not change is sent once"
+
+
+def arm_status(lift: float) -> m.ExecStatus:
+    return synthetic_run.status(0, "EXECUTING", "", "reach", 0, 0.1, 1.0, (0.3, 0.0, lift, 0.0))
 
 
 def test_an_unchanged_state_is_sent_once() -> None:
@@ -84,11 +102,15 @@ def test_only_the_executives_robot_is_shown_once_it_is_known() -> None:
 
 
 def test_an_object_that_was_never_observed_is_not_drawn() -> None:
-    names = ("x (m)", "y (m)", "phi (rad)", "v (m/s)", "ball_x (m)", "ball_y (m)", "ball_sigma (m)")
-    assert scene_of_belief(names, (0, 0, 0, 0, 0, 0, -1)).objects == {}
-    assert scene_of_belief(names, (0, 0, 0, 0, 1, 2, 0.1)).objects == {"ball": (1, 2)}
-    assert scene_of_belief(names, (0, 0, 0, 0, 99, 2, 0.1)).objects == {}, "too far: a scenario without a ball"
-    assert scene_of_belief(("a (rad)", "b (rad)"), (0.1, 0.2)) is None
+    names = ("x", "y", "phi", "v", "ball_x", "ball_y", "ball_sigma")
+
+    def drawn(*values: float) -> set[str]:
+        return {shape.name for shape in planar_convention.of_belief(dict(zip(names, values, strict=True))).shapes}
+
+    assert "ball" not in drawn(0, 0, 0, 0, 0, 0, -1)
+    assert "ball" in drawn(0, 0, 0, 0, 1, 2, 0.1)
+    assert "ball" not in drawn(0, 0, 0, 0, 99, 2, 0.1), "too far: a scenario without a ball"
+    assert planar_convention.of_belief({"a": 0.1, "b": 0.2}).frames == ()
 
 
 def test_numbers_that_are_not_finite_become_null() -> None:

@@ -1,0 +1,61 @@
+"""Publish what a robot's package draws: markers and transforms for viewers in 3D (Foxglove, RViz, rerun).
+
+With a recording: write a copy with them. With --live: publish them on the bus for the running executive.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from rich.console import Console
+
+from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.scenes.live_scenes import publish_scenes
+from tailor.tools.scenes.recorded_scenes import add_scenes
+
+NICENESS = 10  # the executive has priority
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor scene`."""
+    parser.add_argument("recording", type=Path, nargs="?", help="MCAP file")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="new file (default: NAME-scene.mcap)")
+    parser.add_argument("--live", action="store_true", help="publish on the bus until interrupted")
+    configure_sender(parser)
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0; for a recording 1 if it has no run whose robot is known."""
+    if arguments.live == (arguments.recording is not None):
+        raise UsageError("expected either a recording or --live")
+    return _live(arguments) if arguments.live else _write(arguments)
+
+
+def _write(arguments: argparse.Namespace) -> int:
+    source: Path = arguments.recording
+    target: Path = arguments.output or source.with_name(f"{source.stem}-scene.mcap")
+    with Console(stderr=True).status(f"reading {source}"):
+        added, feed = add_scenes(source, target)
+    if feed.fault:
+        print(f"the scene of {feed.robot}: {feed.fault}", file=sys.stderr)
+    print(f"{target}: {added} messages added")
+    return 0 if added else 1
+
+
+def _live(arguments: argparse.Namespace) -> int:
+    stop, notifier = stop_on_signals(), Notifier.from_environment()
+    if sys.platform == "linux":
+        os.nice(NICENESS)
+    with open_bus(arguments, "scene", sender=sender_of(arguments)) as session:
+        codec.prime()
+        publish_scenes(session, lambda: stop.requested, notifier)
+    return 0

@@ -1,0 +1,59 @@
+"""Publishes the scenes of a running system: a subscriber of its own, which delays no other process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.publisher import Publisher
+from tailor.runtime.bus.session import Session
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.loop import Loop
+from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.schemas.typesystem import type_of
+from tailor.tools.scenes.scene_feed import SceneFeed
+
+POLL_NS = 50_000_000
+ENCODING = "application/cdr;"
+
+
+def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> None:
+    """Publish until `stopped` is True.
+
+    Args:
+      session: With a role that may publish scenes.
+      stopped: Called twenty times a second.
+      notifier: Receives that this process is ready, its state, and a package's fault.
+    """
+    queue, subscription = session.subscribe_all("**")
+    loop, feed, publishers, fault = Loop(POLL_NS, MonotonicClock()), SceneFeed(), dict[str, Publisher](), ""
+    notifier.ready()
+    while not stopped():
+        period = loop.wait_for_next_period()
+        for raw in queue.drain():
+            message = _read(raw) if feed.wants(raw.key) else None
+            if message is None:
+                continue
+            for topic, made in feed.messages_after(period.now_ns / 1e9, raw.key, message):
+                if topic not in publishers:
+                    publishers[topic] = session.publisher(topic, feed.robot)
+                publishers[topic].publish(made)
+        notifier.alive()
+        if feed.fault != fault:
+            fault = feed.fault
+            notifier.status(f"scene: {fault}")
+    notifier.stopping()
+    subscription.undeclare()
+
+
+def _read(raw: Raw) -> Message | None:
+    """The message of a publication; None for foreign and damaged ones."""
+    kind = type_of(raw.encoding.removeprefix(ENCODING))
+    if kind is None or not raw.is_put or isinstance(unpack(raw.attachment), Rejected):
+        return None
+    message = decode(kind, raw.payload)
+    return None if isinstance(message, Rejected) else message

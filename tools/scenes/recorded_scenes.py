@@ -1,0 +1,66 @@
+"""Gives a recording the markers and transforms of its run: a copy with `scene`, `sim/scene` and `tf` added."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.channel_table import ENCODING
+from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.recording import Recorded, open_recording
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.messages import FrameTransforms, Message, SceneShapes
+from tailor.schemas.topics import key_of
+from tailor.schemas.typesystem import ros_type, type_of
+from tailor.tools.scenes.scene_feed import SceneFeed
+
+DERIVED = tuple(ros_type(kind) for kind in (SceneShapes, FrameTransforms))
+SENDER = "5c" * 16
+
+
+def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
+    """Copy a recording and add the scenes of its run; markers and transforms in it are replaced.
+
+    Returns:
+      Number of messages added, and the feed that made them.
+
+    Raises:
+      UsageError: The source is no recording, or the target exists or cannot be written.
+    """
+    recording, feed, sequences = open_recording(source), SceneFeed(), Counter[str]()
+    metadata = {name: entries for name, entries in recording.metadata() if name != "topics"}
+    try:
+        writer = McapWriter(target, metadata)
+    except FileExistsError as error:
+        raise UsageError(f"{target}: exists already, expected the name of a new file") from error
+    except OSError as error:
+        raise UsageError(f"{target}: {error.strerror}, expected a writable path") from error
+    for recorded in recording.messages():
+        if recorded.ros_type in DERIVED:
+            continue
+        writer.write(_raw(recorded), recorded.log_ns)
+        message = _decoded(recorded) if feed.wants(recorded.key) else None
+        made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if message is not None else []
+        for topic, each in made:
+            key = key_of(topic, feed.robot)
+            sequences[key] += 1
+            origin = pack(Origin(sequences[key], recorded.log_ns, SENDER))
+            raw = Raw(key, encode(each), origin, f"{ENCODING}{ros_type(type(each))}", True, None)
+            writer.write(raw, recorded.log_ns)
+    if not writer.close():
+        raise UsageError(f"{target}: {writer.disk_error}")
+    return sequences.total(), feed
+
+
+def _raw(recorded: Recorded) -> Raw:
+    origin = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender)) if recorded.sender else None
+    return Raw(recorded.key, recorded.data, origin, f"{ENCODING}{recorded.ros_type}", True, None)
+
+
+def _decoded(recorded: Recorded) -> Message | None:
+    kind = type_of(recorded.ros_type)
+    message = None if kind is None else decode(kind, recorded.data)
+    return None if isinstance(message, Rejected) else message

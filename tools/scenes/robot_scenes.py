@@ -1,0 +1,109 @@
+"""The scenes of one robot, from the messages of its run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tailor.executive import domains
+from tailor.schemas import messages as m
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import part, spec_of
+from tailor.schemas.packages.pose3 import Pose3
+from tailor.schemas.packages.scene import Scene
+from tailor.schemas.topics import TOPICS
+from tailor.tools.scenes import planar_convention
+
+_TRUTH = [topic for topic in TOPICS.values() if topic.source == "simulator"]
+TRUTH_KEYS = frozenset(topic.key.partition("/")[2] for topic in _TRUTH)  # without the robot
+TRUTH_TYPES = tuple({topic.type for topic in _TRUTH})
+
+
+@dataclass(frozen=True, slots=True)
+class Subgoal:
+    """Where an action is to end: pose in "map", whether its heading matters, whether a parameter of it is free."""
+
+    label: str
+    pose: Pose3
+    headed: bool
+    free: bool
+
+
+class RobotScenes:
+    """Scenes of a robot, by its package's `scene` or by convention.
+
+    Attributes:
+      seen_from: "above" or "behind", see SceneView.
+      robot: Name of the robot; empty without a domain.
+      fault: What the package's `scene` raised last; it draws nothing then.
+    """
+
+    def __init__(self, domain: str = "") -> None:
+        """Load the scene that a domain declares; "" or a domain that is not installed: the convention alone."""
+        self._view: Any = planar_convention
+        self._names: tuple[str, ...] = ()
+        self._truth: dict[type, Scene] = {}
+        self.robot = self.fault = ""
+        try:
+            spec = spec_of(domain)
+            loaded = domains.load(domain)
+        except UsageError:
+            spec = None
+        if spec is not None:
+            self.robot, self._names = spec.robot, tuple(_bare(name) for name in loaded.belief_names)
+            self._view = part(spec, "scene") if spec.scene else planar_convention
+        self.seen_from: str = getattr(self._view, "VIEW", "above")
+
+    def of_belief(self, values: Sequence[float]) -> Scene | None:
+        """The believed scene; None if there is none, as without `belief_values`."""
+        return self._made("of_belief", dict(zip(self._names, values, strict=False))) if values else None
+
+    def of_truth(self, message: m.Message) -> Scene | None:
+        """The true scene with this message and the newest ones of other types; None without a robot's pose in it."""
+        scene = self._made("of_truth", message)
+        if scene is None:
+            return None
+        self._truth[type(message)] = scene
+        if not scene.frames:
+            return None
+        others = (each for kind, each in self._truth.items() if kind is not type(message))
+        shapes = [*scene.shapes, *(shape for each in others for shape in each.shapes)]
+        return Scene(scene.frames, tuple(shapes), scene.tracer, scene.speed_mps)
+
+    def of_subgoals(self, message: m.Subgoals) -> tuple[Subgoal, ...]:
+        """All subgoals that have a place: goals of the actions, not the start of the first."""
+        values: dict[str, dict[str, float]] = {}
+        free: set[str] = set()
+        for action in message.actions:
+            start = action.parameters[0].label if action.parameters else ""
+            for parameter in action.parameters:
+                if parameter.label != start:
+                    known = values.setdefault(parameter.label, {})
+                    known.setdefault(parameter.name.removesuffix("g"), parameter.value)
+                    free |= set() if parameter.bound else {parameter.label}
+        poses = ((label, self._called("of_subgoal", known), "phi" in known) for label, known in values.items())
+        return tuple(Subgoal(label, pose, headed, label in free) for label, pose, headed in poses if pose is not None)
+
+    def _made(self, function: str, argument: Any) -> Scene | None:
+        scene = self._called(function, argument)
+        return scene if scene is not None and (scene.frames or scene.shapes) else None
+
+    def _called(self, function: str, argument: Any) -> Any:
+        """What the package returns; None if it fails: no page or bus goes down with a drawing."""
+        try:
+            return getattr(self._view, function)(argument)
+        except Exception as error:
+            self.fault = f"{function}: {type(error).__name__}: {error}"
+            return None
+
+
+def planar_pose(message: m.Message) -> Scene | None:
+    """The scene of an odometry or a pose estimate, of whatever robot: its pose alone."""
+    scene = planar_convention.of_truth(message)
+    return Scene(scene.frames, (), scene.tracer, scene.speed_mps) if scene.frames else None
+
+
+def _bare(name: str) -> str:
+    """Name of a belief value without its unit: "ball x (m)" is ball_x."""
+    return name.partition(" (")[0].replace(" ", "_")
