@@ -84,7 +84,7 @@ class Search:
             assert grounded is not None
             if settings.random_open_conditions:
                 grounded = shuffled(grounded, rng)
-            task = make_task(self._problem, grounded, settings.action_cost)
+            task = yield from make_task(self._problem, grounded, settings.action_cost)
             self._engine = self._make_engine(task, grounded, rng)
             yield from self._engine.run()
         except TooMuchToGround as reason:
@@ -115,9 +115,9 @@ class Search:
         """Grounds the problem unless the cached grounding fits."""
         world, tick_s = static_world(self._problem), self._settings.tolerance_s
         last = self._cache.last
-        if last is not None and last.world == world and last.tick_s == tick_s:
+        if last is not None and last.serves(self._problem, world, tick_s):
             return
-        for grounded in ground_actions(world, tick_s, self._settings.ground_limit):
+        for grounded in ground_actions(self._problem, world, tick_s, self._settings.ground_limit):
             if grounded is None:
                 yield None
             else:

@@ -8,6 +8,7 @@ from typing import Literal as OneOf
 
 from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.ranking import check_rankings
+from tailor.executive.planning.ground.ground_formula import MAX_STEPS
 from tailor.schemas.errors import UsageError
 
 EngineName = OneOf["auto", "pocl", "forward"]
@@ -38,7 +39,7 @@ class Settings:
       step_limit: Maximum number of steps in a plan.
       engine: Partial-order search ("pocl"), search through states ("forward": no durations, disjunctions or
         conditional effects), or both by turns ("auto").
-      ground_limit: Maximum number of bindings that grounding tries.
+      ground_limit: Maximum number of steps of grounding (formulas over objects); the default takes two seconds of CPU.
       tolerance_s: One tick of a durative plan, in [1e-6, 1000] s.
       seed: Random seed, at least 0.
       random_open_conditions: Open an action's conditions in random order.
@@ -55,7 +56,7 @@ class Settings:
     action_cost: OneOf["unit", "duration", "relative"] = "unit"
     node_limit: int = 100_000
     step_limit: int = 200
-    ground_limit: int = 100_000
+    ground_limit: int = MAX_STEPS
     tolerance_s: float = 0.01
     seed: int = 0
     random_open_conditions: bool = False

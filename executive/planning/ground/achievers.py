@@ -6,9 +6,9 @@ With these rules the numbers of generated and visited plans equal those of VHPOP
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 
-from tailor.executive.planning.ground.additive_heuristic import Estimates
+from tailor.executive.planning.ground.additive_heuristic import PORTION, Estimates
 from tailor.executive.planning.ground.ground_action import GroundAction, GroundEffect
 
 Achiever = tuple[GroundAction, GroundEffect]
@@ -19,12 +19,12 @@ SIZES = (193, 389, 769, 1543, 3079, 6151, 12289, 24593, 49157, 98317, 196613, 39
 
 def achievers_of(
     actions: Sequence[GroundAction], estimates: Estimates, literals: int
-) -> tuple[tuple[Achiever, ...], ...]:
+) -> Generator[None, None, tuple[tuple[Achiever, ...], ...]]:
     """The reachable actions with an effect that makes a literal true, by literal.
 
     Actions are entered level by level of the relaxed planning graph, within a level in grounding order. A literal's
     first achiever keeps its place; each later one is inserted right behind it. Whenever the table grows, the list of
-    each literal is reversed.
+    each literal is reversed. Yields after every PORTION of effects, and returns the table.
 
     Args:
       actions: All ground actions, by number.
@@ -37,6 +37,8 @@ def achievers_of(
         (action, effect) for action in reached for effect in action.effects if estimates.reaches(effect.conditions)
     )
     for count, (action, effect) in enumerate(entries):
+        if count % PORTION == PORTION - 1:
+            yield
         if count in SIZES:
             for achievers in table:
                 achievers.reverse()

@@ -6,7 +6,7 @@ Source: Bonet & Geffner 2001; in plan space Younes & Simmons, JAIR 20 (2003), se
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,6 +28,7 @@ class Value(NamedTuple):
 UNREACHABLE = Value(math.inf, math.inf, math.inf)
 INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action, but one unit of work
 NOTHING = Value(0, 0, 0)
+PORTION = 4096  # actions relaxed or entered per unit of budget: ten milliseconds; small tasks take one unit in all
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +75,12 @@ def action_costs(actions: Sequence[GroundAction], kind: str) -> tuple[float, ...
     return tuple(duration / unit for duration in durations)
 
 
-def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: Iterable[int], count: int) -> Estimates:
+def estimate(
+    actions: Sequence[GroundAction], costs: Sequence[float], initial: Iterable[int], count: int
+) -> Generator[None, None, Estimates]:
     """The fixpoint of the relaxed planning graph; each level is computed from the values of the one before.
+
+    Yields after every PORTION of actions, and returns the estimates.
 
     Args:
       actions: All ground actions.
@@ -89,9 +94,13 @@ def estimate(actions: Sequence[GroundAction], costs: Sequence[float], initial: I
     users = _users(actions, count)
     pending: Iterable[GroundAction] = actions
     reached: dict[int, None] = {}
+    relaxed = 0
     while pending:
         changed: dict[int, Value] = {}
         for action in pending:
+            relaxed += 1
+            if relaxed % PORTION == 0:
+                yield
             if _relax(action, costs[action.number], values, changed):
                 reached.setdefault(action.number)
         for literal, value in changed.items():

@@ -32,35 +32,57 @@ from tailor.executive.planning.structures.connectives import (
 )
 
 GroundCondition = int | Conjunction[int] | Disjunction[int]
-MAX_FORMULAS = 60_000  # a third of a second of grounding; the competition problems at hand need 20 000
+MAX_STEPS = 300_000  # of grounding: two seconds of CPU, counted so that results do not depend on the machine
+MAX_QUANTIFIED = 60_000  # of these below quantifiers: small files can hold bombs; a third of a second
 
 
 class TooMuchToGround(Exception):
-    """Grounding exceeds its limit of bindings, formulas or actions."""
+    """Grounding exceeds one of its limits; the message names what is too large."""
 
 
-class FormulaLimit:
-    """Counts converted formulas down from a limit."""
+class GroundingLimit:
+    """Counts the steps of grounding (converted formulas) down.
 
-    def __init__(self, limit: int) -> None:
-        self._left = limit
+    `subject` is what is being grounded, for the error; `depth` the number of quantifiers that are being expanded.
+    """
+
+    __slots__ = ("_left", "_steps", "depth", "quantified_left", "subject")
+
+    def __init__(
+        self, steps: int = MAX_STEPS, quantified: int = MAX_QUANTIFIED, subject: str = "a quantified formula"
+    ) -> None:
+        self._steps = self._left = steps
+        self.quantified_left = quantified
+        self.depth = 0
+        self.subject = subject
 
     def spend(self) -> None:
-        """Counts one more formula; raises TooMuchToGround beyond the limit."""
+        """Counts one more step.
+
+        Raises:
+          TooMuchToGround: A limit is exceeded.
+        """
         self._left -= 1
         if self._left < 0:
             raise TooMuchToGround(
-                "grounding met more formulas than its limit; are there quantifiers over many objects?"
+                f"grounding takes more than its limit of {self._steps} steps, spent at {self.subject}"
             )
+        if self.depth:
+            self.quantified_left -= 1
+            if self.quantified_left < 0:
+                raise TooMuchToGround(f"the quantifiers of {self.subject} range over too many objects")
 
 
-class FactTable(FormulaLimit):
+class FactTable:
     """Numbers fluent facts in the order of their first occurrence; never shrinks."""
 
-    def __init__(self, facts: Iterable[Fact] = (), limit: int = MAX_FORMULAS) -> None:
+    __slots__ = ("_numbers", "limit", "spend")
+
+    def __init__(self, facts: Iterable[Fact] = (), limit: GroundingLimit | None = None) -> None:
         """Numbers the given facts first; `limit` bounds the formulas that may be grounded."""
-        super().__init__(limit)
         self._numbers: dict[Fact, int] = {}
+        self.limit = limit if limit is not None else GroundingLimit()
+        self.spend = self.limit.spend
         for fact in facts:
             self.literal(fact)
 
@@ -130,11 +152,21 @@ def ground(
             return ground(part, binding, world, facts, not positive)
         case And(parts) | Or(parts):
             grounded = (ground(part, binding, world, facts, positive) for part in parts)
-            return conjunction(grounded) if isinstance(formula, And) == positive else disjunction(grounded)
+            return _consistent(conjunction(grounded)) if isinstance(formula, And) == positive else disjunction(grounded)
         case Quantified(every, variables, part):
             choices = bindings(variables, binding, world)
             grounded = (ground(part, inner, world, facts, positive) for inner in choices)
-            return conjunction(grounded) if every == positive else disjunction(grounded)
+            facts.limit.depth += 1
+            joined = _consistent(conjunction(grounded)) if every == positive else disjunction(grounded)
+            facts.limit.depth -= 1
+            return joined
+
+
+def _consistent(condition: GroundCondition) -> GroundCondition:
+    """The condition, or FALSE if it is a conjunction of a literal and its negation among others."""
+    if isinstance(condition, Conjunction) and contradictory(condition.parts):
+        return FALSE
+    return condition
 
 
 def bindings(variables: tuple[Typed, ...], binding: Binding, world: StaticWorld) -> Iterator[Binding]:

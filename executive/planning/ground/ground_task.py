@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from tailor.executive.planning.ground.achievers import Achiever, achievers_of
 from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
-from tailor.executive.planning.ground.ground_formula import FactTable, GroundCondition, contradictory, ground
+from tailor.executive.planning.ground.ground_formula import (
+    FactTable,
+    GroundCondition,
+    GroundingLimit,
+    contradictory,
+    ground,
+)
 from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
@@ -36,9 +43,9 @@ class GroundTask:
     moments: int  # nodes of a step: start and end, or only one if actions take no time
 
 
-def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> GroundTask:
-    """The task of a problem, given the ground actions of its static world."""
-    facts = FactTable(grounded.facts)
+def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> Generator[None, None, GroundTask]:
+    """The task of a problem, given the ground actions of its static world; yields as a unit of budget is used."""
+    facts = FactTable(grounded.facts, GroundingLimit(subject="the goal"))
     goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
     if contradictory(goal):
         goal = (FALSE,)
@@ -49,7 +56,9 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
     initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
     temporal = problem.domain.durative or bool(timed)
     costs = action_costs(grounded.actions, cost)
-    estimates = estimate(grounded.actions, costs, initial | {literal for literal, _ in timed}, 2 * len(facts))
+    first = initial | {literal for literal, _ in timed}
+    estimates = yield from estimate(grounded.actions, costs, first, 2 * len(facts))
+    achievers = yield from achievers_of(grounded.actions, estimates, 2 * len(facts))
     return GroundTask(
         problem,
         temporal,
@@ -58,7 +67,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         initial,
         timed,
         goal,
-        achievers_of(grounded.actions, estimates, 2 * len(facts)),
+        achievers,
         costs,
         estimates,
         all(action.simple for action in grounded.actions),

@@ -1,53 +1,58 @@
-"""Grounding: action schemas x objects -> ground actions, pruned early by static facts and inequalities.
+"""Grounding: action schemas x objects -> ground actions.
 
+Small problems are grounded exhaustively, pruned early by static facts and inequalities: the actions then serve every
+initial state. Of large ones only the actions that relaxed reachability finds from the initial state are made.
 Owns the order that every count depends on: actions by name, objects by name (constants first), parameters from left
 to right.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.planning.ground.durations import duration_range, ticks_of
-from tailor.executive.planning.ground.ground_action import (
-    INSTANT,
-    MOMENTS,
-    GroundAction,
-    GroundEffect,
-    Span,
-    external_conditions,
-)
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.ground.bindings import schema_bindings, without_static
+from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
     Binding,
     FactTable,
-    GroundCondition,
+    GroundingLimit,
     StaticWorld,
     TooMuchToGround,
-    bindings,
-    contradictory,
-    ground,
-    negation,
 )
-from tailor.executive.planning.pddl.language import Action, And, Atom, Condition, Equal, Formula, Not, When
+from tailor.executive.planning.ground.instances import instance
+from tailor.executive.planning.ground.reachability import Reachability, Reached
+from tailor.executive.planning.pddl.language import Action
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
-MAX_ACTIONS = 10_000  # of a ground task; the competition problems at hand have 756 at most
-MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
+MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try some hundreds
+MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
+MAX_BYTES = 250_000_000  # of the ground actions; half of what a planner may take
+BYTES_PER_ACTION, BYTES_PER_PART = 600, 150  # roughly; a part is a condition or an effect
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
 
 
 @dataclass(frozen=True, slots=True)
 class GroundActions:
-    """The ground actions of a static world and the facts they mention, by number; reusable with an equal world."""
+    """The ground actions of a static world and the facts they mention, by number; reusable with an equal world.
+
+    `reached` are the fluent facts from which they were found; None: they serve every initial state.
+    """
 
     world: StaticWorld
     tick_s: float
     facts: tuple[tuple[str, ...], ...]
     actions: tuple[GroundAction, ...]
+    reached: frozenset[Fact] | None = None
+
+    def serves(self, problem: Problem, world: StaticWorld, tick_s: float) -> bool:
+        """Whether these are ground actions of a problem, given its static world."""
+        if self.tick_s != tick_s or self.world != world:
+            return False
+        return self.reached is None or self.reached.issuperset(_fluents(problem, world))
 
 
 def static_world(problem: Problem) -> StaticWorld:
@@ -66,28 +71,31 @@ def static_world(problem: Problem) -> StaticWorld:
     return StaticWorld(domain, by_type, static, facts, dict(problem.values), domain.durative)
 
 
-def ground_actions(world: StaticWorld, tick_s: float, limit: int) -> Iterator[GroundActions | None]:
-    """Grounds all actions: yields None every CHECK_EVERY bindings, and the ground actions at the end.
+def ground_actions(problem: Problem, world: StaticWorld, tick_s: float, steps: int) -> Iterator[GroundActions | None]:
+    """Grounds all actions, or the reachable ones: yields None per unit of budget, and the ground actions at the end.
+
+    Args:
+      problem: Its initial state is used only if there are too many bindings to try all.
+      world: Its static world.
+      tick_s: One tick in seconds.
+      steps: Limit of the steps of grounding.
 
     Raises:
-      TooMuchToGround: More than `limit` bindings of parameters tried, or too many formulas or actions.
+      TooMuchToGround: Too many steps, or too much memory.
     """
-    facts = FactTable()
-    actions: list[GroundAction] = []
-    tried = 0
-    for schema in sorted(world.domain.actions, key=lambda action: action.name):
-        for binding in _schema_bindings(schema, world):
-            tried += 1
-            if tried > limit:
-                raise TooMuchToGround(f"grounding tried more than {limit} bindings, the last of '{schema.name}'")
-            if tried % CHECK_EVERY == 0:
-                yield None
-            if binding is not None:
-                action = _instance(len(actions), schema, binding, world, facts, tick_s)
-                actions += [action] if action else []
-                if len(actions) > MAX_ACTIONS:
-                    raise TooMuchToGround(f"more than {MAX_ACTIONS} ground actions")
-    yield GroundActions(world, tick_s, tuple(facts), tuple(actions))
+    small = GroundingLimit(min(steps, MAX_EXHAUSTIVE_STEPS))
+    try:
+        yield from _exhaustive(world, tick_s, small, min(steps, MAX_BINDINGS))
+        return
+    except _TooManyBindings:
+        limit = GroundingLimit(steps)
+    except TooMuchToGround:  # by formulas: no second chance for quantifiers that are a bomb
+        limit = GroundingLimit(steps, small.quantified_left)
+    for reached in Reachability(world, _fluents(problem, world), limit).run():
+        if reached is None:
+            yield None
+        else:
+            yield from _reachable(world, tick_s, reached, limit)
 
 
 def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions:
@@ -99,161 +107,75 @@ def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions
     return replace(grounded, actions=tuple(actions))
 
 
-# --- bindings ------------------------------------------------------------------------------------
-def _schema_bindings(schema: Action, world: StaticWorld) -> Iterator[Binding | None]:
-    """Complete bindings that satisfy the static conditions; None for each partial binding that was tried."""
-    names = [parameter.name for parameter in schema.parameters]
-    tests: list[list[Formula]] = [[] for _ in range(len(names) + 1)]
-    for part in _static_parts(schema, world):
-        level = max((names.index(term) + 1 for term in _terms(part) if term in names), default=0)
-        tests[level].append(part)
-    choices = [world.choices(parameter) for parameter in schema.parameters]
-    yield from _extend({}, 0, names, choices, tests, world)
+def _fluents(problem: Problem, world: StaticWorld) -> Iterator[Fact]:
+    """The fluent facts that hold initially or from a known time."""
+    yield from (fact for fact in problem.initial if fact[0] not in world.static)
+    yield from (timed.literal.fact for timed in problem.timed if timed.literal.positive)
 
 
-def _extend(
-    binding: Binding,
-    level: int,
-    names: list[str],
-    choices: list[tuple[str, ...]],
-    tests: list[list[Formula]],
-    world: StaticWorld,
-) -> Iterator[Binding | None]:
-    nothing = FactTable()
-    if any(ground(test, binding, world, nothing) == FALSE for test in tests[level]):
-        yield None
-    elif level == len(names):
-        yield binding
-    else:
-        yield None
-        for name in choices[level]:
-            yield from _extend({**binding, names[level]: name}, level + 1, names, choices, tests, world)
+# --- both ways -----------------------------------------------------------------------------------
+class _TooManyBindings(Exception):
+    """There are too many bindings to try all."""
 
 
-def _static_parts(schema: Action, world: StaticWorld) -> Iterator[Formula]:
-    """The conjuncts of the conditions that static facts and equality decide."""
-    pending = [condition.formula for condition in schema.conditions]
-    while pending:
-        formula = pending.pop()
-        inner = formula.part if isinstance(formula, Not) else formula
-        if isinstance(formula, And):
-            pending += formula.parts
-        elif isinstance(inner, Equal) or (isinstance(inner, Atom) and inner.predicate in world.static):
-            yield formula
+def _exhaustive(world: StaticWorld, tick_s: float, limit: GroundingLimit, most: int) -> Iterator[GroundActions | None]:
+    """Yields None every CHECK_EVERY bindings; raises _TooManyBindings if there are more than `most`."""
+    maker = _Maker(world, tick_s, limit)
+    tried = 0
+    for schema in sorted(world.domain.actions, key=lambda action: action.name):
+        limit.subject = f"'{schema.name}'"
+        for binding in schema_bindings(schema, world):
+            tried += 1
+            if tried > most:
+                raise _TooManyBindings
+            if tried % CHECK_EVERY == 0:
+                yield None
+            if binding is not None:
+                maker.add(schema, binding)
+    yield maker.result(None)
 
 
-def _terms(formula: Formula) -> tuple[str, ...]:
-    match formula:
-        case Not(part):
-            return _terms(part)
-        case Equal(left, right):
-            return (left, right)
-        case Atom(_, terms):
-            return terms
-        case _:
-            return ()
+def _reachable(
+    world: StaticWorld, tick_s: float, reached: Reached, limit: GroundingLimit
+) -> Iterator[GroundActions | None]:
+    """Makes the actions of the reached bindings; yields None every CHECK_EVERY of them."""
+    maker = _Maker(world, tick_s, limit)
+    for schema in sorted(world.domain.actions, key=lambda action: action.name):
+        names = [parameter.name for parameter in schema.parameters]
+        tested = without_static(schema, world)
+        own = reached.arguments[schema.name]
+        limit.subject = f"'{schema.name}' with {len(own)} reachable bindings"
+        for number, arguments in enumerate(own, 1):
+            if number % CHECK_EVERY == 0:
+                yield None
+            maker.add(tested, dict(zip(names, arguments, strict=True)))
+    yield maker.result(reached.facts)
 
 
-# --- one ground action ---------------------------------------------------------------------------
-def _instance(
-    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable, tick_s: float
-) -> GroundAction | None:
-    """The ground action; None if it is never applicable or achieves nothing."""
-    bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
-    conditions = _conditions(schema.conditions, binding, world, facts)
-    if bounds is None or conditions is None:
-        return None
-    effects = _useful(conditions, _effects(schema, binding, world, facts))
-    if not effects:
-        return None
-    bits: dict[int, int] = {}
-    for effect in effects:
-        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
-    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
-    return GroundAction(
-        number,
-        name,
-        conditions,
-        external_conditions(conditions, effects),
-        effects,
-        bits,
-        *ticks_of(bounds, tick_s),
-        bounds[0],
-        not any(effect.conditions for effect in effects),
-    )
+class _Maker:
+    """Makes ground actions in order, within a limit of steps and of memory."""
 
+    def __init__(self, world: StaticWorld, tick_s: float, limit: GroundingLimit) -> None:
+        self._world = world
+        self._tick_s = tick_s
+        self._limit = limit
+        self._facts = FactTable((), limit)
+        self._actions: list[GroundAction] = []
+        self._bytes = 0
 
-def _span(when: When, temporal: bool) -> Span:
-    return MOMENTS[when] if temporal else INSTANT
+    def add(self, schema: Action, binding: Binding) -> None:
+        """Makes one more action unless it is never applicable or achieves nothing."""
+        action = instance(len(self._actions), schema, binding, self._world, self._facts, self._tick_s)
+        if action is None:
+            return
+        self._actions.append(action)
+        self._bytes += BYTES_PER_ACTION + BYTES_PER_PART * (len(action.conditions) + len(action.effects))
+        if self._bytes > MAX_BYTES:
+            raise TooMuchToGround(
+                f"{len(self._actions)} ground actions take too much memory, the last of '{schema.name}'"
+            )
 
-
-def _conditions(
-    conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
-) -> tuple[tuple[GroundCondition, Span], ...] | None:
-    """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
-    grounded: list[tuple[GroundCondition, Span]] = []
-    for condition in conditions:
-        result = ground(condition.formula, binding, world, facts)
-        if result == FALSE:
-            return None
-        for part in conjuncts(result):
-            grounded.append((part, _span(condition.when, world.temporal)))
-    spans = {span for _, span in grounded}
-    if any(contradictory(part for part, own in grounded if own == span) for span in spans):
-        return None
-    return tuple(grounded)
-
-
-def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTable) -> list[GroundEffect]:
-    effects: dict[GroundEffect, None] = {}
-    for effect in schema.effects:
-        moment = _span(effect.when, world.temporal)[0]
-        for inner in bindings(effect.variables, binding, world):
-            conditions = _conditions(effect.condition, inner, world, facts)
-            if conditions is not None:
-                literal = ground(effect.atom, inner, world, facts, effect.positive)
-                assert isinstance(literal, int)  # the predicate of an effect is not static
-                effects.setdefault(GroundEffect(literal, moment, conditions))
-    return list(effects)
-
-
-def _useful(
-    conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
-) -> tuple[GroundEffect, ...]:
-    """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
-
-    An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
-    same action adds at that moment neither achieves nor threatens: add effects win.
-    """
-    required = {(part, span[1]) for part, span in conditions}
-    at: dict[tuple[int, int], list[GroundEffect]] = {}
-    for effect in effects:
-        at.setdefault((effect.literal, effect.moment), []).append(effect)
-    kept: list[GroundEffect] = []
-    for effect in effects:
-        if (effect.literal, effect.moment) not in required:
-            additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
-            kept += _unless_added(effect, additions)
-    return tuple(kept)
-
-
-def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
-    """An effect under conditions that exclude the add effects of its moment; empty if one of these always happens.
-
-    An add effect with conditions at several moments fails if those of one moment fail: each gives one variant.
-    """
-    variants = [effect.conditions]
-    for other in additions:
-        spans: dict[Span, list[GroundCondition]] = {}
-        for condition, span in other.conditions:
-            spans.setdefault(span, []).append(condition)
-        failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
-        variants = [
-            (*variant, *((part, span) for part in conjuncts(fails)))
-            for variant in variants
-            for fails, span in failures
-            if fails != FALSE
-        ]
-        if len(variants) > MAX_VARIANTS:
-            raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
-    return [effect._replace(conditions=variant) for variant in variants] if additions else [effect]
+    def result(self, reached: Iterable[Fact] | None) -> GroundActions:
+        """The actions made."""
+        facts = None if reached is None else frozenset(reached)
+        return GroundActions(self._world, self._tick_s, tuple(self._facts), tuple(self._actions), facts)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
-from tailor.executive.planning.ground_plans.step_effects import StepEffects
+from tailor.executive.planning.ground_plans.step_effects import StepEffects, no_masks
 from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
@@ -75,7 +75,7 @@ def step_of(task: GroundTask, node: int) -> int:
 
 def initial_plan(task: GroundTask) -> PartialPlan:
     """The plan without steps whose open conditions are the goal, the first at the head."""
-    masks = [0] * len(task.names)
+    masks = no_masks(len(task.names))
     orderings: Orderings = Closure()
     if task.temporal:
         orderings = TemporalNetwork.start(tuple(tick for _, tick in task.timed))

@@ -4,6 +4,25 @@ from __future__ import annotations
 
 from tailor.executive.planning.ground.ground_action import GroundAction
 
+Masks = list[int] | dict[int, int]  # bit mask of nodes by literal; read only
+MAX_TABLE = 4096  # literals of a table that is copied whole
+
+
+class _Sparse(dict[int, int]):
+    """Masks by literal, 0 for those that are absent."""
+
+    def __missing__(self, literal: int) -> int:
+        return 0
+
+    def copy(self) -> _Sparse:
+        """Another one with the same masks."""
+        return _Sparse(self)
+
+
+def no_masks(literals: int) -> Masks:
+    """The masks of a plan without steps: a table, or a sparse one for large tasks."""
+    return [0] * literals if literals <= MAX_TABLE else _Sparse()
+
 
 class StepEffects:
     """The effects of a plan's steps; plans with the same steps share one.
@@ -13,7 +32,7 @@ class StepEffects:
 
     __slots__ = ("_masks", "base", "bits", "node")
 
-    def __init__(self, base: list[int], bits: dict[int, int] | None = None, node: int = 0) -> None:
+    def __init__(self, base: Masks, bits: dict[int, int] | None = None, node: int = 0) -> None:
         """A base table and, on top of it, the bits of one more step whose first node is `node`."""
         self.base = base
         self.bits = bits
@@ -24,7 +43,7 @@ class StepEffects:
         """The table with one more step."""
         return StepEffects(self.masks(), action.bits, node)
 
-    def masks(self) -> list[int]:
+    def masks(self) -> Masks:
         """Bit mask of the nodes that make each literal true, by literal; read only."""
         if self._masks is None:
             assert self.bits is not None

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
-from tailor.executive.planning.ground.grounding import MAX_VARIANTS
+from tailor.executive.planning.ground.instances import MAX_VARIANTS
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.lifted.lifter import Lifter, Names
 from tailor.executive.planning.pddl.language import Action, When

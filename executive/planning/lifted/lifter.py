@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tailor.executive.planning.ground.ground_formula import FormulaLimit, StaticWorld, bindings
+from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld, bindings
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, disjunction
@@ -15,7 +15,7 @@ Names = Mapping[str, str]  # a formula's variable -> the schema's variable, or a
 class Lifter:
     """Converts the formulas of one schema, or of the goal; collects the variables of "exists"."""
 
-    def __init__(self, world: StaticWorld, numbers: Iterator[int], limit: FormulaLimit) -> None:
+    def __init__(self, world: StaticWorld, numbers: Iterator[int], limit: GroundingLimit) -> None:
         """Starts without variables.
 
         Args:

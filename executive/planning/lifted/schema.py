@@ -10,7 +10,7 @@ import numpy as np
 
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
 from tailor.executive.planning.ground.ground_action import Span
-from tailor.executive.planning.ground.ground_formula import FormulaLimit, StaticWorld
+from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
 from tailor.executive.planning.lifted.lifter import Lifter
@@ -38,7 +38,7 @@ class Schema:
     duration_s: float  # shortest duration
 
 
-def schemata(world: StaticWorld, tick_s: float, limit: FormulaLimit) -> tuple[Schema, ...]:
+def schemata(world: StaticWorld, tick_s: float, limit: GroundingLimit) -> tuple[Schema, ...]:
     """The domain's schemata by name.
 
     Raises:

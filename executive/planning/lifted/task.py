@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
-from tailor.executive.planning.ground.ground_formula import FormulaLimit, StaticWorld
+from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
@@ -123,7 +123,7 @@ def lifted_task(
     Raises:
       TooMuchToGround: Universal quantifiers or durations exceed the limit of formulas.
     """
-    problem, limit = ground.problem, FormulaLimit(MAX_FORMULAS)
+    problem, limit = ground.problem, GroundingLimit(MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)

@@ -1,0 +1,134 @@
+"""One ground action: its conditions, durations, and effects without those that achieve nothing."""
+
+from __future__ import annotations
+
+from tailor.executive.planning.ground.durations import duration_range, ticks_of
+from tailor.executive.planning.ground.ground_action import (
+    INSTANT,
+    MOMENTS,
+    GroundAction,
+    GroundEffect,
+    Span,
+    external_conditions,
+)
+from tailor.executive.planning.ground.ground_formula import (
+    Binding,
+    FactTable,
+    GroundCondition,
+    StaticWorld,
+    TooMuchToGround,
+    bindings,
+    contradictory,
+    ground,
+    negation,
+)
+from tailor.executive.planning.pddl.language import Action, Condition, When
+from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
+
+MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
+
+
+def instance(
+    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable, tick_s: float
+) -> GroundAction | None:
+    """The ground action of a complete binding; None if it is never applicable or achieves nothing."""
+    bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
+    conditions = _conditions(schema.conditions, binding, world, facts)
+    if bounds is None or conditions is None:
+        return None
+    effects = _useful(conditions, _effects(schema, binding, world, facts))
+    if not effects:
+        return None
+    bits: dict[int, int] = {}
+    for effect in effects:
+        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
+    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
+    return GroundAction(
+        number,
+        name,
+        conditions,
+        external_conditions(conditions, effects),
+        effects,
+        bits,
+        *ticks_of(bounds, tick_s),
+        bounds[0],
+        not any(effect.conditions for effect in effects),
+    )
+
+
+def _span(when: When, temporal: bool) -> Span:
+    return MOMENTS[when] if temporal else INSTANT
+
+
+def _conditions(
+    conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
+) -> tuple[tuple[GroundCondition, Span], ...] | None:
+    """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
+    grounded: list[tuple[GroundCondition, Span]] = []
+    for condition in conditions:
+        result = ground(condition.formula, binding, world, facts)
+        if result == FALSE:
+            return None
+        for part in conjuncts(result):
+            grounded.append((part, _span(condition.when, world.temporal)))
+    spans = {span for _, span in grounded}
+    if any(contradictory(part for part, own in grounded if own == span) for span in spans):
+        return None
+    return tuple(grounded)
+
+
+def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTable) -> list[GroundEffect]:
+    effects: dict[GroundEffect, None] = {}
+    for effect in schema.effects:
+        moment = _span(effect.when, world.temporal)[0]
+        facts.limit.depth += bool(effect.variables)
+        for inner in bindings(effect.variables, binding, world):
+            conditions = _conditions(effect.condition, inner, world, facts)
+            if conditions is not None:
+                literal = ground(effect.atom, inner, world, facts, effect.positive)
+                assert isinstance(literal, int)  # the predicate of an effect is not static
+                effects.setdefault(GroundEffect(literal, moment, conditions))
+        facts.limit.depth -= bool(effect.variables)
+    return list(effects)
+
+
+def _useful(
+    conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
+) -> tuple[GroundEffect, ...]:
+    """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
+
+    An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
+    same action adds at that moment neither achieves nor threatens: add effects win.
+    """
+    required = {(part, span[1]) for part, span in conditions}
+    at: dict[tuple[int, int], list[GroundEffect]] = {}
+    for effect in effects:
+        at.setdefault((effect.literal, effect.moment), []).append(effect)
+    kept: list[GroundEffect] = []
+    for effect in effects:
+        if (effect.literal, effect.moment) not in required:
+            additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+            kept += _unless_added(effect, additions)
+    return tuple(kept)
+
+
+def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
+    """An effect under conditions that exclude the add effects of its moment; empty if one of these always happens.
+
+    An add effect with conditions at several moments fails if those of one moment fail: each gives one variant.
+    """
+    variants = [effect.conditions]
+    for other in additions:
+        spans: dict[Span, list[GroundCondition]] = {}
+        for condition, span in other.conditions:
+            spans.setdefault(span, []).append(condition)
+        failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
+        variants = [
+            (*variant, *((part, span) for part in conjuncts(fails)))
+            for variant in variants
+            for fails, span in failures
+            if fails != FALSE
+        ]
+        if len(variants) > MAX_VARIANTS:
+            raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
+    return [effect._replace(conditions=variant) for variant in variants] if additions else [effect]

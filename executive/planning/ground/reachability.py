@@ -1,0 +1,117 @@
+"""Relaxed reachability over typed objects and static facts, without enumerating all bindings of an action.
+
+Semi-naive: each fact that is reached joins with those reached before it, so every binding is met when the last of its
+facts arrives. Delete effects are ignored. Source: Helmert, Artificial Intelligence 173 (2009), section 6.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
+from tailor.executive.planning.ground.join_plans import FactIndex, JoinPlan, join_plan
+from tailor.executive.planning.ground.rules import Rule, rules_of
+
+Arguments = tuple[str, ...]
+JOINS_PER_STEP = 4  # candidates of a join per step of the limit: a formula takes about four times as long
+CHECK_EVERY = 256  # candidates of a join per unit of budget: about a tenth of a millisecond
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """The arguments of the reachable actions by name, in grounding order, and all reached fluent facts."""
+
+    arguments: dict[str, list[Arguments]]
+    facts: frozenset[Fact]
+
+
+class Reachability:
+    """The fixpoint of one world and initial state."""
+
+    def __init__(self, world: StaticWorld, initial: Iterable[Fact], limit: GroundingLimit) -> None:
+        """Prepares the rules; `initial` are the fluent facts that hold at first or at a known time."""
+        self._world = world
+        self._limit = limit
+        self._joins = 0
+        self._index = FactIndex(world)
+        self._arguments: dict[str, dict[Arguments, None]] = {action.name: {} for action in world.domain.actions}
+        self._known = dict.fromkeys(initial)
+        self._pending = deque(self._known)
+        self._static_rules: list[tuple[Rule, JoinPlan]] = []
+        self._triggers: dict[str, list[tuple[Rule, JoinPlan]]] = {}
+        for rule in (rule for action in world.domain.actions for rule in rules_of(action, world)):
+            self._add(rule)
+        self._index.insert_all(world.facts)
+
+    def _add(self, rule: Rule) -> None:
+        fluent = [atom for atom in rule.body if atom.predicate not in self._world.static]
+        if not fluent:
+            self._static_rules.append((rule, join_plan(rule, None, self._index, self._world)))
+        for atom in fluent:
+            entry = (rule, join_plan(rule, atom, self._index, self._world))
+            self._triggers.setdefault(atom.predicate, []).append(entry)
+
+    def run(self) -> Iterator[Reached | None]:
+        """Yields None every CHECK_EVERY candidates and after every fact, and the result at the end.
+
+        Raises:
+          TooMuchToGround: The limit is reached.
+        """
+        for rule, plan in self._static_rules:
+            yield from self._fire(rule, plan, ())
+        while self._pending:
+            fact = self._pending.popleft()
+            self._index.insert(fact)
+            for rule, plan in self._triggers.get(fact[0], ()):
+                yield from self._fire(rule, plan, fact)
+            yield None
+        self._limit.depth = 0
+        yield self._result()
+
+    def _fire(self, rule: Rule, plan: JoinPlan, fact: Fact) -> Iterator[None]:
+        """Enters all bindings of a rule that use a fact."""
+        self._limit.subject = f"'{rule.action}'"
+        binding: list[str] = [""] * len(rule.variables)
+        if not plan.trigger.bind(fact, binding):
+            return
+        arguments = self._arguments[rule.action]
+        self._limit.depth = 0 if rule.is_action else 1  # the others are quantified effects, most of them
+        for found in self._joined(plan, 0, binding):
+            if found is None:
+                yield None
+                continue
+            if rule.is_action:
+                if found in arguments:
+                    continue
+                arguments[found] = None
+            for predicate, terms in plan.heads:
+                reached = (predicate, *[found[t] if isinstance(t, int) else t for t in terms])
+                if reached not in self._known:
+                    self._known[reached] = None
+                    self._pending.append(reached)
+
+    def _joined(self, plan: JoinPlan, depth: int, binding: list[str]) -> Iterator[Arguments | None]:
+        """All extensions of a binding by the facts of the plan's further steps; None every CHECK_EVERY candidates."""
+        if depth == len(plan.steps):
+            yield tuple(binding)
+            return
+        step = plan.steps[depth]
+        for fact in step.candidates(binding):
+            self._joins += 1
+            if self._joins % JOINS_PER_STEP == 0:
+                self._limit.spend()
+            if self._joins % CHECK_EVERY == 0:
+                yield None
+            if step.bind(fact, binding):
+                yield from self._joined(plan, depth + 1, binding)
+
+    def _result(self) -> Reached:
+        rank = {name: n for n, name in enumerate(self._world.objects["object"])}
+        ordered = {
+            action: sorted(own, key=lambda arguments: [rank[name] for name in arguments])
+            for action, own in self._arguments.items()
+        }
+        return Reached(ordered, frozenset(self._known))
