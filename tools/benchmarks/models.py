@@ -60,7 +60,7 @@ def _times(predict: Predict, card: Card, quick: bool) -> list[str]:
     return cells
 
 
-def _examples(count: int) -> tuple[NDArray[np.float32], Array, NDArray[np.intp]]:
+def examples(count: int) -> tuple[NDArray[np.float32], Array, NDArray[np.intp]]:
     """Features, seconds and episode numbers of a synthetic task: waves and a fold, which need many leaves."""
     rng = np.random.default_rng(0)
     features = rng.uniform([0, 0, 0, 0, -3], [0.6, 0.6, 6, 3, 3], (count, 5)).astype(np.float32)
@@ -71,7 +71,7 @@ def _examples(count: int) -> tuple[NDArray[np.float32], Array, NDArray[np.intp]]
 
 def _runtime_alone(make: Callable[[], Any]) -> tuple[Predict, int]:
     """Call of a learner's graph without the checks of `tailor.models.runtime`, and its number of leaves."""
-    features, seconds, groups = _examples(20_000)
+    features, seconds, groups = examples(20_000)
     learner = make().fit(features, seconds, groups=groups)
     session = open_session(export_duration(learner, projective, {}).SerializeToString())
     leaves = sum(tree.leaves for tree in learner.trees_)
@@ -80,7 +80,7 @@ def _runtime_alone(make: Callable[[], Any]) -> tuple[Predict, int]:
 
 def _fit_seconds() -> float:
     """CPU seconds of the fit of one tree."""
-    features, seconds, groups = _examples(EPISODES * TICKS)
+    features, seconds, groups = examples(EPISODES * TICKS)
     started = time.process_time()
     learners.make_learner("duration", "linear", 1).fit(features, seconds, groups=groups)
     return time.process_time() - started

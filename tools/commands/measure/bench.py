@@ -24,14 +24,19 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
-SOAK = "soak"
-SOAK_TEXT = "whole systems under one random fault a minute: invariants, memory; only if named"
+SOAK, GROWTH = "soak", "growth"
+ON_REQUEST = {
+    SOAK: "whole systems under one random fault a minute: invariants, memory; only if named",
+    GROWTH: "curves: how costs grow with plans, free parameters, episodes, recordings, opponents; only if named",
+}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor bench`."""
-    rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, SOAK: SOAK_TEXT}.items())
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but soak). {rows}")
+    rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, **ON_REQUEST}.items())
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but the last two). {rows}"
+    )
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
     parser.add_argument("--scale", action="store_true", help="planning: CPU time as the number of steps grows")
     parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")
@@ -40,7 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--every", type=at_least(10, "--every"), default=60, metavar="S", help="soak: time between faults (default 60)"
     )
     parser.add_argument("--only", metavar="TEXT", default="", help="soak: only faults whose name contains this")
-    parser.add_argument("--output", type=Path, default=Path("out/soak.json"), help="soak: file (default %(default)s)")
+    parser.add_argument(
+        "--output", type=Path, metavar="FILE", help="soak, growth: file (default out/soak.json, out/growth.json)"
+    )
     parser.add_argument("--json", action="store_true", help="soak: print the results as JSON")
 
 
@@ -50,9 +57,10 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
       UsageError: An unknown name.
     """
-    unknown = sorted(set(arguments.names) - BENCHMARKS.keys() - {SOAK})
+    known = (*BENCHMARKS, *ON_REQUEST)
+    unknown = sorted(set(arguments.names) - set(known))
     if unknown:
-        raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join((*BENCHMARKS, SOAK))}")
+        raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join(known)}")
     console, code = table_console(), 0
     for name in arguments.names or BENCHMARKS:
         if not arguments.json:
@@ -68,9 +76,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
     chosen = "planning_scale" if name == "planning" and arguments.scale else name
-    module = importlib.import_module(f"tailor.tools.benchmarks.{chosen}")
+    module = importlib.import_module(f"tailor.tools.benchmarks.{'growth.growth' if name == GROWTH else chosen}")
+    output = arguments.output or Path(f"out/{name}.json")
+    if name == GROWTH:
+        module.run(console, arguments.quick, output)
+        return True
     if name == SOAK:
-        options = (arguments.minutes, arguments.seed, arguments.every, arguments.only, arguments.output, arguments.json)
+        options = (arguments.minutes, arguments.seed, arguments.every, arguments.only, output, arguments.json)
         return bool(module.run(console, module.Options(*options)))
     module.run(console, arguments.quick)
     return True

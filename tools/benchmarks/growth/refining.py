@@ -1,0 +1,35 @@
+"""Growth of refinement: gap to the best known choice against the number of free parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tailor.executive.interfaces.models import Models
+from tailor.models.runtime import load_robot
+from tailor.tools.benchmarks.growth.curve import Curve
+from tailor.tools.benchmarks.refine_cases import LEGS, cases
+from tailor.tools.benchmarks.refine_runners import ours
+from tailor.tools.learning.fresh_seeds import fresh_seed
+
+BUDGET_MS, LONG_MS = 60.0, 1500.0
+TASKS, QUICK_TASKS = 20, 4
+LEAST_PCT = 0.01  # gaps are drawn on a logarithmic axis
+
+
+def curves(quick: bool) -> Iterator[Curve]:
+    """Mean gap of the executive's solver over fresh tasks, after as much CPU time as a tick grants."""
+    models = Models(*load_robot("agilo"))
+    tasks = cases(models, QUICK_TASKS if quick else TASKS, fresh_seed("soccer").seed)
+    points = []
+    for name, legs in LEGS.items():
+        gaps = []
+        for seed, task in enumerate(tasks[name]):
+            short, long = (ours("chain")(task.objective(models), task.starts, seed, ms)[-1][1] for ms in LIMITS)
+            gaps.append(100.0 * (short / min(short, long) - 1.0))
+        points.append((2.0 * (legs - 1), max(LEAST_PCT, float(np.mean(gaps)))))
+    yield Curve(f"gap after {BUDGET_MS:.0f} ms of refinement", "free parameters", "mean gap, %", points, 1.0)
+
+
+LIMITS = (BUDGET_MS, LONG_MS)
