@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+    Array: TypeAlias = NDArray[np.float64]
+else:
+    Array = Any  # the planner needs facts alone: it starts without numpy
 Columns = tuple[Array, ...]  # one array per parameter or argument; they broadcast to one shape
 Spans = Callable[[Columns, Columns], tuple[Columns, Columns]]  # lower and upper ends to lower and upper ends
 Fact = tuple[str, ...]  # a ground atom: ("robot", "pos1")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
@@ -17,12 +15,13 @@ from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimate
 from tailor.executive.planning.ground_plans.threats import refine_threat
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.structures.random_source import RandomSource
 
 
 class GroundSpace:
     """See `PlanSpace`."""
 
-    def __init__(self, task: GroundTask, world: StaticWorld, settings: Settings, rng: np.random.Generator) -> None:
+    def __init__(self, task: GroundTask, world: StaticWorld, settings: Settings, rng: RandomSource) -> None:
         self._task = task
         self._world = world
         names = rankings_for(settings, task.problem.metric)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
@@ -20,12 +18,13 @@ from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.structures.random_source import RandomSource
 
 
 class LiftedSpace:
     """See `PlanSpace`."""
 
-    def __init__(self, task: LiftedTask, settings: Settings, rng: np.random.Generator) -> None:
+    def __init__(self, task: LiftedTask, settings: Settings, rng: RandomSource) -> None:
         measures = LiftedMeasures(task)
         self._task = task
         self._ranking = Ranking(rankings_for(settings, task.ground.problem.metric), measures, settings.weight)

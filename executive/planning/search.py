@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.deepening import Deepening
@@ -15,14 +13,13 @@ from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
 from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, static_world
 from tailor.executive.planning.ground_space import GroundSpace
-from tailor.executive.planning.lifted.task import lifted_task
-from tailor.executive.planning.lifted_space import LiftedSpace
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plan_space import PlanSpace
 from tailor.executive.planning.plans.plan import Result
 from tailor.executive.planning.portfolio import Engine, Portfolio
 from tailor.executive.planning.settings import DEFAULT, Settings
+from tailor.executive.planning.structures.random_source import RandomSource
 
 
 class GroundCache:
@@ -77,7 +74,7 @@ class Search:
 
     def _run(self) -> Iterator[Result | None]:
         settings = self._settings
-        rng = np.random.default_rng(settings.seed)
+        rng = RandomSource(settings.seed)
         try:
             yield from self._ground()
             grounded = self._cache.last
@@ -90,7 +87,7 @@ class Search:
         except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), *self.counts)
 
-    def _make_engine(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
+    def _make_engine(self, task: GroundTask, grounded: GroundActions, rng: RandomSource) -> Engine:
         """The engine of the settings."""
         settings = self._settings
         if settings.engine == "pocl":
@@ -101,12 +98,15 @@ class Search:
         partial = self._partial_order(task, grounded, rng)
         return Portfolio(partial, forward, forward.expected_steps) if forward.applies else partial
 
-    def _partial_order(self, task: GroundTask, grounded: GroundActions, rng: np.random.Generator) -> Engine:
+    def _partial_order(self, task: GroundTask, grounded: GroundActions, rng: RandomSource) -> Engine:
         settings = self._settings
         space: PlanSpace[Any]
         if settings.ground:
             space = GroundSpace(task, grounded.world, settings, rng)
         else:
+            from tailor.executive.planning.lifted.task import lifted_task
+            from tailor.executive.planning.lifted_space import LiftedSpace
+
             order = rng if settings.random_open_conditions else None
             space = LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)
         return BestFirst[Any](space, settings) if settings.search == "A" else Deepening[Any](space, settings)

@@ -7,11 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-import numpy as np
-
 from tailor.executive.planning.flaws.flaw_orders import Criterion
 from tailor.executive.planning.ground.additive_heuristic import Value
 from tailor.executive.planning.structures.linked_list import cells_of
+from tailor.executive.planning.structures.random_source import RandomSource
 from tailor.executive.planning.structures.refinable import Refinable
 
 P = TypeVar("P", bound=Refinable)
@@ -78,9 +77,7 @@ class _PreparedCriterion(Generic[P, C, T]):
 class FlawSelection(Generic[P, C, T]):
     """One flaw order, prepared for the plans of one search."""
 
-    def __init__(
-        self, criteria: tuple[Criterion, ...], measures: FlawMeasures[P, C, T], rng: np.random.Generator
-    ) -> None:
+    def __init__(self, criteria: tuple[Criterion, ...], measures: FlawMeasures[P, C, T], rng: RandomSource) -> None:
         self._measures = measures
         self._rng = rng
         self._criteria = tuple(self._prepared(criterion) for criterion in criteria)
@@ -167,7 +164,7 @@ class FlawSelection(Generic[P, C, T]):
         keys: dict[str, Callable[[P, T], float]] = {
             "LR": count,
             "MR": lambda plan, threat: -count(plan, threat),
-            "R": lambda plan, threat: float(self._rng.random()),
+            "R": lambda plan, threat: float(self._rng.generator.random()),
         }
         return keys.get(criterion.order, lambda plan, threat: 0)
 
@@ -176,7 +173,7 @@ class FlawSelection(Generic[P, C, T]):
         keys: dict[str, Callable[[P, C], float]] = {
             "LIFO": lambda plan, condition: 0,
             "FIFO": lambda plan, condition: 0,
-            "R": lambda plan, condition: float(self._rng.random()),
+            "R": lambda plan, condition: float(self._rng.generator.random()),
             "LR": measures.count_condition_refinements,
             "MR": lambda plan, condition: -measures.count_condition_refinements(plan, condition),
             "NEW": lambda plan, condition: not measures.has_new_achiever(plan, condition),

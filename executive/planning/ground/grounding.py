@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import schema_bindings, without_static
 from tailor.executive.planning.ground.ground_action import GroundAction
@@ -27,6 +25,7 @@ from tailor.executive.planning.ground.instances import instance
 from tailor.executive.planning.ground.reachability import Reachability, Reached
 from tailor.executive.planning.pddl.language import Action
 from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.structures.random_source import RandomSource
 
 MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try some hundreds
 MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
@@ -98,10 +97,11 @@ def ground_actions(problem: Problem, world: StaticWorld, tick_s: float, steps: i
             yield from _reachable(world, tick_s, reached, limit)
 
 
-def shuffled(grounded: GroundActions, rng: np.random.Generator) -> GroundActions:
+def shuffled(grounded: GroundActions, rng: RandomSource) -> GroundActions:
     """The same ground actions with their conditions, hence the open conditions, in random order."""
     mixed = (
-        tuple(action.conditions[n] for n in rng.permutation(len(action.conditions))) for action in grounded.actions
+        tuple(action.conditions[n] for n in rng.generator.permutation(len(action.conditions)))
+        for action in grounded.actions
     )
     actions = (replace(action, conditions=own) for action, own in zip(grounded.actions, mixed, strict=True))
     return replace(grounded, actions=tuple(actions))

@@ -6,8 +6,6 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from tailor.executive.planning.ground.durations import duration_range, ticks_of
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
@@ -16,6 +14,7 @@ from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
 from tailor.executive.planning.lifted.lifter import Lifter
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
+from tailor.executive.planning.structures.random_source import RandomSource
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,9 +53,9 @@ def schemata(world: StaticWorld, tick_s: float, limit: GroundingLimit) -> tuple[
     return tuple(sorted(expanded, key=lambda schema: schema.name))
 
 
-def shuffled(schema: Schema, rng: np.random.Generator) -> Schema:
+def shuffled(schema: Schema, rng: RandomSource) -> Schema:
     """The same schema with its conditions, hence the open conditions, in random order."""
-    conditions = tuple(schema.conditions[n] for n in rng.permutation(len(schema.conditions)))
+    conditions = tuple(schema.conditions[n] for n in rng.generator.permutation(len(schema.conditions)))
     return replace(schema, conditions=conditions)
 
 

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-import numpy as np
-
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
@@ -19,6 +17,7 @@ from tailor.executive.planning.lifted.lifter import Lifter
 from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.structures.orderings import FIRST
+from tailor.executive.planning.structures.random_source import RandomSource
 
 LiteralPattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects (None: unbound)
 ArgumentKey = tuple[str, bool, int, str]  # predicate, positive, argument position (-1: none), object
@@ -116,7 +115,7 @@ def _matches(fact: Fact, terms: tuple[str | None, ...]) -> bool:
 
 
 def lifted_task(
-    ground: GroundTask, world: StaticWorld, cost: CostOf = "unit", rng: np.random.Generator | None = None
+    ground: GroundTask, world: StaticWorld, cost: CostOf = "unit", rng: RandomSource | None = None
 ) -> LiftedTask:
     """The lifted task of a problem; with `rng`, conditions are in random order.
 

@@ -24,20 +24,16 @@ from tailor.executive.planning import (
     Search,
     Settings,
     Unsupported,
-    completed,
     format_links,
     format_plan,
     parse_domain,
-    parse_plan,
     parse_problem,
     validate,
 )
 from tailor.executive.planning.flaws.flaw_orders import NAMED
 from tailor.executive.planning.flaws.ranking import NAMES
 from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
-from tailor.runtime.processes.planner_process import PlannerProcess
 from tailor.schemas.errors import UsageError
-from tailor.tools.figures.plan_drawing import to_dot, to_svg
 
 MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # about 1 GB of memory
@@ -244,6 +240,9 @@ def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Resul
 
 def _run_external(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
     """Runs the external planner; parses its plan and adds missing causal links."""
+    from tailor.executive.planning import completed, parse_plan
+    from tailor.runtime.processes.planner_process import PlannerProcess
+
     limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
     child = PlannerProcess(args.planner, *texts, limit_s)
     try:
@@ -271,8 +270,12 @@ def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: f
     elif args.links:
         print(format_links(plan), end="")
     elif args.dot:
+        from tailor.tools.figures.plan_drawing import to_dot
+
         print(to_dot(plan), end="")
     elif args.svg:
+        from tailor.tools.figures.plan_drawing import to_svg
+
         print(to_svg(plan), end="")
     else:
         print(format_plan(plan), end="")
