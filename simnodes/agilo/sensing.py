@@ -6,7 +6,7 @@ Every random number comes from the generator of `Sensors.reset`. Metres, radians
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,18 +51,11 @@ class Sensors:
 
     def reset(self, rng: np.random.Generator) -> None:
         """Start anew with this source of noise; errors start in their stationary distribution."""
-        self._rng = rng
-        self._normals: list[float] = []
+        self._normal = _normals(rng).__next__
         self._pose_error = [self._normal(), self._normal(), self._normal()]
         self._scale_v = 1.0 + self._s.encoder_scale * self._normal()
         self._scale_omega = 1.0 + self._s.encoder_scale * self._normal()
         self._odom = (0.0, 0.0, 0.0)
-
-    def _normal(self) -> float:
-        """A standard normal number; drawn in blocks, which is ten times faster."""
-        if not self._normals:
-            self._normals = self._rng.standard_normal(512).tolist()
-        return self._normals.pop()
 
     def odometry(self, stamp_ns: int, v: float, omega: float, period_s: float) -> Odometry:
         """Velocities (m/s, rad/s) as the encoders measure them, and their integral since the reset."""
@@ -127,3 +120,9 @@ class Sensors:
 
     def _lost(self, share: float) -> bool:
         return 0.5 * math.erfc(self._normal() / math.sqrt(2.0)) < share
+
+
+def _normals(rng: np.random.Generator) -> Iterator[float]:
+    """Standard normal numbers; drawn in blocks when they are needed, which is ten times faster."""
+    while True:
+        yield from reversed(rng.standard_normal(512).tolist())

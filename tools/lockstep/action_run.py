@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
 
-from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.action import Action, Control
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import at_rest, completed
 from tailor.executive.interfaces.values import Array, Belief
@@ -209,36 +210,77 @@ def run_action(
         start = start | sampler.context_start(action, row, rng)
     belief = sampler.belief(start, rng)
     body.reset(rng, start)
+    log = _Log(sampler, action, arguments, row.tolist(), start, traced)
     state: Any = None
-    failure, examples, work, trace = "", [], [], []
-    truth = body.ground_truth()
-    command = at_rest(domain.axes)
+    truth, command = body.ground_truth(), at_rest(domain.axes)
     for tick in range(int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        failure = failure or sampler.failure(action, start, truth)
-        examples.append([*sampler.arguments_now(action, belief, arguments), *row])
         control = action.controller(state, now_ns, belief, arguments)
         command = completed(domain, action, control.command, command)
-        if traced:
-            trace.append(Tick(now_ns * 1e-9, belief, truth, command))
+        log.note(now_ns, belief, truth, command)
         if control.outcome != "running":
             break
         state = control.state
         body.command(command)
         readings = body.advance(PERIOD_NS)
         belief = domain.update(belief, now_ns + PERIOD_NS, newest(readings), command)
-        failure = failure or judged(sampler, action, start, readings)
         before, truth = truth, body.ground_truth()
-        work.append(sampler.work_j(before, truth))
-    done = control.outcome == "done"
-    failure = failure or ("" if done else control.detail or "time limit")
-    ticks, work_j = np.array(examples), np.array([*work, 0.0])[: len(examples)]
-    return ActionRun(action_name, arguments, ticks, now_ns * 1e-9, not failure, failure, done, work_j, tuple(trace))
+        log.moved(readings, before, truth)
+    return log.run(control, now_ns)
+
+
+class _Log:
+    """What a run of an action yields, noted tick by tick.
+
+    Args:
+      sampler: Judges ground truth, and reads the belief.
+      action: The action that runs.
+      arguments: Its controller arguments, shape (k,).
+      row: Row of the object beside it; empty without one.
+      start: The body's start state.
+      traced: Also keep beliefs, ground truth and commands.
+    """
+
+    def __init__(
+        self,
+        sampler: TaskSampler,
+        action: Action,
+        arguments: Array,
+        row: list[float],
+        start: Mapping[str, float],
+        traced: bool,
+    ) -> None:
+        self._sampler, self._action, self._start = sampler, action, start
+        self._arguments, self._row, self._traced = arguments, row, traced
+        self._failure = ""
+        self._examples: list[list[float]] = []
+        self._work: list[float] = []
+        self._trace: list[Tick] = []
+
+    def note(self, now_ns: int, belief: Belief, truth: Message, command: tuple[float, ...]) -> None:
+        """A tick: belief, true state and command."""
+        self._failure = self._failure or self._sampler.failure(self._action, self._start, truth)
+        self._examples.append([*self._sampler.arguments_now(self._action, belief, self._arguments), *self._row])
+        if self._traced:
+            self._trace.append(Tick(now_ns * 1e-9, belief, truth, command))
+
+    def moved(self, readings: Sequence[Reading], before: Message, after: Message) -> None:
+        """The way from one tick to the next: readings, and the true states at its ends."""
+        self._failure = self._failure or judged(self._sampler, self._action, self._start, readings)
+        self._work.append(self._sampler.work_j(before, after))
+
+    def run(self, control: Control, now_ns: int) -> ActionRun:
+        """The whole run, which ended at `now_ns` with the controller's last answer."""
+        done = control.outcome == "done"
+        failure = self._failure or ("" if done else control.detail or "time limit")
+        ticks, work_j = np.array(self._examples), np.array([*self._work, 0.0])[: len(self._examples)]
+        run = self._arguments, ticks, now_ns * 1e-9, not failure, failure, done, work_j, tuple(self._trace)
+        return ActionRun(self._action.name, *run)
 
 
 def judged(sampler: TaskSampler, action: Action, start: Mapping[str, float], readings: Sequence[Reading]) -> str:
     """The first failure that the simulator's readings of one tick show, or ""."""
-    truths = (reading.message for reading in readings if TOPICS[reading.topic].source == "simulator")
+    truths = (reading.message for reading in readings if _source(reading.topic) == "simulator")
     return next((failure for truth in truths if (failure := sampler.failure(action, start, truth))), "")
 
 
@@ -248,5 +290,11 @@ def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
     return tuple(
         Sample(reading.topic, reading.message, reading.time_ns, 0)
         for reading in sorted(last.values(), key=lambda reading: reading.time_ns)
-        if TOPICS[reading.topic].source == "driver"
+        if _source(reading.topic) == "driver"
     )
+
+
+@lru_cache(maxsize=256)
+def _source(topic: str) -> str:
+    """Who publishes a topic; asked for every reading."""
+    return TOPICS[topic].source

@@ -191,7 +191,8 @@ def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> Soc
 def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
     b = belief
     ball = ball_track.see(b.ball, _sight(seen), b.pose.phi, b.time_ns)
-    return replace(belief, ball=ball)
+    counts = b.poses_seen, b.poses_doubted  # the constructor is five times faster than dataclasses.replace
+    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, *counts, b.odom, b.opponents)
 
 
 def _sight(seen: BallPercept) -> Seen:
