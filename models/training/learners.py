@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from sklearn.calibration import CalibratedClassifierCV
-from sklearn.ensemble import GradientBoostingClassifier, GradientBoostingRegressor
+from sklearn.ensemble import GradientBoostingClassifier, GradientBoostingRegressor, VotingClassifier
 from sklearn.neural_network import MLPClassifier
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
@@ -34,10 +34,17 @@ ROBUST: Mapping[str, Any] = {
     "ridge": 1e-2,
 }  # chosen on a quarter of the training dribbles
 NETWORK = {"hidden_layer_sizes": (40, 40), "alpha": 1e-2, "max_iter": 1500, "early_stopping": True}
+NETWORKS = {"hidden_layer_sizes": (64, 64), "alpha": 1e-3, "max_iter": 200, "early_stopping": True}
+MEMBERS = 3
 
 
 def _network(seed: int) -> Any:
     return make_pipeline(StandardScaler(), MLPClassifier(**NETWORK, random_state=seed))
+
+
+def _networks(seed: int) -> Any:
+    members = [(f"network-{k}", MLPClassifier(**NETWORKS, random_state=MEMBERS * seed + k)) for k in range(MEMBERS)]
+    return make_pipeline(StandardScaler(), VotingClassifier(members, voting="soft", flatten_transform=False))
 
 
 def _svm(seed: int) -> Any:
@@ -63,6 +70,7 @@ SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "tree": lambda seed: FailureTree(COST_RATIO, random_state=seed),
     "boosting": lambda seed: SklearnClassifier(GradientBoostingClassifier(**BOOSTING, random_state=seed), COST_RATIO),
     "network": lambda seed: SklearnClassifier(_network(seed), COST_RATIO),
+    "networks": lambda seed: SklearnClassifier(_networks(seed), COST_RATIO),
     "svm": lambda seed: SklearnClassifier(_svm(seed), COST_RATIO),
 }
 

@@ -7,6 +7,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import clone
+from threadpoolctl import threadpool_limits
 
 from tailor.models.failure.failure_model import FailureModel
 from tailor.models.trees.regression_model import RegressionModel
@@ -54,7 +55,8 @@ class SklearnClassifier(FailureModel):
 
     def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
         """Fit to features (n, f) and outcomes (n,); groups are ignored."""
-        self.inner_ = clone(self.inner).fit(X, y)
+        with threadpool_limits(1):  # networks: several threads may sum in another order
+            self.inner_ = clone(self.inner).fit(X, y)
         self.classes_ = self.inner_.classes_
         return self
 

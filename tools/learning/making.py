@@ -23,7 +23,12 @@ from tailor.tools.learning.active_gathering import Active, run_active
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.steps import Step, counted
-from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
+from tailor.tools.learning.training_request import (
+    DEFAULT_CLEARANCE_LEARNER,
+    DEFAULT_FAILURE_LEARNER,
+    DEFAULT_LEARNER,
+    TrainingRequest,
+)
 from tailor.tools.learning.training_run import train_models
 
 WHOLE = "whole"  # marker of a folder of models, written last
@@ -175,6 +180,7 @@ def _request(making: Making, zoo: Path, data: tuple[Path, ...], kinds: tuple[str
         "energy_features": options.energy_features or None,
         "learner": options.learner or DEFAULT_LEARNER,
         "failure_learner": options.failure_learner or DEFAULT_FAILURE_LEARNER,
+        "clearance_learner": options.clearance_learner or DEFAULT_CLEARANCE_LEARNER,
     }
     return TrainingRequest(
         making.robot, zoo, data=data, seed=options.seed, command=making.command, kinds=kinds, **named

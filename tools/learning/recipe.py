@@ -39,6 +39,7 @@ class Training:
     energy_features: str = ""
     learner: str = ""
     failure_learner: str = ""
+    clearance_learner: str = ""
     seed: int = 1
 
 

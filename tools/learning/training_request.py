@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 DEFAULT_LEARNER = "best"
 DEFAULT_FAILURE_LEARNER = "distilled-forest"
+# Beside objects success turns to failure within the belief's error: held-out log loss 0.151, of the forest 0.213
+DEFAULT_CLEARANCE_LEARNER = "networks"
 DEFAULT_FEATURES = "projective"
 ENERGY_FEATURES = {"joints": "joints-relative"}  # gravity's work depends on where the joints are, durations do not
 
@@ -31,6 +33,7 @@ class TrainingRequest:
       energy_features: Feature space of energies; None for the default of `features`.
       learner: Learner of durations and energies, see `learners.DURATION_LEARNERS`.
       failure_learner: Learner of successes, see `learners.SUCCESS_LEARNERS`.
+      clearance_learner: Learner of successes beside an object, of the same table.
       seed: Random seed of folds and resampled episodes.
       kinds: Kinds of models to train; empty: all that the episodes suffice for.
       command: Command that reproduces the models, for their cards; empty: those of gathering and training.
@@ -47,6 +50,7 @@ class TrainingRequest:
     seed: int = 1
     kinds: tuple[str, ...] = ()
     command: str = ""
+    clearance_learner: str = DEFAULT_CLEARANCE_LEARNER
 
 
 def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
@@ -130,7 +134,8 @@ def reproduction_command(
     train = f"tailor train {robot} {action}{data} --features {spaces['duration'].name}"
     if spaces["energy"] is not spaces["duration"]:
         train += f" --energy-features {spaces['energy'].name}"
-    train += f" --learner {request.learner} --failure-learner {request.failure_learner} --seed {request.seed}"
+    train += f" --learner {request.learner} --failure-learner {request.failure_learner}"
+    train += f" --clearance-learner {request.clearance_learner} --seed {request.seed}"
     gathering = [f"{_gather_command(robot, manifest)} --out {path.parent}" for path, manifest in manifests.items()]
     return " && ".join([*gathering, train])
 

@@ -65,11 +65,11 @@ def checked(request: TrainingRequest) -> TrainingRequest:
     for name in (request.features, request.energy_features):
         if name is not None:
             feature_space(name)
-    learner, failure_learner = request.learner, request.failure_learner
     return replace(
         request,
-        learner=learner_name("duration", learner),
-        failure_learner=learner_name("success", failure_learner),
+        learner=learner_name("duration", request.learner),
+        failure_learner=learner_name("success", request.failure_learner),
+        clearance_learner=learner_name("success", request.clearance_learner),
     )
 
 
@@ -112,7 +112,7 @@ def _context_jobs(
     if beside:
         data = merge(beside)
         train = partial(_beside_objects, data.manifest.get("objects", 1))
-        yield data, "clearance", request.failure_learner, train, context_space(data.names, folder)
+        yield data, "clearance", request.clearance_learner, train, context_space(data.names, folder)
 
 
 def _needs_success(robot: str, data: DataSet) -> bool:

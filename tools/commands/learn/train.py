@@ -13,7 +13,12 @@ from rich.table import Column, Table
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.target_zoo import target_zoo
-from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER, TrainingRequest
+from tailor.tools.learning.training_request import (
+    DEFAULT_CLEARANCE_LEARNER,
+    DEFAULT_FAILURE_LEARNER,
+    DEFAULT_LEARNER,
+    TrainingRequest,
+)
 from tailor.tools.learning.training_run import train_models
 
 # named here so that --help loads no learning library
@@ -51,6 +56,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"learner of durations and energies: {DURATION_LEARNERS} (default: %(default)s)")  # fmt: skip
     add("--failure-learner", default=DEFAULT_FAILURE_LEARNER,
         help=f"learner of successes: {SUCCESS_LEARNERS} (default: %(default)s)")  # fmt: skip
+    add("--clearance-learner", default=DEFAULT_CLEARANCE_LEARNER,
+        help="learner of successes beside an object, one of the same (default: %(default)s)")  # fmt: skip
     add("--seed", type=at_least(0, "--seed"), default=1, help="random seed (default: %(default)s)")
     add("--json", action="store_true", help="print the test results as JSON")
 
@@ -67,6 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.learner,
         arguments.failure_learner,
         arguments.seed,
+        clearance_learner=arguments.clearance_learner,
     )
     console = Console(stderr=True)
     with console.status("reading data sets") as status:

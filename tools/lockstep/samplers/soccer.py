@@ -33,7 +33,7 @@ BALL_SIGMA_M = 0.02
 BALL_GAP_M = (0.015, 0.07)
 ASIDE_SIGMA_M = 0.02
 SHORT_SHARE, SHORT_M = 0.5, (0.3, 2.5)  # of the runs among opponents
-LATEST = 0.8  # of a run: the last tick from which its rest is looked at
+LATEST = 1.0  # of a run: ticks up to its end, from which its rest is looked at
 DRIBBLE_X_M = 2.5  # dribbles are sampled in the area of the scenarios
 DRIBBLE_Y_M = 1.8
 DRIBBLE_M = (0.9, 2.9)  # from the ball to its target
@@ -138,9 +138,9 @@ class SoccerSampler:
         """
         pose = belief.pose
         x, y = pose.x, pose.y
-        if action.name == "dribbleBall" and belief.ball_xy is not None:
-            x = belief.ball_xy[0] - robot.IN_RAIL_M * math.cos(pose.phi)
-            y = belief.ball_xy[1] - robot.IN_RAIL_M * math.sin(pose.phi)
+        if action.name == "dribbleBall" and (ball := belief.ball_xy) is not None:
+            x = ball[0] - robot.IN_RAIL_M * math.cos(pose.phi)
+            y = ball[1] - robot.IN_RAIL_M * math.sin(pose.phi)
         return [x, y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
 
     def work_j(self, before: Message, after: Message) -> float:
