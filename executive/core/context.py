@@ -88,6 +88,8 @@ def make_context(
     Raises:
       UsageError: A PDDL error, with line and column.
     """
+    for name in planning.__all__:
+        getattr(planning, name)  # loads its module: a tick has no time for that
     pddl_domain = planning.parse_domain(domain.pddl, f"domain {domain.name}")
     problem = planning.parse_problem(scenario.problem, pddl_domain, f"scenario {scenario.name}")
     return Context(domain, scenario, models, pddl_domain, problem, settings, sender, stamp_offset_ns)

@@ -16,7 +16,7 @@ from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.assertion.subgoal_comparison import has_limit, with_any_risk
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
-from tailor.executive.refinement.instantiation import Pattern
+from tailor.executive.refinement.instantiation import MAX_ACTIONS, Pattern
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.refinement import Refinement
@@ -110,12 +110,13 @@ class Deliberation:
         self._instantiate(result.plan)
 
     def _instantiate(self, plan: planning.Plan) -> None:
-        self._pattern = Pattern(plan, self._context.domain, self._context.scenario)
+        settings = self._context.settings.refinement
+        length = max(MAX_ACTIONS, settings.horizon)
+        self._pattern = Pattern(plan, self._context.domain, self._context.scenario, length)
         sequence = self._pattern.sequence(self._belief)
         if isinstance(sequence, Failure):
             self._fail(Cause(Reason.NOT_INSTANTIABLE, sequence.reason))
             return
-        settings = self._context.settings.refinement
         self._assertion = Assertion(sequence, self._context.models, settings, self._rng)
         self.stage = "asserting"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.context import Context
@@ -10,7 +11,7 @@ from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
-from tailor.executive.core.plan_reuse import Improvement, reusable
+from tailor.executive.core.plan_reuse import Preparation, reuse
 from tailor.executive.core.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
@@ -54,7 +55,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     if decision is not None:
         state = _adopted(context, state, decision, deliberation.stage == "decided")
     if deliberation.stage == "decided":
-        state = _improved_plan(context, state, budget)
+        state = _prepared(context, state, budget)
         deliberation.certify(budget)  # what is left of the budget
     return state
 
@@ -76,10 +77,10 @@ def _with_deliberation(context: Context, state: State) -> State:
 def _source(context: Context, state: State, problem: planning.Problem, number: int) -> PlanSource:
     """The last plan if it can be reused, else the external planner unless it failed, else the built-in search."""
     task = state.task
-    improvement = state.improvement if task.running is None else None
-    reused = reusable(context, problem, task.plan, task.done, improvement)
+    preparation = state.preparation if task.running is None else None
+    reused = reuse(context, problem, task.plan, task.done, preparation) if task.plan is not None else None
     external = bool(context.settings.external.command) and not task.external_failed
-    request = request_for(context, problem, number, state.now_ns) if external and reused is None else None
+    request = partial(request_for, context, problem, number, state.now_ns) if external else None
     return PlanSource(context, problem, state.ground, reused, request)
 
 
@@ -153,21 +154,21 @@ def _bindings_violated(state: State) -> bool:
     return decision.watch.bindings_violated(state.belief)
 
 
-def _improved_plan(context: Context, state: State, budget: Budget) -> State:
-    """While an action runs and nothing is to be decided: search for a better plan after this action."""
+def _prepared(context: Context, state: State, budget: Budget) -> State:
+    """While an action runs and nothing is to be decided: prepare the plan after the action, search a better one."""
     task, running = state.task, state.task.running
-    if running is None or running.asserted or task.plan is None or not context.settings.improve_plans:
+    if running is None or running.asserted or task.plan is None:
         return state
     action = next((step.action for step in task.plan.steps if step.id == running.step), None)
     if action is None:
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
-    improvement = state.improvement
-    if improvement is None or not improvement.follows(task.plan, running.step, facts):
+    preparation = state.preparation
+    if preparation is None or not preparation.follows(task.plan, running.step, facts):
         expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)
-        if improvement is None or not improvement.serves(task.plan, running.step, expected):
-            left = {step.id for step in task.plan.steps} - task.done - {running.step}
-            improvement = Improvement(context, task.plan, running.step, left, expected, task.goal, state.ground)
-        improvement.note(facts)
-    improvement.advance(budget)
-    return replace(state, improvement=improvement)
+        if preparation is None or not preparation.serves(task.plan, running.step, expected):
+            place = (task.plan, running.step, task.done)
+            preparation = Preparation(context, *place, expected, task.goal, state.ground)
+        preparation.note(facts)
+    preparation.advance(budget)
+    return replace(state, preparation=preparation)

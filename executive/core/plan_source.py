@@ -5,6 +5,7 @@ Every plan is validated before use. The built-in search takes over when the exte
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,6 +17,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 GRACE_S = 2.0  # beyond the planner's own limit; after that the process that runs it must be gone
+REUSE_FREE_PORTIONS = 256  # plans of some twenty steps
 
 Way = Literal["searched", "suffix", "improved", "external"]
 
@@ -49,8 +51,8 @@ class PlanSource:
         context: Context,
         problem: planning.Problem,
         ground: planning.GroundCache,
-        reused: PlanFound | None = None,
-        request: PlanRequest | None = None,
+        reuse: planning.Work[PlanFound | None] | None = None,
+        make_request: Callable[[], PlanRequest] | None = None,
     ) -> None:
         """Prepare the search; all work is done in `advance`.
 
@@ -58,18 +60,22 @@ class PlanSource:
           context: Domain and settings.
           problem: Problem to solve.
           ground: Grounding of earlier searches; reused while the objects stay the same.
-          reused: A plan that is known to be sound from the problem's initial state; then nothing is searched.
-          request: Request to the external planner, published by the caller; None: built-in search only.
+          reuse: Work whose result is a plan that is sound from the problem's initial state, or None. Nothing is
+            searched or requested unless it ends without a plan.
+          make_request: Makes the request to the external planner, published by the caller; None: built-in search only.
         """
-        self.request = request  # until it is answered
+        self.request: PlanRequest | None = None  # until it is answered
+        self._make_request = make_request
         self._answer: PlanAnswer | None = None
         self._limit_s = context.settings.external.limit_s + GRACE_S
         self._domain = context.pddl_domain
         self._problem = problem
-        self._reused = reused
-        self._search: planning.Search | None = None
-        if reused is None:
-            self._search = planning.Search(context.pddl_domain, problem, context.settings.planner, ground)
+        self._search = planning.Search(context.pddl_domain, problem, context.settings.planner, ground)
+        self._work = (
+            planning.PacedWork(reuse, REUSE_FREE_PORTIONS) if reuse is not None else None
+        )  # reuse, validation or completion
+        if reuse is None:
+            self._request()
 
     def receive(self, answer: PlanAnswer) -> None:
         """Keep the first answer to the pending request; ignore answers to other requests."""
@@ -87,8 +93,24 @@ class PlanSource:
         Returns:
           The result; None if there is none yet. After a failed external planner another result follows.
         """
-        if self._search is None:
-            return self._reused
+        while True:
+            if self._work is None:
+                work = self._next(budget)
+                if work is None:
+                    return None
+                self._work = planning.PacedWork[PlanFound | None](work)
+            if not self._work.advance(budget):
+                return None
+            found, self._work = self._work.result, None
+            if found is not None:
+                return found
+            self._request()
+
+    def _request(self) -> None:
+        self.request = self._make_request() if self._make_request is not None else None
+
+    def _next(self, budget: Budget) -> planning.Work[PlanFound] | None:
+        """The work on what the external planner or the search has come to; None if there is nothing yet."""
         if self.request is not None:
             if self._answer is None or budget.spent():
                 return None
@@ -98,12 +120,14 @@ class PlanSource:
         return validated(result, "searched", self._domain, self._problem) if result is not None else None
 
 
-def validated(result: planning.Result, way: Way, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
+def validated(
+    result: planning.Result, way: Way, domain: planning.Domain, problem: planning.Problem
+) -> planning.Work[PlanFound]:
     """Result of the built-in search; without its plan if that is unsound from the problem's initial state."""
     refusal = _REFUSALS.get(result.status)
     cause = Cause(refusal, result.reason) if refusal is not None else None
     plan = result.plan
-    if plan is not None and (fault := planning.validate(plan, domain, problem)):
+    if plan is not None and (fault := (yield from planning.validation(plan, domain, planning.Objects(problem)))):
         plan, cause = None, Cause(Reason.PLAN_UNSOUND, fault)
     return PlanFound(result.status, way, plan, result.generated, result.visited, cause)
 
@@ -119,19 +143,23 @@ def current_problem(context: Context, facts: frozenset[Fact], goal: str) -> plan
     return problem.with_goal(goal) if goal else problem
 
 
-def _from_answer(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> PlanFound:
-    plan = _parsed(answer, domain, problem)
+def _from_answer(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Work[PlanFound]:
+    plan = yield from _parsed(answer, domain, problem)
     if isinstance(plan, planning.Plan):
         return PlanFound("solved", "external", plan, 0, 0)
     return PlanFound("failed", "external", None, 0, 0, plan)
 
 
-def _parsed(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Plan | Cause:
+def _parsed(
+    answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem
+) -> planning.Work[planning.Plan | Cause]:
     """The plan of an answer, or the cause for which there is none."""
     if answer.outcome != "answered":
         return Cause(Reason.PLANNER_FAILED, f"{answer.outcome}: {answer.reason}")
     try:
-        plan = planning.completed(planning.parse_plan(answer.output), domain, problem)
+        parsed = planning.parse_plan(answer.output)
     except planning.PlanTextError as error:
         return Cause(Reason.PLAN_UNREADABLE, f"{answer.reason}; {error}")
+    yield
+    plan = yield from planning.completion(parsed, domain, problem)
     return plan if isinstance(plan, planning.Plan) else Cause(Reason.PLAN_UNSOUND, plan)

@@ -22,6 +22,7 @@ class Published:
     """State of publication before this tick's deliberation."""
 
     deliberation: Deliberation | None
+    request: m.PlanRequest | None
     plan_results: int  # of that deliberation
     plan: planning.Plan | None
     running: Running | None
@@ -35,6 +36,7 @@ def snapshot(state: State) -> Published:
     deliberation = state.deliberation
     return Published(
         deliberation,
+        deliberation.source.request if deliberation is not None else None,
         len(deliberation.plan_results) if deliberation is not None else 0,
         state.task.plan,
         state.task.running,
@@ -55,7 +57,7 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
         fresh = deliberation is not published.deliberation
         results = deliberation.plan_results[0 if fresh else published.plan_results :]
         outputs.extend(Output("plan", _plan(context, state, result)) for result in results)
-        if fresh and deliberation.source.request is not None:
+        if deliberation.source.request not in (None, published.request):
             outputs.append(Output("plan_request", deliberation.source.request))
         if _searched(deliberation) != published.searched or fresh:
             outputs.extend(_refinement(context, state, deliberation))
@@ -90,7 +92,7 @@ def _plan(context: Context, state: State, result: PlanFound) -> m.PlanReport:
         stamp_ns=context.stamp(state.now_ns),
         status=result.status,
         way=result.way,
-        plan=planning.format_links(result.plan) if result.plan is not None else "",
+        plan=planning.format_excerpt(result.plan) if result.plan is not None else "",
         generated=result.generated,
         visited=result.visited,
         reason=reason,

@@ -10,7 +10,7 @@ from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.freshness import Stream
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.plan_reuse import Improvement
+from tailor.executive.core.plan_reuse import Preparation
 from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.values import Belief, Fact
@@ -76,7 +76,7 @@ class Task:
 class State:
     """The executive between two ticks.
 
-    A step consumes it: `deliberation` and `improvement` are resumed in place, and the cache `ground` grows. Each state
+    A step consumes it: `deliberation` and `preparation` are resumed in place, and the cache `ground` grows. Each state
     is used for one step only.
     """
 
@@ -94,7 +94,7 @@ class State:
     task: Task = field(default_factory=Task)
     coasted: int = 0  # ticks since the last action ended
     deliberation: Deliberation | None = None
-    improvement: Improvement | None = None
+    preparation: Preparation | None = None
     ground: GroundCache = field(default_factory=GroundCache)
     deliberations: int = 0  # number of started ones; seeds their random generators
 

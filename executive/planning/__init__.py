@@ -14,17 +14,26 @@ if TYPE_CHECKING:
     from tailor.executive.planning.pddl.problem_reader import parse_problem
     from tailor.executive.planning.pddl.problem_text import format_problem
     from tailor.executive.planning.plans.action_effects import apply_action
-    from tailor.executive.planning.plans.completion import completed
+    from tailor.executive.planning.plans.completion import completed, completion
     from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
-    from tailor.executive.planning.plans.suffix import relink, suffix
-    from tailor.executive.planning.plans.validator import validate
+    from tailor.executive.planning.plans.portions import PacedWork, Work
+    from tailor.executive.planning.plans.state import Objects
+    from tailor.executive.planning.plans.suffix import relink, shortest_suffix, suffix
+    from tailor.executive.planning.plans.validator import validate, validation
     from tailor.executive.planning.plans.vhpop_reader import PlanTextError, parse_plan
-    from tailor.executive.planning.plans.vhpop_text import format_links, format_plan
+    from tailor.executive.planning.plans.vhpop_text import (
+        EXCERPT_STEPS,
+        format_excerpt,
+        format_links,
+        format_plan,
+        number_of_steps,
+    )
     from tailor.executive.planning.search import GroundCache, Search
     from tailor.executive.planning.settings import DEFAULT, MATCHING, EngineName, FlawOrder, Settings
 
 __all__ = [
     "DEFAULT",
+    "EXCERPT_STEPS",
     "GOAL",
     "MATCHING",
     "Domain",
@@ -33,6 +42,8 @@ __all__ = [
     "GroundCache",
     "Link",
     "Literal",
+    "Objects",
+    "PacedWork",
     "PddlError",
     "Plan",
     "PlanTextError",
@@ -42,26 +53,35 @@ __all__ = [
     "Settings",
     "Step",
     "Unsupported",
+    "Work",
     "apply_action",
     "completed",
+    "completion",
+    "format_excerpt",
     "format_links",
     "format_plan",
     "format_problem",
+    "number_of_steps",
     "parse_domain",
     "parse_plan",
     "parse_problem",
     "relink",
+    "shortest_suffix",
     "suffix",
     "validate",
+    "validation",
 ]
 
 _MODULES = {
     "apply_action": "plans.action_effects",
     "completed": "plans.completion",
+    "completion": "plans.completion",
     "DEFAULT": "settings",
     "Domain": "pddl.language",
     "EngineName": "settings",
+    "EXCERPT_STEPS": "plans.vhpop_text",
     "FlawOrder": "settings",
+    "format_excerpt": "plans.vhpop_text",
     "format_links": "plans.vhpop_text",
     "format_plan": "plans.vhpop_text",
     "format_problem": "pddl.problem_text",
@@ -70,6 +90,9 @@ _MODULES = {
     "Link": "plans.plan",
     "Literal": "pddl.language",
     "MATCHING": "settings",
+    "number_of_steps": "plans.vhpop_text",
+    "Objects": "plans.state",
+    "PacedWork": "plans.portions",
     "parse_domain": "pddl.domain_reader",
     "parse_plan": "plans.vhpop_reader",
     "parse_problem": "pddl.problem_reader",
@@ -81,10 +104,13 @@ _MODULES = {
     "Result": "plans.plan",
     "Search": "search",
     "Settings": "settings",
+    "shortest_suffix": "plans.suffix",
     "Step": "plans.plan",
     "suffix": "plans.suffix",
     "Unsupported": "pddl.errors",
     "validate": "plans.validator",
+    "validation": "plans.validator",
+    "Work": "plans.portions",
 }
 
 
@@ -92,4 +118,5 @@ def __getattr__(name: str) -> Any:
     """Loads a name of the public interface."""
     if name not in _MODULES:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    return getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)
+    value = globals()[name] = getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)
+    return value

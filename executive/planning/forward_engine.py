@@ -67,7 +67,9 @@ class ForwardEngine:
                 reason = f"no plan of up to {self._step_limit} steps"
                 yield Result("limit", None, reason, search.generated, search.visited)
                 return
-            plan = finished_plan(kept, deordered(kept, strips), self._task, self._world)
+            order = deordered(kept, strips)
+            yield None
+            plan = finished_plan(kept, order, self._task, self._world)
             yield Result("solved", plan, "", search.generated, search.visited)
             return
         if search.limit_reached:

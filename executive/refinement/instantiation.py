@@ -16,6 +16,8 @@ from tailor.executive.planning import Plan
 from tailor.executive.refinement.label_facts import LabelFacts, facts_by_label
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure, InstantiatedAction, Variable
 
+MAX_ACTIONS = 50  # more than any horizon in use: keeps a tick and its messages bounded
+
 
 def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) -> ActionSequence | Failure:
     """Map a plan to executable actions with bound and free parameters (Algorithm 2).
@@ -27,7 +29,7 @@ def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) 
       scenario: Places and settings of the task.
 
     Returns:
-      The actions in plan order, or the reason why the predicates over a label exclude each other.
+      The next actions, in plan order, or the reason why the predicates over a label exclude each other.
     """
     return Pattern(plan, domain, scenario).sequence(belief)
 
@@ -35,19 +37,23 @@ def instantiate(plan: Plan, domain: Domain, belief: Belief, scenario: Scenario) 
 class Pattern:
     """Part of a plan's instantiation that does not depend on the belief: the variable of each parameter.
 
+    Of a long plan only the next actions are instantiated, with the predicates of all its links: after every action the
+    rest of the plan is instantiated anew.
+
     Args:
       plan: Steps by start time, with causal links, those from the initial state included.
       domain: Action library and ranges of the predicates.
       scenario: Places and settings of the task.
+      length: Maximum number of actions.
     """
 
-    def __init__(self, plan: Plan, domain: Domain, scenario: Scenario) -> None:
+    def __init__(self, plan: Plan, domain: Domain, scenario: Scenario, length: int = MAX_ACTIONS) -> None:
         self._domain, self._scenario = domain, scenario
         self._label_facts = facts_by_label(plan)
         self._slots: list[_Slot] = []  # one for each label and quantity (lines 8 to 11), by variable id
         self._uses: list[_Use] = []  # in plan order
         ids: dict[tuple[str, str], int] = {}
-        self.actions = tuple(self._action(step.action, step.id, ids) for step in plan.steps)
+        self.actions = tuple(self._action(step.action, step.id, ids) for step in plan.steps[:length])
 
     def sequence(self, belief: Belief) -> ActionSequence | Failure:
         """The plan's actions with variables from the belief, or the reason why the predicates exclude each other."""

@@ -21,13 +21,15 @@ class LabelFacts:
 def facts_by_label(plan: Plan) -> dict[str, LabelFacts]:
     """Predicates by label, e.g. pos2 -> [0ball, 2atball]; negative links restrict no value and are ignored."""
     by_label: dict[str, LabelFacts] = {}
+    listed: set[tuple[str, bool, Fact]] = set()
     for link in plan.links:
         if not link.literal.positive:
             continue
         fact = link.literal.fact
         for label in dict.fromkeys(fact[1:]):
             entry = by_label.setdefault(label, LabelFacts())
-            facts = entry.holds if link.producer == INITIAL else entry.achieved
-            if fact not in facts:
-                facts.append(fact)
+            initial = link.producer == INITIAL
+            if (label, initial, fact) not in listed:
+                listed.add((label, initial, fact))
+                (entry.holds if initial else entry.achieved).append(fact)
     return by_label

@@ -26,13 +26,20 @@ ENGINES: tuple[EngineName, ...] = ("pocl", "forward", "auto")
 
 def problem_text(cups: int) -> str:
     """PDDL of the problem; its domain is that of the kitchen problems."""
-    own = [f"cup{n}" for n in range(cups)]
-    initial, goal = (" ".join(f"(cup-at {name} {table})" for name in own) for table in ("table1", "table2"))
-    objects = f"dock table1 table2 - place {' '.join(own)} - cup"
+    objects = f"dock table1 table2 - place {' '.join(f'cup{n}' for n in range(cups))} - cup"
     return (
         f"(define (problem cups-{cups}) (:domain kitchen) (:objects {objects}) "
-        f"(:init (robot-at dock) (hand-empty) {initial}) (:goal (and {goal})))"
+        f"(:init (robot-at dock) (hand-empty) {_cups_at('table1', cups)}) (:goal {goal_text(cups)}))"
     )
+
+
+def goal_text(cups: int) -> str:
+    """PDDL of its goal."""
+    return f"(and {_cups_at('table2', cups)})"
+
+
+def _cups_at(table: str, cups: int) -> str:
+    return " ".join(f"(cup-at cup{n} {table})" for n in range(cups))
 
 
 def rows(quick: bool) -> list[dict[str, Any]]:

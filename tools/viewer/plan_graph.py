@@ -44,7 +44,10 @@ def _node(consumer: int) -> int | str:
 
 
 def _reduced(orderings: tuple[tuple[int, int], ...]) -> list[tuple[int, int]]:
-    """Transitive reduction of the orderings: i < j without a k between them."""
-    declared = set(orderings)
-    implied = {(i, j) for i, k in declared for k2, j in declared if k == k2}
-    return sorted(declared - implied)
+    """Transitive reduction of closed orderings: i < j without a k between them."""
+    after: dict[int, set[int]] = {}
+    for i, j in orderings:
+        after.setdefault(i, set()).add(j)
+    return sorted(
+        (i, j) for i, later in after.items() for j in later - set().union(*(after.get(k, set()) for k in later))
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask
+from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask, bits_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,15 +30,19 @@ class Deordered:
     before: tuple[int, ...]
 
     def pairs(self) -> Iterator[tuple[int, int]]:
-        """The pairs (i, j) of positions with i before j."""
+        """The pairs (i, j) of positions with i before j, sorted."""
+        after: list[list[int]] = [[] for _ in self.before]
         for j, mask in enumerate(self.before):
-            yield from ((i, j) for i in range(j) if mask >> i & 1)
+            for i in bits_of(mask):
+                after[i].append(j)
+        for i, later in enumerate(after):
+            yield from ((i, j) for j in later)
 
     def levels(self) -> list[int]:
         """The longest chain that ends in each position, counted from 1."""
         levels: list[int] = []
         for mask in self.before:
-            levels.append(1 + max((level for i, level in enumerate(levels) if mask >> i & 1), default=0))
+            levels.append(1 + max([levels[i] for i in bits_of(mask)], default=0))
         return levels
 
 

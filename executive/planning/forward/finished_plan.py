@@ -22,7 +22,7 @@ def finished_plan(sequence: Sequence[StripsAction], order: Deordered, task: Grou
     supports = _supports(order, len(names), task)
     links = [link for step in steps for link in _links(step.id, _static_of(step.action, world), supports)]
     links += _links(GOAL, static_literals(task.problem.goal, {}, world), supports)
-    orderings = tuple((i + 1, j + 1) for i, j in sorted(order.pairs()))
+    orderings = tuple((i + 1, j + 1) for i, j in order.pairs())
     return Plan(task.problem.name, task.problem.initial, tuple(steps), tuple(links), orderings, tick_s=task.tick_s)
 
 

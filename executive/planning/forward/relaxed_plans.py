@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tailor.executive.planning.forward.strips_task import StripsTask, literals_of
+from tailor.executive.planning.forward.strips_task import StripsTask, bits_of
 
 UNREACHED = 1 << 60  # cost of a literal
 
@@ -56,7 +56,7 @@ class RelaxedPlans:
         actions, users = self._strips.actions, self._users
         costs, supporters = [UNREACHED] * self._strips.literals, [-1] * self._strips.literals
         missing, sums = self._counts.copy(), [1] * len(actions)
-        buckets: list[list[int]] = [literals_of(state)]
+        buckets: list[list[int]] = [bits_of(state)]
         for literal in buckets[0]:
             costs[literal] = 0
         unmet = self._strips.goal_mask & ~state

@@ -67,9 +67,9 @@ def mask_of(literals: Iterable[int]) -> int:
     return mask
 
 
-def literals_of(mask: int) -> list[int]:
-    """The literals of a mask."""
-    return [literal for literal, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
+def bits_of(mask: int) -> list[int]:
+    """The literals, or positions, of a mask."""
+    return [number for number, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
 
 
 def _strips_action(action: GroundAction, literals: int) -> StripsAction:

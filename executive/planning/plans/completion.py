@@ -6,10 +6,12 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.links import links_of
+from tailor.executive.planning.plans.links import linking
 from tailor.executive.planning.plans.plan import Link, Plan
-from tailor.executive.planning.plans.suffix import relink
-from tailor.executive.planning.plans.validator import validate
+from tailor.executive.planning.plans.portions import Work, completed_work
+from tailor.executive.planning.plans.state import Objects
+from tailor.executive.planning.plans.suffix import relinking
+from tailor.executive.planning.plans.validator import validation
 
 
 def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
@@ -26,16 +28,23 @@ def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
     Returns:
       The completed plan, or the reason why it is unsound.
     """
+    return completed_work(completion(plan, domain, problem))
+
+
+def completion(plan: Plan, domain: Domain, problem: Problem) -> Work[Plan | str]:
+    """`completed` in portions."""
+    objects = Objects(problem)
     located = replace(plan, problem=problem.name, initial=problem.initial)
-    fault = validate(located, domain, problem)
+    fault = yield from validation(located, domain, objects)
     if fault:
         return fault
     supported = {(link.literal, link.consumer) for link in plan.links}
-    absent = [link for link in links_of(located, domain, problem) if (link.literal, link.consumer) not in supported]
+    needed = yield from linking(located, domain, objects)
+    absent = [link for link in needed if (link.literal, link.consumer) not in supported]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
     if any(link.literal.fact[0] in changing for link in absent):
-        return relink(located, domain, problem) or "its steps cannot be linked"
+        return (yield from relinking(located, domain, objects)) or "its steps cannot be linked"
     return replace(located, links=_by_consumer(located, (*absent, *plan.links)))
 
 

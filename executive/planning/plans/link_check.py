@@ -5,19 +5,23 @@ from __future__ import annotations
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, Effect
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan
+from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.plans.state import Binding, Objects, fact_of
 
+LINKS = 16  # as much work as the simulation of one step
 Bound = dict[int, tuple[Action, Binding]]  # schema and binding of each step
 
 
-def faulty_link(plan: Plan, objects: Objects, bound: Bound) -> str:
-    """The first unsound causal link with the reason; "" if all are sound."""
+def faulty_link(plan: Plan, objects: Objects, bound: Bound) -> Work[str]:
+    """The first unsound causal link with the reason; "" if all are sound. One portion for `LINKS` of them."""
     starts = {0: -1.0, **{step.id: step.start for step in plan.steps}}
     deadlines = {step.id: step.start + (step.duration if plan.durative else 0) for step in plan.steps}
-    for link in plan.links:
+    for count, link in enumerate(plan.links, 1):
         fault = _fault(link, starts, deadlines, objects, bound)
         if fault:
             return f"the causal link {link.producer} -> {link.literal} {fault}"
+        if not count % LINKS:
+            yield
     return ""
 
 
@@ -29,7 +33,7 @@ def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], ob
         return "runs backward in time"
     if link.producer == 0:
         timed = any(t.literal == link.literal for t in objects.problem.timed)
-        holds = (link.literal.fact in objects.problem.initial) == link.literal.positive
+        holds = (link.literal.fact in objects.initial) == link.literal.positive
         return "" if timed or holds else "supports nothing: the literal does not hold initially"
     action, binding = bound[link.producer]
     effects = [effect for effect in action.effects if effect.positive == link.literal.positive]

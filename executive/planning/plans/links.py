@@ -2,64 +2,83 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tailor.executive.planning.pddl.language import Domain, Literal
-from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
-from tailor.executive.planning.plans.simulation import Requirement, simulate
+from tailor.executive.planning.plans.portions import Work
+from tailor.executive.planning.plans.simulation import Event, Requirement, simulate
 from tailor.executive.planning.plans.state import Objects, fact_of
 
+LINKS = 4  # as much work as the simulation of one step
 
-def links_of(plan: Plan, domain: Domain, problem: Problem) -> Iterator[Link]:
+
+def linking(plan: Plan, domain: Domain, objects: Objects) -> Work[tuple[Link, ...]]:
     """Links from the last achiever of each condition's literals; of a consumer the last condition first.
 
     Links for conditional effects follow: for the conditions of those that achieve a link's literal, and for the
     negated conditions of those that would undo it.
     """
-    events = simulate(plan, domain, problem)
+    events = yield from simulate(plan, domain, objects)
+    listed: dict[Link, None] = {}
+    for count, link in enumerate(_links(events), 1):
+        listed[link] = None
+        if not count % LINKS:
+            yield
+    return tuple(link for link in listed if link.producer != link.consumer)
+
+
+def _links(events: Sequence[Event]) -> Iterator[Link]:
+    """The links, some repeatedly, and some of a step to itself."""
+    preventing = [position for position, event in enumerate(events) if event.prevented]
     pending: deque[tuple[Requirement, int]] = deque()
     for position, event in enumerate(events):
         pending.extend((requirement, position) for requirement in reversed(event.requirements))
     seen: set[tuple[Link, int]] = set()
-    listed: set[Link] = set()
     while pending:
         requirement, position = pending.popleft()
-        source, consumer = requirement.source, events[position].step
-        link = Link(source.step, requirement.literal, consumer)
+        source = requirement.source
+        link = Link(source.step, requirement.literal, events[position].step)
         if (link, position) in seen:
             continue
         seen.add((link, position))
-        if link not in listed and source.step != consumer:
-            listed.add(link)
-            yield link
+        yield link
         pending.extend((condition, source.position) for condition in source.conditions)
         opposite = Literal(requirement.literal.fact, not requirement.literal.positive)
-        for between in range(source.position + 1, position):
+        for between in preventing[bisect_right(preventing, source.position) : bisect_left(preventing, position)]:
             pending.extend((kept, between) for kept in events[between].prevented.get(opposite, ()))
 
 
 # --- orderings -----------------------------------------------------------------------------------
-def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, problem: Problem) -> Iterator[tuple[int, int]]:
-    """Pairs that the links require: producer before consumer, and steps that undo a link outside of it."""
+def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, objects: Objects) -> Work[list[tuple[int, int]]]:
+    """Pairs that the links require: producer before consumer, and steps that undo a link outside of it.
+
+    One portion for each step of a durative plan, else for each link.
+    """
+    pairs: list[tuple[int, int]] = []
     if plan.durative:  # the schedule as it stands
-        yield from ((a.id, b.id) for a in plan.steps for b in plan.steps if a.start + a.duration <= b.start)
-        return
+        for a in plan.steps:
+            pairs += [(a.id, b.id) for b in plan.steps if a.start + a.duration <= b.start]
+            yield
+        return pairs
     order = {0: -1, GOAL: len(plan.steps), **{step.id: n for n, step in enumerate(plan.steps)}}
     undoing: dict[Literal, list[int]] = {}
-    objects = Objects(problem)
     for step in plan.steps:
         for literal in _undone(step, domain, objects):
             undoing.setdefault(literal, []).append(step.id)
+    yield
     for link in links:
         if link.producer != 0 and link.consumer != GOAL:
-            yield link.producer, link.consumer
+            pairs.append((link.producer, link.consumer))
         for other in undoing.get(link.literal, ()):
             if order[other] < order[link.producer]:
-                yield other, link.producer
+                pairs.append((other, link.producer))
             elif order[other] > order[link.consumer]:
-                yield link.consumer, other
+                pairs.append((link.consumer, other))
+        yield
+    return pairs
 
 
 def _undone(step: Step, domain: Domain, objects: Objects) -> frozenset[Literal]:

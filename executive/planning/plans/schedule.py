@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+
+from tailor.executive.planning.plans.portions import Work
 
 Pair = tuple[int, int]
 
@@ -24,6 +26,38 @@ def levels(steps: Iterable[int], orderings: Iterable[Pair]) -> dict[int, float] 
             if not missing[j]:
                 ready.append(j)
     return level if len(ready) == len(after) else None
+
+
+def scheduling(steps: Sequence[int], orderings: Iterable[Pair]) -> Work[tuple[dict[int, float], tuple[Pair, ...]]]:
+    """The levels of the steps and the transitive closure of their orderings, sorted.
+
+    Args:
+      steps: In an order that the orderings agree with.
+      orderings: Pairs of these steps.
+    """
+    position = {step: n for n, step in enumerate(steps)}
+    after = [0] * len(steps)  # bit masks of positions
+    for i, j in orderings:
+        after[position[i]] |= 1 << position[j]
+    level = [1.0] * len(steps)
+    for i in range(len(steps)):
+        for j in _bits(after[i]):
+            level[j] = max(level[j], level[i] + 1.0)
+        yield
+    for i in reversed(range(len(steps))):
+        for j in _bits(after[i]):
+            after[i] |= after[j]
+        yield
+    pairs: list[Pair] = []
+    for step in sorted(steps):
+        pairs += [(step, later) for later in sorted(steps[j] for j in _bits(after[position[step]]))]
+        yield
+    return {step: level[n] for step, n in position.items()}, tuple(pairs)
+
+
+def _bits(mask: int) -> Iterable[int]:
+    """The positions of the bits of a mask."""
+    return [n for n, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
 
 
 def closure(orderings: Iterable[Pair]) -> tuple[Pair, ...]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from tailor.executive.planning.pddl.language import Action, Domain, Effect, Formula, Literal, Not, When
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Plan
+from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.plans.state import Binding, Objects, State, fact_of, holds, support
 
 
@@ -81,11 +82,12 @@ class _Moment:
     timed: Literal | None = None
 
 
-def simulate(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
-    """The events of a plan, timed literals among them, and the goal."""
+def simulate(plan: Plan, domain: Domain, objects: Objects) -> Work[list[Event]]:
+    """The events of a plan, timed literals among them, and the goal; one portion for each event."""
+    problem = objects.problem
     schemata = {action.name: action for action in domain.actions}
     steps = {step.id: step for step in plan.steps}
-    world = _World(Objects(problem), frozenset(problem.initial))
+    world = _World(objects, objects.initial)
     began: dict[int, _World] = {}  # world just before each step
     events: list[Event] = []
     for position, moment in enumerate(_moments(plan, schemata, problem)):
@@ -105,6 +107,7 @@ def simulate(plan: Plan, domain: Domain, problem: Problem) -> list[Event]:
         if "over" in moment.moments:
             requirements += world.requirements(_formulas(action, ["over"]), binding)
         events.append(Event(step.id, requirements, prevented))
+        yield
     return [*events, Event(GOAL, world.requirements([problem.goal], {}), {})]
 
 

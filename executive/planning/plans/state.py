@@ -28,10 +28,14 @@ State = frozenset[Fact]
 
 @dataclass(frozen=True, slots=True)
 class Objects:
-    """The objects of a problem, by type."""
+    """The objects of a problem, by type, and its initial state."""
 
     problem: Problem
+    initial: State = field(init=False, compare=False, repr=False)
     found: dict[tuple[str, ...], dict[str, None]] = field(default_factory=dict, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "initial", frozenset(self.problem.initial))
 
     def of(self, variable: Typed) -> Collection[str]:
         """The objects of a variable's types, in the order of their declaration."""

@@ -7,10 +7,13 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.links import links_of, orderings_for
+from tailor.executive.planning.plans.links import linking, orderings_for
 from tailor.executive.planning.plans.plan import Plan, Step
-from tailor.executive.planning.plans.schedule import closure, levels
-from tailor.executive.planning.plans.validator import validate
+from tailor.executive.planning.plans.portions import Work, completed_work
+from tailor.executive.planning.plans.regression import Regression
+from tailor.executive.planning.plans.schedule import closure, scheduling
+from tailor.executive.planning.plans.state import Objects
+from tailor.executive.planning.plans.validator import validation
 
 
 def suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) -> Plan | None:
@@ -27,7 +30,38 @@ def suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) 
       that the links require; None if they do not reach the goal from there.
     """
     left = tuple(step for step in plan.steps if step.id not in done)
-    return relink(replace(plan, steps=_shifted(left, plan), links=(), bounds=(), bindings=()), domain, problem)
+    return completed_work(relinking(_with_steps(plan, left), domain, Objects(problem)))
+
+
+def shortest_suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) -> Work[Plan | None]:
+    """The shortest suffix of a plan that is sound now; steps whose effects hold already are left out.
+
+    Args:
+      plan: The last plan.
+      done: Ids of the executed steps.
+      domain: The problem's domain.
+      problem: Problem with the current facts as initial state, and the current goal.
+
+    Returns:
+      As `suffix`; None if not even all the remaining steps reach the goal.
+    """
+    objects = Objects(problem)
+    left = tuple(step for step in plan.steps if step.id not in done)
+    needs = Regression(domain, objects)
+    for first in range(len(left), -1, -1):
+        if first < len(left):
+            needs.add(left[first])
+            yield
+        if not needs.possible:
+            return None
+        if not needs.reached:
+            continue
+        bare = _located(_with_steps(plan, left[first:]), problem)
+        if not (yield from validation(bare, domain, objects)):
+            found = yield from _linked(bare, plan.orderings, domain, objects)
+            if found is not None:
+                return found
+    return None
 
 
 def relink(plan: Plan, domain: Domain, problem: Problem) -> Plan | None:
@@ -41,27 +75,44 @@ def relink(plan: Plan, domain: Domain, problem: Problem) -> Plan | None:
     Returns:
       The linked plan; None if it is unsound.
     """
-    bare = replace(plan, problem=problem.name, initial=problem.initial, links=())
-    if validate(bare, domain, problem):
+    return completed_work(relinking(plan, domain, Objects(problem)))
+
+
+def relinking(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | None]:
+    """`relink` in portions, with the objects and initial state of the problem."""
+    bare = _located(plan, objects.problem)
+    if (yield from validation(bare, domain, objects)):
         return None
-    links = tuple(links_of(bare, domain, problem))
-    kept = {step.id for step in plan.steps}
-    old = [(i, j) for i, j in plan.orderings if i in kept and j in kept]
-    orderings = closure([*old, *orderings_for(bare, links, domain, problem)])
+    return (yield from _linked(bare, plan.orderings, domain, objects))
+
+
+def _linked(bare: Plan, old: tuple[tuple[int, int], ...], domain: Domain, objects: Objects) -> Work[Plan | None]:
+    """A sound plan with links, the old orderings of its steps and the required ones; None if that is unsound."""
+    links = yield from linking(bare, domain, objects)
+    required = yield from orderings_for(bare, links, domain, objects)
+    kept = {step.id for step in bare.steps}
+    pairs = [*((i, j) for i, j in old if i in kept and j in kept), *required]
     steps = bare.steps
-    if not plan.durative:
-        starts = levels([step.id for step in steps], orderings)
-        assert starts is not None  # all pairs agree with the order of the steps
+    if bare.durative:
+        orderings = closure(pairs)
+    else:  # all pairs agree with the order of the steps
+        starts, orderings = yield from scheduling([step.id for step in steps], pairs)
         steps = tuple(sorted((replace(s, start=starts[s.id]) for s in steps), key=lambda s: s.start))
     position = {step.id: n for n, step in enumerate(steps)}
     links = tuple(sorted(links, key=lambda link: position.get(link.consumer, len(steps))))
     linked = replace(bare, steps=steps, links=links, orderings=orderings)
-    return None if validate(linked, domain, problem) else linked
+    yield
+    return None if (yield from validation(linked, domain, objects)) else linked
 
 
-def _shifted(steps: tuple[Step, ...], plan: Plan) -> tuple[Step, ...]:
-    """A durative plan's remaining steps, shifted so that the first starts after one tick."""
-    if not plan.durative or not steps:
-        return steps
-    shift = steps[0].start - plan.tick_s
-    return tuple(replace(step, start=round(step.start - shift, 9)) for step in steps)
+def _located(plan: Plan, problem: Problem) -> Plan:
+    """The plan as one of that problem, without links."""
+    return replace(plan, problem=problem.name, initial=problem.initial, links=())
+
+
+def _with_steps(plan: Plan, steps: tuple[Step, ...]) -> Plan:
+    """The plan with those of its steps alone, without links; of a durative plan the first starts after one tick."""
+    if plan.durative and steps:
+        shift = steps[0].start - plan.tick_s
+        steps = tuple(replace(step, start=round(step.start - shift, 9)) for step in steps)
+    return replace(plan, steps=steps, links=(), bounds=(), bindings=())

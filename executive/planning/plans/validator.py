@@ -12,6 +12,7 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.durations import allowed_durations
 from tailor.executive.planning.plans.link_check import Bound, faulty_link
 from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.state import Binding, Objects, State, conditions_at, fact_of, holds
 
 SAME_TIME_S = 1e-6  # events closer than this happen together
@@ -47,15 +48,20 @@ def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
       "" if the plan is sound, else the first fault: an unknown action, a wrong duration, a condition that does not
       hold, two events that interfere, a goal that is not reached, or an unsound causal link.
     """
-    objects = Objects(problem)
+    return completed_work(validation(plan, domain, Objects(problem)))
+
+
+def validation(plan: Plan, domain: Domain, objects: Objects) -> Work[str]:
+    """`validate` in portions, with the objects and initial state of the problem."""
+    problem = objects.problem
     try:
         bound: Bound = {}
-        state = _simulate(plan, domain, objects, bound)
+        state = yield from _simulate(plan, domain, objects, bound)
         if not holds(problem.goal, {}, state, objects):
             return f"the goal {problem.goal_text} does not hold at the end"
     except _Unsound as reason:
         return str(reason)
-    return faulty_link(plan, objects, bound)
+    return (yield from faulty_link(plan, objects, bound))
 
 
 # --- the actions ---------------------------------------------------------------------------------
@@ -86,9 +92,12 @@ def _check_duration(step: Step, action: Action, binding: Binding, objects: Objec
 
 
 # --- the simulation ------------------------------------------------------------------------------
-def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> State:
-    """The state after the last event; fills `bound` step by step, as most suffixes of a plan fail at their first."""
-    state: State = frozenset(objects.problem.initial)
+def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Work[State]:
+    """The state after the last event; one portion for the events of one time.
+
+    Fills `bound` step by step, as most suffixes of a plan fail at their first.
+    """
+    state = objects.initial
     running: list[Step] = []
     began: dict[int, State] = {}  # state just before the start of each step
     for events in _happenings(plan, objects):
@@ -104,12 +113,17 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Sta
         running += [event.step for event in events if event.step and not event.ends and plan.durative]
         running = [step for step in running if not any(event.ends and event.step is step for event in events)]
         _check_invariants(running, state, objects, bound)
+        yield
     return state
 
 
 def _happenings(plan: Plan, objects: Objects) -> Iterator[list[_Event]]:
     """Events grouped by time; without durations every step is a group."""
     timed = objects.problem.timed
+    if not (timed or plan.durative):  # one after another: most suffixes of a plan fail at their first event
+        for step in sorted(plan.steps, key=lambda step: step.start):
+            yield [_Event(step.start, 1, f"step {step.id}", step, ends=True)]
+        return
     events = [_literal_event(t.time_s, t.literal.fact, t.literal.positive) for t in timed]
     for step in plan.steps:
         events.append(_Event(step.start, 1, f"step {step.id}", step, ends=not plan.durative))

@@ -24,6 +24,7 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
+SCALE = ("planning_scale", "execution.long_plans")
 SOAK, GROWTH = "soak", "growth"
 ON_REQUEST = {
     SOAK: "whole systems under one random fault a minute: invariants, memory; only if named",
@@ -38,7 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but the last two). {rows}"
     )
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
-    parser.add_argument("--scale", action="store_true", help="planning: CPU time as the number of steps grows")
+    parser.add_argument("--scale", action="store_true", help="planning: times of planning and of ticks as steps grow")
     parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")
     parser.add_argument("--seed", type=at_least(0, "--seed"), default=0, help="soak: random seed (default 0)")
     parser.add_argument(
@@ -75,8 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
-    chosen = "planning_scale" if name == "planning" and arguments.scale else name
-    module = importlib.import_module(f"tailor.tools.benchmarks.{'growth.growth' if name == GROWTH else chosen}")
+    if name == "planning" and arguments.scale:
+        for module_name in SCALE:
+            importlib.import_module(f"tailor.tools.benchmarks.{module_name}").run(console, arguments.quick)
+        return True
+    module = importlib.import_module(f"tailor.tools.benchmarks.{'growth.growth' if name == GROWTH else name}")
     output = arguments.output or Path(f"out/{name}.json")
     if name == GROWTH:
         module.run(console, arguments.quick, output)

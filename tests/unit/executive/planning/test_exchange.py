@@ -19,7 +19,9 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
-from tailor.executive.planning.plans.links import links_of
+from tailor.executive.planning.plans.links import linking
+from tailor.executive.planning.plans.portions import completed_work
+from tailor.executive.planning.plans.state import Objects
 from tailor.schemas.installed import domain_names
 from tests.support.planning_problems import DATA, OWN, own, printed, read, solve
 
@@ -92,7 +94,7 @@ def test_every_plan_that_the_original_printed_is_believed_keeps_its_links_and_ge
     linked = completed(plan, domain, problem)
     assert validate(linked, domain, problem) == ""
     assert set(plan.links) <= set(linked.links)
-    needed = links_of(replace(linked, links=()), domain, problem)
+    needed = completed_work(linking(replace(linked, links=()), domain, Objects(problem)))
     assert {(x.literal, x.consumer) for x in needed} <= {(x.literal, x.consumer) for x in linked.links}
 
 

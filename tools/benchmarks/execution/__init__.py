@@ -1,0 +1,1 @@
+"""Execution of long plans in lock-step: what a tick takes."""
