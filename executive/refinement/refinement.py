@@ -1,6 +1,7 @@
 """Subgoal refinement: values of the free parameters that minimise the predicted cost of the next actions (paper 6).
 
-Anytime and resumable: the first check yields the greedy answer, every further check may yield a better one.
+Anytime and resumable: the first check yields a greedy answer, every further check may yield a better one. The greedy
+choice is searched before any other, because others have to be better than it by more than the models may err.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.models import Models
-from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
-from tailor.executive.refinement.greedy import Greedy, greedy
+from tailor.executive.refinement.deviation import required_gain_s
+from tailor.executive.refinement.greedy import Greedy, GreedySearch, greedy
 from tailor.executive.refinement.objective.choice import Choice, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
@@ -66,8 +67,10 @@ class Refinement:
         terms = (sequence.within(settings.horizon), sequence.variables, models, settings)
         self._objective = SequenceObjective(*terms)
         self._reporting = SequenceObjective(*terms)  # its evaluations do not count as the search's
-        self._greedy: Greedy | None = None
-        self._greedy_s = np.inf
+        self._greedy: Greedy | None = None  # the first answer
+        self._greedy_search: GreedySearch | None = None
+        self._greedy_choice: Choice | None = None
+        self._required_s = settings.gain_min_s  # predicted gain from which another choice is taken
         self._solver: Solver | None = None
         self._choice: Choice | None = None
         self._certificate: Certificate | NoBound | None = None
@@ -80,7 +83,9 @@ class Refinement:
     @property
     def finished(self) -> bool:
         """Whether a larger budget would change nothing."""
-        return self._greedy is not None and (self._solver is None or self._solver.finished)
+        if self._solver is None:
+            return self._greedy is not None and not self._objective.ids
+        return self._solver.finished
 
     def advance(self, budget: Budget) -> None:
         """Resume the search until the budget is spent or the search is finished."""
@@ -88,11 +93,15 @@ class Refinement:
             if budget.spent():
                 return
             self._begin()
+        if self._solver is None and self._greedy_search is not None:
+            self._greedy_search.advance(budget)
+            if self._greedy_search.finished:
+                self._compare(self._greedy_search.values)
         if self._solver is not None:
             before = self._solver.value
             self._solver.advance(budget)
             if self._solver.best is not None and self._solver.value < before:
-                self._adopt(self._solver.best)
+                self._adopt(choice_of(self._reporting, self._solver.best))
 
     def certify(self, budget: Budget) -> None:
         """Prove the optimality gap of the best answer once the search is finished; it changes no answer."""
@@ -109,7 +118,9 @@ class Refinement:
         return Report(
             solver=type(self._solver).__name__ if self._solver else "",
             evaluations=self.evaluations,
-            checks=(self._greedy is not None) + (self._solver.checks if self._solver else 0),
+            checks=(self._greedy is not None)
+            + (self._greedy_search.checks if self._greedy_search else 0)
+            + (self._solver.checks if self._solver else 0),
             greedy_s=self._greedy_s,
             best_s=self._choice.total_s if self._choice else np.inf,
             trace=self._trace(),
@@ -124,7 +135,11 @@ class Refinement:
     @property
     def _greedy_evaluations(self) -> int:
         """Number of model inputs predicted for the greedy answer."""
-        return self._greedy.evaluations if self._greedy else 0
+        return sum(search.evaluations for search in (self._greedy, self._greedy_search) if search is not None)
+
+    @property
+    def _greedy_s(self) -> float:
+        return np.inf if self._greedy_choice is None else self._greedy_choice.total_s
 
     def _trace(self) -> tuple[tuple[int, float], ...]:
         """Improvements so far: the greedy answer, and all that are better."""
@@ -142,20 +157,35 @@ class Refinement:
         return gap if gap is not None and gap <= MAX_GAP_PCT else None
 
     def _begin(self) -> None:
-        """The first check: the greedy answer, and the solver that starts from it."""
+        """The first check: a greedy answer, and the search that starts from it."""
         self._greedy = greedy(self._sequence, self._models, self._settings, self._rng)
-        seed = self._objective.vector(self._greedy.values)
-        self._adopt(seed)
-        assert self._choice is not None
-        self._greedy_s = self._choice.total_s
-        if self._objective.ids:
-            starts = [self._greedy.values] if self._start is None else [self._greedy.values, self._start]
-            seeds = self._objective.vectors([*starts, *self._sequence.starts])
-            self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
-
-    def _adopt(self, candidate: Array) -> None:
-        """Make a candidate the answer, unless it is no better or its gain over greedy is too small."""
-        total = float(self._reporting(candidate[None])[0])
-        if self._choice is not None and total >= min(self._choice.total_s, self._greedy_s - self._settings.gain_min_s):
+        values = self._greedy.values
+        self._choice = self._greedy_choice = choice_of(self._reporting, self._objective.vector(values))
+        if not self._objective.ids:
             return
-        self._choice = choice_of(self._reporting, candidate)
+        if self._settings.gain_k_std > 0 and len(self._sequence.units()[: self._settings.horizon]) > 1:
+            terms = (self._sequence, self._models, self._settings, self._rng)
+            self._greedy_search = GreedySearch(*terms, start=values)
+        else:
+            self._begin_solver(values)
+
+    def _compare(self, values: Mapping[int, float]) -> None:
+        """Take the greedy choice, unless the first answer is better than it by enough, and search for better ones."""
+        first = self._choice
+        self._choice = self._greedy_choice = choice_of(self._reporting, self._objective.vector(values))
+        self._required_s = required_gain_s(self._greedy_choice, self._settings)
+        assert first is not None
+        self._adopt(first)
+        self._begin_solver(values)
+
+    def _begin_solver(self, values: Mapping[int, float]) -> None:
+        starts = [values] if self._start is None else [values, self._start]
+        seeds = self._objective.vectors([*starts, *self._sequence.starts])
+        self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
+
+    def _adopt(self, choice: Choice) -> None:
+        """Make a choice the answer, unless it is no better or its gain over greedy is too small."""
+        assert self._choice is not None
+        assert self._greedy_choice is not None
+        if choice.total_s < min(self._choice.total_s, self._greedy_s - self._required_s):
+            self._choice = choice

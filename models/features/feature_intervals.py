@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from tailor.models.features.intervals import ARGUMENT_ERROR, Span, direction, length, magnitude, unsigned
+from tailor.models.features.intervals import ARGUMENT_ERROR, Span, direction, length, magnitude, triangle, unsigned
 from tailor.models.features.lifted_intervals import joints_lifted
 from tailor.models.features.obstacle_intervals import one_obstacle
 from tailor.models.features.sight_intervals import Case, Spans, may_lie_in_half, sight, wrapped
@@ -45,6 +45,14 @@ def _projective_turn(columns: Spans) -> tuple[Case, ...]:
     return tuple(Case((*case.features, turn), case.possible) for case in _projective(columns))
 
 
+def _projective_periodic(columns: Spans) -> tuple[Case, ...]:
+    cases = []
+    for case in _projective(columns):
+        at = case.features[-1]
+        cases.append(Case((*case.features, magnitude(at), triangle(at)), case.possible))
+    return tuple(cases)
+
+
 def _joints(columns: Spans) -> tuple[Case, ...]:
     a, wa, b, wb, ag, wag, bg, wbg = columns
     da, db = ag - a, bg - b
@@ -74,6 +82,7 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "relative": _relative,
     "projective": _projective,
     "projective-turn": _projective_turn,
+    "projective-periodic": _projective_periodic,
     "one-obstacle": one_obstacle,
     "joints": _joints,
     "joints-relative": _joints_relative,

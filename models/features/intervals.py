@@ -86,3 +86,14 @@ def unsigned(angle: Span) -> Span:
     ahead = np.floor(wide.upper / TURN) >= np.ceil(wide.lower / TURN)
     behind = np.floor((wide.upper - np.pi) / TURN) >= np.ceil((wide.lower - np.pi) / TURN)
     return Span(np.where(ahead, 0.0, np.minimum(*ends)), np.where(behind, np.pi, np.maximum(*ends)))
+
+
+def triangle(angle: Span) -> Span:
+    """The triangle wave that follows the sine: from angles in [-pi, pi] to [-pi / 2, pi / 2]."""
+    wide = angle.wider(ANGLE_ERROR)
+    ends = [np.abs(end + np.pi / 2) - np.abs(end - np.pi / 2) - end for end in (wide.lower, wide.upper)]
+    lowest = (wide.lower <= -np.pi / 2) & (wide.upper >= -np.pi / 2)
+    highest = (wide.lower <= np.pi / 2) & (wide.upper >= np.pi / 2)
+    lower = np.where(lowest, -np.pi / 2, np.minimum(*ends))
+    upper = np.where(highest, np.pi / 2, np.maximum(*ends))
+    return Span(lower - 2 * ANGLE_ERROR, upper + 2 * ANGLE_ERROR)

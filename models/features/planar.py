@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tailor.models.features.features import (
     STEEP,
     FeatureSpace,
@@ -16,6 +18,8 @@ from tailor.models.features.features import (
 
 POSE = quantities("x:m y:m phi:rad v:m/s xg:m yg:m phig:rad vg:m/s")
 TOWARD = quantities("v:m/s v_g:m/s dist:m angle_to:rad angle_at:rad")
+PERIODIC = quantities("ahead_at:rad aside_at:rad")  # like the cosine and the sine of angle_at
+HALF_PI = np.pi / 2
 
 
 def _toward(rows: Rows, ops: Operations) -> tuple[Rows, Rows, Rows]:
@@ -59,8 +63,16 @@ def _projective_turn(rows: Rows, ops: Operations) -> Rows:
     return ops.stack(rows[[3, 7]], *_toward(rows, ops), turn)
 
 
+def _projective_periodic(rows: Rows, ops: Operations) -> Rows:
+    """The angle at the goal also as two triangle waves, which do not jump where it passes half a turn."""
+    dist, to, at = _toward(rows, ops)
+    aside = ops.absolute(at + HALF_PI) - ops.absolute(at - HALF_PI) - at
+    return ops.stack(rows[[3, 7]], dist, to, at, ops.absolute(at), aside)
+
+
 direct = FeatureSpace("direct", POSE, POSE, _direct)
 relative = FeatureSpace("relative", POSE, quantities("dx:m dy:m phi:rad v:m/s phig:rad vg:m/s"), _relative)
 projective = FeatureSpace("projective", POSE, TOWARD, _projective)
 projective_turn = FeatureSpace("projective-turn", POSE, (*TOWARD, Quantity("turn", "rad")), _projective_turn)
-SPACES = (direct, relative, projective, projective_turn)
+projective_periodic = FeatureSpace("projective-periodic", POSE, (*TOWARD, *PERIODIC), _projective_periodic)
+SPACES = (direct, relative, projective, projective_turn, projective_periodic)

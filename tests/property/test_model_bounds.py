@@ -26,7 +26,16 @@ LEARNED = [
     path for path in SHIPPED if "network" not in json.loads(card_path(path).read_text())["learner"].get("weights", {})
 ]
 spaces = st.sampled_from(
-    ["direct", "relative", "projective", "projective-turn", "joints", "joints-lifted", "one-obstacle"]
+    [
+        "direct",
+        "relative",
+        "projective",
+        "projective-turn",
+        "projective-periodic",
+        "joints",
+        "joints-lifted",
+        "one-obstacle",
+    ]
 )
 seeds = st.integers(0, 2**32 - 1)
 
@@ -70,7 +79,9 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
 
 @settings(max_examples=150, deadline=None)
 @given(
-    st.sampled_from(["relative", "projective", "projective-turn", "joints", "joints-lifted", "one-obstacle"]),
+    st.sampled_from(
+        ["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted", "one-obstacle"]
+    ),
     seeds,
     st.integers(1, 4),
 )
@@ -158,7 +169,7 @@ def test_bag_between_two_values_says_no_less_than_its_bound_which_is_tight_where
 
 
 @settings(max_examples=100, deadline=None)
-@given(st.sampled_from(["relative", "projective", "projective-turn", "joints"]), seeds)
+@given(st.sampled_from(["relative", "projective", "projective-turn", "projective-periodic", "joints"]), seeds)
 def test_bounds_within_a_part_are_those_of_the_whole_model_there(space, seed):
     rng = np.random.default_rng(seed)
     model = Trees.random(seed, space, 3)

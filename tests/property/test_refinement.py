@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.assertion.assertion import Assertion
+from tailor.executive.refinement.greedy import GreedySearch
+from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -39,12 +41,13 @@ def task(kind: str, seed: int) -> ActionSequence:
     return asserted
 
 
-def refinement(kind: str, seed: int, solver: str, horizon: int = 3) -> Refinement:
-    chosen = RefinementSettings(solver=solver, horizon=horizon, arrival_spread=SPREAD, batch=128)
+def refinement(kind: str, seed: int, solver: str, horizon: int = 3, gain_k_std: float = 0.0) -> Refinement:
+    chosen = RefinementSettings(solver=solver, horizon=horizon, arrival_spread=SPREAD, batch=128, gain_k_std=gain_k_std)
     return Refinement(task(kind, seed), MODELS, chosen, np.random.default_rng(seed))
 
 
 kinds = st.sampled_from(["waypoints", "approach", "subgoal"])
+prices = st.sampled_from([0.0, 0.5, 2.0])
 
 
 @settings(max_examples=25, deadline=None)
@@ -60,9 +63,9 @@ def test_more_budget_is_never_worse(kind, seed, solver):
 
 
 @settings(max_examples=25, deadline=None)
-@given(kinds, seeds, st.sampled_from(SOLVERS), st.lists(st.integers(1, 5), min_size=1, max_size=6))
-def test_slices_equal_one_run_with_the_same_checks(kind, seed, solver, slices):
-    whole, sliced = refinement(kind, seed, solver), refinement(kind, seed, solver)
+@given(kinds, seeds, st.sampled_from(SOLVERS), st.lists(st.integers(1, 5), min_size=1, max_size=6), prices)
+def test_slices_equal_one_run_with_the_same_checks(kind, seed, solver, slices, price):
+    whole, sliced = (refinement(kind, seed, solver, gain_k_std=price) for _ in range(2))
     whole.advance(CheckBudget(sum(slices)))
     for checks in slices:
         sliced.advance(CheckBudget(checks))
@@ -125,7 +128,7 @@ def test_start_is_never_lost():
     again = Refinement(
         task("waypoints", 4),
         MODELS,
-        RefinementSettings(horizon=3, arrival_spread=SPREAD),
+        RefinementSettings(horizon=3, arrival_spread=SPREAD, gain_k_std=0.0),
         np.random.default_rng(99),
         start=best.choice.values,
     )
@@ -135,7 +138,7 @@ def test_start_is_never_lost():
 
 def test_gain_that_is_too_small_leaves_the_greedy_choice():
     def searched(gain_min_s: float) -> Refinement:
-        chosen = RefinementSettings(horizon=3, gain_min_s=gain_min_s)
+        chosen = RefinementSettings(horizon=3, gain_min_s=gain_min_s, gain_k_std=0.0)
         search = Refinement(task("waypoints", 4), MODELS, chosen, np.random.default_rng(5))
         search.advance(CheckBudget(10_000))
         return search
@@ -145,6 +148,45 @@ def test_gain_that_is_too_small_leaves_the_greedy_choice():
     assert searched(gain_s * 0.9).choice == searched(0.0).choice
     greedy = searched(gain_s * 1.1)
     assert greedy.choice.total_s == greedy.report().greedy_s
+
+
+@settings(max_examples=15, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS))
+def test_a_kept_greedy_choice_begins_as_horizon_one_does(kind, seed, solver):
+    """So a run that does not deviate takes as long as a greedy one."""
+    kept = refinement(kind, seed, solver, gain_k_std=1e6)
+    kept.advance(CheckBudget(10_000))
+    alone = GreedySearch(task(kind, seed), MODELS, kept._settings, np.random.default_rng(1))
+    alone.advance(CheckBudget(10_000))
+    first = SequenceObjective(task(kind, seed).units()[0], task(kind, seed).variables, MODELS, kept._settings)
+    costs = first(first.vectors([kept.choice.values, alone.values]))
+    assert kept.report().best_s == kept.report().greedy_s
+    assert costs[0] == pytest.approx(costs[1], abs=0.02)
+
+
+@settings(max_examples=25, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS), prices)
+def test_another_choice_than_the_greedy_one_is_better_by_the_price(kind, seed, solver, price):
+    search = refinement(kind, seed, solver, gain_k_std=price)
+    search.advance(CheckBudget(10_000))
+    greedy, chosen = search._greedy_choice, search.choice
+    assert search.finished
+    deviation_s = np.sqrt(2 * np.sum(np.square(greedy.std_s)))
+    if greedy.valid and chosen != greedy:
+        assert greedy.total_s - chosen.total_s > price * deviation_s
+
+
+@settings(max_examples=15, deadline=None)
+@given(kinds, seeds, st.sampled_from(SOLVERS), prices)
+def test_once_the_greedy_choice_is_known_more_budget_is_never_worse(kind, seed, solver, price):
+    search = refinement(kind, seed, solver, gain_k_std=price)
+    while search._solver is None:
+        search.advance(CheckBudget(1))
+    totals = []
+    for _ in range(15):
+        totals.append(search.choice.total_s)
+        search.advance(CheckBudget(1))
+    assert all(later <= earlier for earlier, later in pairwise(totals))
 
 
 def test_sequence_without_free_parameters_is_finished_after_one_check():

@@ -15,6 +15,10 @@ from tailor.models.features.spaces import feature_space
 RANGES = {  # where the features of the spaces lie, for thresholds to fall within
     "projective": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],
     "projective-turn": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi), (0, np.pi)],
+    "projective-periodic": [
+        *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"
+        *[(0, np.pi), (-np.pi / 2, np.pi / 2)],
+    ],
     "relative": [(-6, 6), (-4, 4), (-np.pi, np.pi), (0, 0.75), (-np.pi, np.pi), (0, 0.75)],
     "one-obstacle": [
         *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"

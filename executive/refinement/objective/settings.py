@@ -10,7 +10,7 @@ from tailor.schemas.errors import UsageError
 
 COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "comparison_checks")
 NOT_NEGATIVE = (
-    "k_std", "risk_cost_s", "gain_min_s", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
+    "k_std", "risk_cost_s", "gain_min_s", "gain_k_std", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
     "certify_gap_pct",
 )  # fmt: skip
 PROBABILITIES = ("p_fail_max", "p_fail_assert", "p_fail_settle")
@@ -38,6 +38,7 @@ class RefinementSettings:
     p_fail_settle: float = 0.5  # if no start keeps p_fail_max, the least risk is accepted up to this
     risk_cost_s: float = 6.0  # seconds that a failure costs; on training seeds 3 hits more balls and 10 gains less
     gain_min_s: float = 0.0  # the greedy choice is kept for a smaller predicted gain
+    gain_k_std: float = 0.5  # and for one of so many standard deviations of the difference; 0: for none
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds for a joule (paper 8); needs "<action>/energy" models
     batch: int = 256  # model inputs in one check of the chain solver, about 0.1 ms with ten bagged trees

@@ -5,7 +5,7 @@ import pytest
 
 from tailor.models.features.joints import joints
 from tailor.models.features.obstacle import one_obstacle
-from tailor.models.features.planar import projective, projective_turn, relative
+from tailor.models.features.planar import projective, projective_periodic, projective_turn, relative
 from tailor.models.features.spaces import feature_space, feature_spaces
 
 PI = np.pi
@@ -95,6 +95,15 @@ def test_goal_straight_behind_is_half_a_turn_whatever_the_sign_of_zero() -> None
     rows = np.array([[0, 0, 0, 0, -1, 0.0, 0, 0], [0, 0, 0, 0, -1, -0.0, 0, 0], [0, 0, PI, 0, 1, 0, PI, 0]])
     to = projective(rows)[:, 3]
     assert np.allclose(to, PI, atol=1e-5)
+
+
+def test_periodic_features_do_not_jump_where_the_angle_at_the_goal_passes_half_a_turn() -> None:
+    angles = np.array([PI - 1e-4, -PI + 1e-4, PI / 2, -PI / 2, 0.3])
+    rows = np.array([[0, 0, 0, 0, 1, 0, angle, 0] for angle in angles])
+    ahead, aside = projective_periodic(rows)[:, 5:].T
+    assert np.allclose(ahead, [PI, PI, PI / 2, PI / 2, 0.3], atol=1e-3)
+    assert np.allclose(np.abs(aside), [0, 0, PI / 2, PI / 2, 0.3], atol=1e-3)
+    assert np.array_equal(projective_periodic(rows)[:, :5], projective(rows))
 
 
 def test_mirrored_tasks_look_alike() -> None:

@@ -13,7 +13,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tests.support.synthetic_models import MODELS, approach_dribble
 
-SETTINGS = RefinementSettings(k_std=0.0, arrival_spread=(), risk_cost_s=0.0)
+SETTINGS = RefinementSettings(k_std=0.0, gain_k_std=0.0, arrival_spread=(), risk_cost_s=0.0)
 
 
 def test_alternatives_agree_with_the_choice():
