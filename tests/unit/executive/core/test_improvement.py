@@ -13,6 +13,7 @@ from tailor.executive.core.plan_reuse import better
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.replay.test_replay_core import FickleBudget
@@ -110,18 +111,21 @@ def test_a_starved_tick_has_nothing_left_for_it():
     assert messages_of(published, PlanReport) == []
 
 
+QUICK = Settings(refinement=RefinementSettings(gain_k_std=0.0))  # refinement ends early and leaves checks for plans
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_runs_in_which_a_better_plan_is_found_are_replayed_bit_for_bit(seed):
     rng = np.random.default_rng(seed)
-    _, published, ticks_run = drive(three_places(), seen_from=4 + seed % 3, budget=lambda: FickleBudget(rng))
-    assert list(replay(three_places(), ticks_run)) == published
+    _, published, ticks_run = drive(three_places(QUICK), seen_from=4 + seed % 3, budget=lambda: FickleBudget(rng))
+    assert list(replay(three_places(QUICK), ticks_run)) == published
 
 
 def test_some_of_those_runs_do_find_one():
     ways = set()
     for seed in range(8):
         rng = np.random.default_rng(seed)
-        _, published, _ = drive(three_places(), seen_from=4 + seed % 3, budget=lambda rng=rng: FickleBudget(rng))
+        _, published, _ = drive(three_places(QUICK), seen_from=4 + seed % 3, budget=lambda rng=rng: FickleBudget(rng))
         ways |= {report.way for _, report in messages_of(published, PlanReport)}
     assert ways == {"searched", "suffix", "improved"}
 
