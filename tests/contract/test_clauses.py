@@ -4,6 +4,7 @@ import dataclasses
 import math
 import random
 import shutil
+import types
 from itertools import chain
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.installed import models_folder
+from tailor.schemas.packages.scene import sphere
 from tailor.tools.contract.subject import Subject
 from tailor.tools.contract.suite import CLAUSES, cases, faults
 from tailor.tools.new_robot.templates import kinds
@@ -244,7 +246,34 @@ def repeated_set_points_change_nothing(subject):
     subject.body.command = nudging
 
 
-@pytest.mark.parametrize("name", CLAUSES)
+def with_scene(subject, **changes):
+    plain = subject.scene
+    functions = {name: getattr(plain, name) for name in ("of_belief", "of_truth", "of_subgoal")}
+    subject.scene = types.SimpleNamespace(**functions | changes)
+
+
+@breaks
+def scene_can_be_drawn(subject):
+    plain = subject.scene.of_belief
+    lost = sphere("lost", 0.1, frame="nowhere")
+    with_scene(subject, of_belief=lambda values: dataclasses.replace(plain(values), shapes=(lost,)))
+
+
+@breaks
+def belief_is_drawn_where_the_truth_is(subject):
+    plain = subject.scene.of_belief
+    with_scene(subject, of_belief=lambda values: plain({**values, "x": values["x"] + 2.0}))
+
+
+@breaks
+def subgoals_have_places(subject):
+    with_scene(subject, of_subgoal=lambda values: None)
+
+
+OF_SEVERAL_OUTLETS = ("outlets_are_driven",)  # test_outlet_clauses.py
+
+
+@pytest.mark.parametrize("name", [name for name in CLAUSES if name not in OF_SEVERAL_OUTLETS])
 def test_a_robot_that_breaks_a_clause_breaks_it_alone(name, subject):
     BAD[name](subject)
     assert broken(subject) == {name}

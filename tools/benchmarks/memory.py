@@ -51,7 +51,7 @@ def run(console: Console, quick: bool) -> None:
     )
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w") as log:
         endpoint = free_endpoint()
-        up = tailor("up", "soccer", "--connect", endpoint, "--record", str(Path(folder) / "memory.mcap"))
+        up = tailor("up", "soccer", "--connect", endpoint, "--no-scene", "--record", str(Path(folder) / "memory.mcap"))
         with stopped_in_order([Child("up", up, log)]) as (launcher,):
             wait_for_router(endpoint)
             time.sleep(SETTLE_S)

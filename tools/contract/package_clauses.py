@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tailor.executive.composition import load_models
-from tailor.executive.interfaces.outlet import messages_of
+from tailor.executive.interfaces.outlet import messages_of, outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.schemas.topics import TOPICS
@@ -32,6 +32,14 @@ def axes_contain_rest(subject: Subject, case: str) -> Iterator[str]:
         rest = 0.0 if axis.kept is None else axis.kept
         if not axis.lower <= rest <= axis.upper:
             yield f"axis {axis.name} ranges from {axis.lower:g} to {axis.upper:g}, expected {rest:g} between them"
+
+
+@clause("package")
+def outlets_are_driven(subject: Subject, case: str) -> Iterator[str]:
+    """Of several command outlets each is driven by an action: one that none drives would only ever rest."""
+    outlets = [outlet.name for outlet in outlets_of(subject.domain)]
+    driven = {name for action in subject.domain.actions.values() for name in action.drives or outlets}
+    yield from (f"outlet '{name}' is driven by no action" for name in outlets if name not in driven)
 
 
 @clause("package")

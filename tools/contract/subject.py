@@ -12,7 +12,8 @@ from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.values import Array, Belief
-from tailor.schemas.installed import spec_of
+from tailor.schemas.installed import part, spec_of
+from tailor.schemas.packages.scene import SceneView
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.simnodes.body import Body, Reading
 from tailor.tools.lockstep import action_run
@@ -49,6 +50,12 @@ class Subject:
     def scenarios(self) -> list[str]:
         """Names of its first scenarios."""
         return domains.scenarios(self.name)[:MAX_SCENARIOS]
+
+    @cached_property
+    def scene(self) -> SceneView:
+        """What it looks like."""
+        view: SceneView = part(self.spec, "scene")
+        return view
 
     @cached_property
     def body(self) -> Body:

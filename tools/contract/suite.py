@@ -8,12 +8,12 @@ from functools import cache
 import pytest
 
 from tailor.schemas.installed import domain_names
-from tailor.tools.contract import action_clauses, body_clauses, package_clauses, scenario_clauses
+from tailor.tools.contract import action_clauses, body_clauses, package_clauses, scenario_clauses, scene_clauses
 from tailor.tools.contract.clause import CLAUSES, Clause
 from tailor.tools.contract.subject import Subject
 
 __all__ = ["CLAUSES", "cases", "faults", "pytest_generate_tests", "test_contract"]
-SOURCES = (package_clauses, action_clauses, scenario_clauses, body_clauses)  # their import fills CLAUSES
+SOURCES = (package_clauses, action_clauses, scenario_clauses, body_clauses, scene_clauses)  # their import fills CLAUSES
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -53,6 +53,10 @@ def _faults_of_topics(domain: Domain) -> Iterator[str]:
     field_of_commands = "outlets" if getattr(domain, "outlets", ()) else "command_topic"
     for field, names in ((field_of_commands, commands), ("sensors", domain.sensors)):
         yield from (f"{field}: there is no topic '{name}'" for name in names if name not in TOPICS)
+    names = tuple(outlet.name for outlet in outlets_of(domain))
+    for what, each in (("name", names), ("topic", commands)):
+        twice = sorted({word for word in each if each.count(word) > 1})
+        yield from (f"outlets: the {what} '{word}' occurs twice" for word in twice)
     axes = tuple(axis for outlet in outlets_of(domain) for axis in outlet.axes)
     if axes != domain.axes:
         yield "axes are not those of all outlets, in their order"
@@ -93,7 +97,7 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
     yield from (f"parameter '{name}' occurs twice" for name in sorted({n for n in names if names.count(n) > 1}))
     for parameter in action.parameters:
         if not (
-            math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower < parameter.upper
+            math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower <= parameter.upper
         ):
             yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
 

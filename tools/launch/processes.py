@@ -14,6 +14,7 @@ from tailor.tools.launch.senders import Senders
 EXECUTIVE_SILENCE_NS = 1_000_000_000  # ten ticks
 SIM_SILENCE_NS = 2_000_000_000  # two hundred periods; physics may be late on a busy machine
 RECORDER_SILENCE_NS = 10_000_000_000  # a disk may be slow
+SCENE_SILENCE_NS = 10_000_000_000  # it has the lowest priority of all
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,7 @@ class LaunchConfig:
     once: bool = False  # end when the goal is achieved or has failed
     deployment_file: str = ""  # passed on to the executive
     require_recording: bool = False  # end when the recording ends or lacks something
+    scene: bool = False  # publish markers and transforms for viewers in 3D
 
 
 def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
@@ -37,6 +39,14 @@ def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
         restarts=False,
         silence_ns=RECORDER_SILENCE_NS,
         arguments=lambda start: senders.arguments("record", start),
+    )
+
+
+def scene_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
+    """Markers and transforms; no other process needs it."""
+    argv = tailor("scene", "--live", "--connect", config.bus.endpoint)
+    return ProcessSpec(
+        "scene", argv, silence_ns=SCENE_SILENCE_NS, arguments=lambda start: senders.arguments("scene", start)
     )
 
 

@@ -20,7 +20,7 @@ from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
-from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
+from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, scene_process, sim_process
 from tailor.tools.launch.recording_watch import RecordingWatch
 from tailor.tools.launch.senders import Senders
 
@@ -76,6 +76,8 @@ class _System:
             self._supervisor.start(gateway, time.monotonic_ns())
         if config.record is not None and not self._start(record_process(config, senders)):
             return "failed: the recorder did not start"
+        if config.scene:  # before the executive, so that it takes no time from its first ticks
+            self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
         if not self._start(sim_process(config, senders, self._robot)):
             return "failed: the simulator did not start"
         self._supervisor.start(executive_process(config, senders), time.monotonic_ns())

@@ -1,4 +1,4 @@
-"""Start a whole system and watch it: bus router, simulator, recorder, executive. Ctrl-C stops it in order."""
+"""Start a whole system and watch it: bus router, simulator, recorder, scene, executive. Ctrl-C stops it in order."""
 
 from __future__ import annotations
 
@@ -26,6 +26,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--require-recording", action="store_true", help="end (1) when the recording ends or lacks a message"
     )
+    parser.add_argument(
+        "--no-scene", action="store_true", help="publish no markers and transforms (tf) for viewers in 3D"
+    )
     parser.add_argument("--letters", metavar="TEXT", help="text that the arm writes; short for --scenario word-TEXT")
     parser.add_argument("--once", action="store_true", help="end when the goal is achieved (0) or has failed (1)")
 
@@ -52,6 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.once,
         arguments.config,
         arguments.require_recording,
+        not arguments.no_scene,
     )
     with screen() as shown:
         result = run_system(config, shown, stop)

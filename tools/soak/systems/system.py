@@ -84,7 +84,7 @@ class System:
         self.logs.append(self._folder / f"{name}.log")
         self.endpoint, self.scenario = free_endpoint(), scenario
         words = ("--scenario", scenario, "--seed", str(seed), "--connect", self.endpoint)
-        argv = tailor("up", self.robot.domain, *words, "--record", str(self.recordings[-1]))
+        argv = tailor("up", self.robot.domain, *words, "--no-scene", "--record", str(self.recordings[-1]))
         self.began_ns = time.monotonic_ns()
         self.judge.launched(self.began_ns)
         with self.logs[-1].open("w") as output:

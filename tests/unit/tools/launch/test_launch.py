@@ -8,7 +8,7 @@ from tailor.schemas.own import example
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.launch.process_reports import ProcessReports
-from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, sim_process
+from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, scene_process, sim_process
 from tailor.tools.launch.recording_watch import ENDED, RecordingWatch
 from tailor.tools.launch.senders import Senders
 
@@ -60,11 +60,13 @@ def test_every_child_is_missed_when_it_is_silent():
         executive_process(config(), senders),
         sim_process(config(), senders, "agilo"),
         record_process(config(), senders),
+        scene_process(config(), senders),
     )
     assert [(spec.name, spec.silence_ns / S, spec.restarts) for spec in specs] == [
         ("executive", 1.0, True),
         ("sim", 2.0, True),
         ("record", 10.0, False),
+        ("scene", 10.0, True),
     ]
 
 
