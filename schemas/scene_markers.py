@@ -1,4 +1,4 @@
-"""Converts scenes to visualization_msgs/MarkerArray and tf2_msgs/TFMessage, and back."""
+"""Converts scenes to visualization_msgs/MarkerArray, tf2_msgs/TFMessage and rcl_interfaces/Log, and back."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from tailor.schemas import messages as m
 from tailor.schemas.numbers import check_array, check_numbers
-from tailor.schemas.ros_time import NS_PER_S, header, stamp_ns
+from tailor.schemas.ros_time import NS_PER_S, header, stamp_ns, time, time_ns
 from tailor.schemas.typesystem import ros_class
 
 
@@ -40,6 +40,19 @@ def transforms_from_ros(ros: Any) -> m.FrameTransforms:
     """The transforms of a TFMessage with the stamp of the first."""
     stamp = stamp_ns(ros.transforms[0].header) if ros.transforms else 0
     return m.FrameTransforms(stamp, tuple(_frame(each) for each in ros.transforms))
+
+
+def log_to_ros(message: m.LogLine) -> Any:
+    """rcl_interfaces/Log without a place in the source."""
+    stamp = time(message.stamp_ns)
+    return _class("rcl_interfaces/Log")(
+        stamp=stamp, level=message.level, name=message.name, msg=message.text, file="", function="", line=0
+    )
+
+
+def log_from_ros(ros: Any) -> m.LogLine:
+    """The line of a Log."""
+    return m.LogLine(time_ns(ros.stamp), ros.level, ros.name, ros.msg)
 
 
 def _marker(shape: m.Shape, stamp: int) -> Any:
@@ -103,4 +116,5 @@ def _frame(ros: Any) -> m.FrameTransform:
 CONVERTERS: dict[type, tuple[Any, Any]] = {
     m.SceneShapes: (shapes_to_ros, shapes_from_ros),
     m.FrameTransforms: (transforms_to_ros, transforms_from_ros),
+    m.LogLine: (log_to_ros, log_from_ros),
 }

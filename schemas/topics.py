@@ -34,6 +34,7 @@ _SHIPPED: dict[str, Topic] = {
     "scene": Topic("{robot}/scene", m.SceneShapes, 5, "scene", max_bytes=1 << 17),
     "scene_truth": Topic("{robot}/sim/scene", m.SceneShapes, 5, "scene", max_bytes=1 << 17),
     "transforms": Topic("tf", m.FrameTransforms, 10, "scene", max_bytes=16384),  # ROS 2 knows one for all robots
+    "log": Topic("rosout", m.LogLine, 0, "scene"),
     "status": Topic("exec/status", m.ExecStatus, 10, "executive", max_bytes=16384),
     "finished": Topic("exec/finished", m.ActionFinished, 0, "executive"),
     "plan": Topic("exec/plan", m.PlanReport, 0, "executive", max_bytes=65536),

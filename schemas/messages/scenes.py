@@ -69,3 +69,18 @@ class FrameTransforms(Message):
 
     stamp_ns: int
     transforms: tuple[FrameTransform, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class LogLine(Message):
+    """One line for people, of what a run does; viewers show them in a log."""
+
+    ROS_TYPE: ClassVar[str] = "rcl_interfaces/msg/Log"
+
+    stamp_ns: int
+    level: int  # INFO, WARNING or ERROR
+    name: str  # of who did it
+    text: str
+
+
+INFO, WARNING, ERROR = 20, 30, 40  # as rcl_interfaces/Log has them

@@ -108,7 +108,7 @@ REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick",
     "provenance",
 }  # fmt: skip
-SCENES = {"scene", "scene_truth", "transforms"}
+SCENES = {"scene", "scene_truth", "transforms", "log"}
 MAY_PUBLISH = {
     "executive": {"cmd_vel", "joint_cmd", "self_arm", *REPORTS},
     "driver": SENSORS,

@@ -12,12 +12,12 @@ from tailor.runtime.recordings.mcap_writer import McapWriter
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import FrameTransforms, Message, SceneShapes
+from tailor.schemas.messages import FrameTransforms, LogLine, Message, SceneShapes
 from tailor.schemas.topics import key_of
 from tailor.schemas.typesystem import ros_type, type_of
 from tailor.tools.scenes.scene_feed import SceneFeed
 
-DERIVED = tuple(ros_type(kind) for kind in (SceneShapes, FrameTransforms))
+DERIVED = tuple(ros_type(kind) for kind in (SceneShapes, FrameTransforms, LogLine))
 SENDER = "5c" * 16
 
 

@@ -28,6 +28,7 @@ from tailor.schemas.packages.scene import (
 )
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, Subgoal
+from tailor.tools.scenes.run_log import RunLog
 
 SHAPES_S, FRAMES_S = 0.16, 0.06  # between two messages: 5 and 10 a second, from inputs of 10 with jitter
 MAX_SHAPES, MAX_POINTS, MAX_WORDS = 200, 1500, 100  # of a scene; of its lines together; characters of a name or text
@@ -35,8 +36,8 @@ WAY_POINTS, WAY_STEP_M = 400, 0.02  # of the drawn way
 GREEN, INK, WAY, PALE = (0.1, 0.65, 0.3, 1.0), (0.1, 0.1, 0.12, 1.0), (0.2, 0.45, 0.8, 0.9), 0.45
 LABEL_M = 0.35  # above what it names
 
-INPUTS = tuple(TOPICS[name].key for name in ("provenance", "status", "subgoals"))
-WANTED = TRUTH_KEYS | {TOPICS["odom"].key.partition("/")[2]}  # of a robot
+INPUTS = tuple(TOPICS[name].key for name in ("provenance", "status", "subgoals", "finished", "plan"))
+WANTED = TRUTH_KEYS | {TOPICS[name].key.partition("/")[2] for name in ("odom", "driver")}  # of a robot
 
 Published = tuple[str, m.Message]  # name of a topic, and what is published there
 
@@ -55,6 +56,7 @@ class SceneFeed:
         self._way: deque[tuple[float, float, float]] = deque(maxlen=WAY_POINTS)
         self._status: m.ExecStatus | None = None
         self._sent_s: dict[str, float] = {}  # by topic
+        self._log = RunLog()
 
     @property
     def robot(self) -> str:
@@ -79,6 +81,10 @@ class SceneFeed:
           key: Its key.
           message: Its value.
         """
+        lines = [] if self._scenes is None else [("log", line) for line in self._log.lines_of(key, message)]
+        return [*self._drawn(at_s, key, message), *lines]
+
+    def _drawn(self, at_s: float, key: str, message: m.Message) -> list[Published]:
         if isinstance(message, m.Provenance) and self._scenes is None:
             domain = domain_of(message)
             self._scenes = RobotScenes(domain) if domain else None

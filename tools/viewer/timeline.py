@@ -21,7 +21,7 @@ from tailor.tools.viewer.run_facts import run_facts
 
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
-NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms)
+NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms, m.LogLine)
 
 Rows = list[tuple[str, Fields]]  # kind and fields of events
 

@@ -1,11 +1,13 @@
 """Publish what a robot's package draws: markers and transforms for viewers in 3D (Foxglove, RViz, rerun).
 
-With a recording: write a copy with them. With --live: publish them on the bus for the running executive.
+With a recording: write a copy with them. With --live: publish them on the bus for the running executive. With --layout:
+write a layout for Foxglove that shows them.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 from pathlib import Path
@@ -18,6 +20,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
 from tailor.tools.scenes.recorded_scenes import add_scenes
 
@@ -29,14 +32,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recording", type=Path, nargs="?", help="MCAP file")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="new file (default: NAME-scene.mcap)")
     parser.add_argument("--live", action="store_true", help="publish on the bus until interrupted")
+    parser.add_argument("--layout", metavar="DOMAIN", help="write Foxglove's layout for a domain's robot")
     configure_sender(parser)
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """0; for a recording 1 if it has no run whose robot is known."""
-    if arguments.live == (arguments.recording is not None):
-        raise UsageError("expected either a recording or --live")
+    if sum((arguments.live, arguments.recording is not None, arguments.layout is not None)) != 1:
+        raise UsageError("expected a recording, --live or --layout DOMAIN")
+    if arguments.layout:
+        return _layout(arguments)
     return _live(arguments) if arguments.live else _write(arguments)
 
 
@@ -49,6 +55,17 @@ def _write(arguments: argparse.Namespace) -> int:
         print(f"the scene of {feed.robot}: {feed.fault}", file=sys.stderr)
     print(f"{target}: {added} messages added")
     return 0 if added else 1
+
+
+def _layout(arguments: argparse.Namespace) -> int:
+    text = json.dumps(layout(arguments.layout), indent=1)
+    target: Path = arguments.output or Path(f"{arguments.layout}.foxglove.json")
+    try:
+        target.write_text(f"{text}\n", encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{target}: {error.strerror}, expected a file that can be written") from error
+    print(target)
+    return 0
 
 
 def _live(arguments: argparse.Namespace) -> int:

@@ -158,7 +158,7 @@ def test_a_package_that_fails_to_draw_is_reported_and_stops_nothing(monkeypatch)
 
     monkeypatch.setattr(soccer_scene, "of_belief", lambda values: values["wings"])
     feed = soccer_feed()
-    assert published(feed, (0.1, "exec/status", status())) == []
+    assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}
     assert feed.fault == "of_belief: KeyError: 'wings'"
 
 
@@ -168,3 +168,22 @@ def test_scenes_of_a_robot_without_one_are_drawn_by_convention():
     assert scene == Scene((frame("base_link", on_plane(1.0, 2.0, 0.5)),), scene.shapes, "base_link", 0.3)
     assert scenes.of_truth(m.JointState(0, ("a",), (0.1,), (0.0,), (0.0,))) is None
     assert on_map(scene.frames)["map"] == Pose3()
+
+
+def test_the_log_has_a_line_for_each_change_and_none_for_a_repetition():
+    feed = soccer_feed()
+    done = m.ActionFinished(7, 1, "goToPose", 0, "done", "", 1.0, 1.2)
+    stopped = m.DriverState(8, "stopped", "no valid command in time", "", 7, "", 0)
+    run = (
+        (0.1, "exec/status", status()),
+        (0.2, "exec/status", status()),
+        (0.3, "exec/finished", done),
+        (0.4, "exec/status", status(index=1)),
+        (0.5, "agilo/driver", stopped),
+        (0.6, "agilo/driver", stopped),
+    )
+    lines = [message for name, message in published(feed, *run) if name == "log"]
+    begins = "goToPose begins, predicted 1.00 s"
+    assert [line.text for line in lines[:3]] == ["EXECUTING", begins, "goToPose done after 1.20 s"]
+    assert lines[3].text == begins, "another action of the same name"
+    assert (lines[4].level, lines[4].stamp_ns, len(lines)) == (m.WARNING, 8, 5)
