@@ -36,6 +36,7 @@ class RobotScenes:
     Attributes:
       seen_from: "above" or "behind", see SceneView.
       robot: Name of the robot; empty without a domain.
+      has_odometry: Whether odometry is one of its sensors, so that "odom" stands between "map" and "base_link".
       fault: What the package's `scene` raised last; it draws nothing then.
     """
 
@@ -45,12 +46,14 @@ class RobotScenes:
         self._names: tuple[str, ...] = ()
         self._truth: dict[type, Scene] = {}
         self.robot = self.fault = ""
+        self.has_odometry = False
         try:
             spec = spec_of(domain)
             loaded = domains.load(domain)
         except UsageError:
             spec = None
         if spec is not None:
+            self.has_odometry = "odom" in loaded.sensors
             self.robot, self._names = spec.robot, tuple(_bare(name) for name in loaded.belief_names)
             self._view = part(spec, "scene") if spec.scene else planar_convention
         self.seen_from: str = getattr(self._view, "VIEW", "above")

@@ -108,6 +108,8 @@ class SceneFeed:
         tracer = on_map(scene.frames).get(scene.tracer)
         self._extend_way(tracer)
         published: list[Published] = []
+        if self._odometry is None and scenes.has_odometry:
+            return []  # base_link must not change its parent when odometry comes
         if self._due("transforms", at_s, FRAMES_S):
             published.append(("transforms", m.FrameTransforms(status.stamp_ns, self._frames(scene))))
         if self._due("scene", at_s, SHAPES_S):

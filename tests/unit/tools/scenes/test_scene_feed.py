@@ -28,6 +28,7 @@ def soccer_feed() -> SceneFeed:
     feed = SceneFeed()
     order = json.dumps(synthetic_run.order("soccer", 0))
     assert published(feed, (0.0, "exec/provenance", m.Provenance(0, order))) == []
+    assert published(feed, (0.0, "agilo/odom", m.Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0))) == []
     return feed
 
 
@@ -50,9 +51,18 @@ def test_map_odom_and_base_link_are_one_chain_that_leads_to_the_believed_pose():
     assert frames.stamp_ns == 5
 
 
-def test_without_odometry_base_link_stands_in_map():
-    frames = dict(published(soccer_feed(), (0.1, "exec/status", status())))["transforms"]
-    assert [(each.parent, each.child) for each in frames.transforms] == [("map", "base_link")]
+def test_a_robot_with_odometry_is_drawn_once_it_has_come():
+    feed = SceneFeed("soccer")
+    assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}
+
+
+def test_a_robot_without_odometry_stands_in_map():
+    belief = (0.1, 0.0, 0.2, 0.0)
+    frames = dict(published(SceneFeed("arm"), (0.1, "exec/status", status(belief, "reach"))))["transforms"]
+    chain = [(each.parent, each.child) for each in frames.transforms]
+    assert chain[0] == ("map", "base_link")
+    assert chain[-1][1] == "pen"
+    assert [parent for parent, _ in chain[1:]] == [child for _, child in chain[:-1]]
 
 
 def test_shapes_have_unique_names_and_frames_that_the_transforms_lead_to():
