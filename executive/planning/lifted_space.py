@@ -56,7 +56,7 @@ class LiftedSpace:
             (schema.name, *(_value(bindings, (parameter.name, step)) for parameter in schema.parameters))
             for step, schema in enumerate(plan.steps, 1)
         )
-        frame = Frame(names, plan.orderings, task.first_node, task.moments, task.ground.tick_s)
+        frame = Frame(names, plan.orderings, task.first_node, task.moments, task.ground.grid)
         order = {step.id: n for n, step in enumerate(frame.steps())}
         links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
         return frame.plan(task.ground.problem, links, plan.bindings.lines())

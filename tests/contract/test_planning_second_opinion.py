@@ -101,3 +101,17 @@ def test_plans_of_random_durative_actions_are_sound_in_both_eyes(texts):
         if result.plan is not None and result.plan.steps:
             assert validate(result.plan, domain, problem) == ""
             assert accepted(texts, result.plan), format_plan(result.plan)
+
+
+# --- exact time ------------------------------------------------------------------------------------
+@pytest.mark.parametrize("tolerance_s", [0.001, 0.01, 0.25, 0.5, 1])
+@pytest.mark.parametrize("duration", ["1.4", "3.14159", "0.125", "(/ 10 7)"])
+def test_any_duration_and_tolerance_gives_plans_that_another_accepts(tolerance_s, duration):
+    domain = f"""(define (domain d) (:requirements :durative-actions) (:predicates (p) (q) (r))
+      (:durative-action first :parameters () :duration (= ?duration {duration}) :effect (at end (p)))
+      (:durative-action second :parameters () :duration (= ?duration {duration})
+        :condition (and (at start (p)) (over all (p))) :effect (and (at start (q)) (at end (r)) (at end (not (p))))))"""
+    texts = [domain, "(define (problem x) (:domain d) (:init) (:goal (and (q) (r) (not (p)))))"]
+    for ground in (True, False):
+        plan = solve(*read(*texts), Settings(ground=ground, tolerance_s=tolerance_s)).plan
+        assert accepted(texts, plan), format_plan(plan)

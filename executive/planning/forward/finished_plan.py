@@ -23,7 +23,7 @@ def finished_plan(sequence: Sequence[StripsAction], order: Deordered, task: Grou
     links = [link for step in steps for link in _links(step.id, _static_of(step.action, world), supports)]
     links += _links(GOAL, static_literals(task.problem.goal, {}, world), supports)
     orderings = tuple((i + 1, j + 1) for i, j in order.pairs())
-    return Plan(task.problem.name, task.problem.initial, tuple(steps), tuple(links), orderings, tick_s=task.tick_s)
+    return Plan(task.problem.name, task.problem.initial, tuple(steps), tuple(links), orderings, tick_s=task.grid.unit_s)
 
 
 def _supports(order: Deordered, count: int, task: GroundTask) -> dict[int, list[Link]]:

@@ -1,29 +1,95 @@
-"""Durations of ground actions, in seconds and ticks."""
+"""Durations of ground actions: exact in nanoseconds, then in whole units of a time grid that fits all of them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial, reduce
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
 
+Range = tuple[int, int | None]  # shortest and longest duration, None without an upper limit
+NS_PER_S = 10**9
 
-def evaluate(number: Numeric, binding: Binding, world: StaticWorld) -> float | None:
+
+@dataclass(frozen=True, slots=True)
+class TimeGrid:
+    """The unit in which times are whole numbers, and the least time between dependent events.
+
+    With durations that are multiples of the tolerance the unit is the tolerance and the separation 1.
+    """
+
+    unit_ns: int
+    separation: int = 1
+
+    @property
+    def unit_s(self) -> float:
+        """The unit in seconds."""
+        return self.unit_ns / NS_PER_S
+
+    def seconds(self, units: float) -> float:
+        """The nearest float to so many units in seconds."""
+        return int(units) * self.unit_ns / NS_PER_S
+
+    def fits(self, time_s: float) -> bool:
+        """Whether a time is a multiple of the unit."""
+        return nanoseconds(time_s) % self.unit_ns == 0
+
+    def units(self, time_s: float) -> int:
+        """The nearest multiple of the unit to a time."""
+        return round(Fraction(nanoseconds(time_s), self.unit_ns))
+
+    def duration(self, range_ns: Range) -> Range | None:
+        """A duration in units; an action that may take time takes at least the separation. None if none fits."""
+        shortest = -(-range_ns[0] // self.unit_ns)
+        if range_ns[1] is None:
+            return max(shortest, self.separation), None
+        longest = range_ns[1] // self.unit_ns
+        return (min(max(shortest, self.separation), longest), longest) if shortest <= longest else None
+
+
+def time_grid(tolerance_s: float, ranges_ns: Iterable[Range], times_s: Iterable[float]) -> TimeGrid:
+    """The coarsest grid that holds the tolerance, all durations and the given times.
+
+    The separation is the tolerance, or the shortest action where that is shorter.
+    """
+    tolerance_ns = max(nanoseconds(tolerance_s), 1)
+    ends = {time_ns for bounds in ranges_ns for time_ns in bounds if time_ns}
+    longest = [bounds[1] for bounds in ranges_ns if bounds[1]]
+    separation_ns = min([tolerance_ns, *longest])
+    unit_ns = math.gcd(tolerance_ns, *ends, *map(nanoseconds, times_s))
+    return TimeGrid(unit_ns, separation_ns // unit_ns)
+
+
+def exact(value: float) -> Fraction:
+    """The decimal number that a float was read from."""
+    return Fraction(repr(value))
+
+
+def nanoseconds(time_s: float) -> int:
+    """A time in whole nanoseconds."""
+    return round(exact(time_s) * NS_PER_S)
+
+
+def evaluate(number: Numeric, binding: Binding, world: StaticWorld) -> Fraction | None:
     """The value in seconds; None if a static function has no value or a divisor is 0."""
     match number:
         case Number(value):
-            return value
+            return exact(value)
         case Function(name, terms):
             fact: Fact = (name, *(binding.get(term, term) for term in terms))
-            return world.values.get(fact)
+            own = world.values.get(fact)
+            return None if own is None else exact(own)
         case Operation(operator, operands):
             values = (evaluate(operand, binding, world) for operand in operands)
             return reduce(partial(_operate, operator), values)
 
 
-def _operate(operator: str, a: float | None, b: float | None) -> float | None:
+def _operate(operator: str, a: Fraction | None, b: Fraction | None) -> Fraction | None:
     if a is None or b is None:
         return None
     match operator:
@@ -39,9 +105,10 @@ def _operate(operator: str, a: float | None, b: float | None) -> float | None:
 
 def duration_range(
     bounds: tuple[DurationBound, ...], binding: Binding, world: StaticWorld
-) -> tuple[float, float] | None:
+) -> tuple[Fraction, Fraction | float] | None:
     """Shortest and longest duration in seconds (infinite without an upper limit); None if no duration is allowed."""
-    shortest, longest = 0.0, math.inf
+    shortest = Fraction(0)
+    longest: Fraction | float = math.inf
     for bound in bounds:
         value = evaluate(bound.value, binding, world)
         if value is None:
@@ -49,17 +116,16 @@ def duration_range(
         if bound.operator != "<=":
             shortest = max(shortest, value)
         if bound.operator != ">=":
-            longest = min(longest, value)
+            longest = value if value < longest else longest
     return (shortest, longest) if shortest <= longest else None
 
 
-def ticks_of(bounds: tuple[float, float], tick_s: float) -> tuple[int, int | None]:
-    """Shortest and longest duration in ticks, None without an upper limit.
-
-    An action that may take time takes at least one tick, so that start and end differ.
-    """
-    shortest = round(bounds[0] / tick_s)
-    if math.isinf(bounds[1]):
-        return max(shortest, 1), None
-    longest = round(bounds[1] / tick_s)
-    return min(max(shortest, 1), longest), longest
+def range_ns(bounds: tuple[Fraction, Fraction | float]) -> Range:
+    """The durations in whole nanoseconds within the bounds; where there is none, the nearest."""
+    shortest = math.ceil(bounds[0] * NS_PER_S)
+    if not isinstance(bounds[1], Fraction):
+        return shortest, None
+    longest = math.floor(bounds[1] * NS_PER_S)
+    if shortest > longest:
+        shortest = longest = round(bounds[0] * NS_PER_S)
+    return shortest, longest

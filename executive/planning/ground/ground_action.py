@@ -26,7 +26,7 @@ class GroundEffect(NamedTuple):  # a tuple: grounding makes and compares thousan
 class GroundAction:
     """An action with objects for its parameters, without effects that achieve nothing (the no-op rule).
 
-    Durations are in ticks of the settings' tolerance, `longest` is None without an upper limit; both are 0 if the
+    Durations are in units of the time grid, `longest` is None without an upper limit; both are 0 if the
     domain has no durative actions. `bits` maps each literal that the action may make true to a bit mask of moments.
     `external_conditions` must be achieved by other steps: see the function of that name.
     """

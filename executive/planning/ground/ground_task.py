@@ -8,6 +8,7 @@ from typing import Literal as OneOf
 
 from tailor.executive.planning.ground.achievers import Achiever, achievers_of
 from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
+from tailor.executive.planning.ground.durations import TimeGrid
 from tailor.executive.planning.ground.ground_formula import (
     FactTable,
     GroundCondition,
@@ -30,10 +31,10 @@ class GroundTask:
 
     problem: Problem
     temporal: bool
-    tick_s: float
+    grid: TimeGrid
     names: tuple[Literal, ...]
     initial: frozenset[int]
-    timed: tuple[tuple[int, int], ...]  # literal, tick
+    timed: tuple[tuple[int, int], ...]  # literal, time in units of the grid
     goal: tuple[GroundCondition, ...]
     achievers: tuple[tuple[Achiever, ...], ...]
     costs: tuple[float, ...]  # by action number
@@ -51,7 +52,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
         goal = (FALSE,)
     holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
     timed = tuple(
-        (facts.literal(t.literal.fact, t.literal.positive), round(t.time_s / grounded.tick_s)) for t in problem.timed
+        (facts.literal(t.literal.fact, t.literal.positive), grounded.grid.units(t.time_s)) for t in problem.timed
     )
     initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
     temporal = problem.domain.durative or bool(timed)
@@ -62,7 +63,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
     return GroundTask(
         problem,
         temporal,
-        grounded.tick_s,
+        grounded.grid,
         facts.names(),
         initial,
         timed,

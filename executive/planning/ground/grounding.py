@@ -8,11 +8,12 @@ to right.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import schema_bindings, without_static
+from tailor.executive.planning.ground.durations import TimeGrid, time_grid
 from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
     Binding,
@@ -38,18 +39,22 @@ CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millis
 class GroundActions:
     """The ground actions of a static world and the facts they mention, by number; reusable with an equal world.
 
-    `reached` are the fluent facts from which they were found; None: they serve every initial state.
+    Durations are in units of `grid`. `reached` are the fluent facts from which the actions were found; None: they
+    serve every initial state.
     """
 
     world: StaticWorld
-    tick_s: float
+    tolerance_s: float
+    grid: TimeGrid
     facts: tuple[tuple[str, ...], ...]
     actions: tuple[GroundAction, ...]
     reached: frozenset[Fact] | None = None
 
-    def serves(self, problem: Problem, world: StaticWorld, tick_s: float) -> bool:
+    def serves(self, problem: Problem, world: StaticWorld, tolerance_s: float) -> bool:
         """Whether these are ground actions of a problem, given its static world."""
-        if self.tick_s != tick_s or self.world != world:
+        if self.tolerance_s != tolerance_s or self.world != world:
+            return False
+        if not all(self.grid.fits(timed.time_s) for timed in problem.timed):
             return False
         return self.reached is None or self.reached.issuperset(_fluents(problem, world))
 
@@ -70,13 +75,15 @@ def static_world(problem: Problem) -> StaticWorld:
     return StaticWorld(domain, by_type, static, facts, dict(problem.values), domain.durative)
 
 
-def ground_actions(problem: Problem, world: StaticWorld, tick_s: float, steps: int) -> Iterator[GroundActions | None]:
+def ground_actions(
+    problem: Problem, world: StaticWorld, tolerance_s: float, steps: int
+) -> Iterator[GroundActions | None]:
     """Grounds all actions, or the reachable ones: yields None per unit of budget, and the ground actions at the end.
 
     Args:
       problem: Its initial state is used only if there are too many bindings to try all.
       world: Its static world.
-      tick_s: One tick in seconds.
+      tolerance_s: Least time between dependent events in seconds.
       steps: Limit of the steps of grounding.
 
     Raises:
@@ -84,7 +91,7 @@ def ground_actions(problem: Problem, world: StaticWorld, tick_s: float, steps: i
     """
     small = GroundingLimit(min(steps, MAX_EXHAUSTIVE_STEPS))
     try:
-        yield from _exhaustive(world, tick_s, small, min(steps, MAX_BINDINGS))
+        yield from _exhaustive(problem, world, tolerance_s, small, min(steps, MAX_BINDINGS))
         return
     except _TooManyBindings:
         limit = GroundingLimit(steps)
@@ -94,7 +101,7 @@ def ground_actions(problem: Problem, world: StaticWorld, tick_s: float, steps: i
         if reached is None:
             yield None
         else:
-            yield from _reachable(world, tick_s, reached, limit)
+            yield from _reachable(problem, world, tolerance_s, reached, limit)
 
 
 def shuffled(grounded: GroundActions, rng: RandomSource) -> GroundActions:
@@ -118,9 +125,11 @@ class _TooManyBindings(Exception):
     """There are too many bindings to try all."""
 
 
-def _exhaustive(world: StaticWorld, tick_s: float, limit: GroundingLimit, most: int) -> Iterator[GroundActions | None]:
+def _exhaustive(
+    problem: Problem, world: StaticWorld, tolerance_s: float, limit: GroundingLimit, most: int
+) -> Iterator[GroundActions | None]:
     """Yields None every CHECK_EVERY bindings; raises _TooManyBindings if there are more than `most`."""
-    maker = _Maker(world, tick_s, limit)
+    maker = _Maker(world, limit)
     tried = 0
     for schema in sorted(world.domain.actions, key=lambda action: action.name):
         limit.subject = f"'{schema.name}'"
@@ -132,14 +141,14 @@ def _exhaustive(world: StaticWorld, tick_s: float, limit: GroundingLimit, most: 
                 yield None
             if binding is not None:
                 maker.add(schema, binding)
-    yield maker.result(None)
+    yield maker.result(problem, tolerance_s, None)
 
 
 def _reachable(
-    world: StaticWorld, tick_s: float, reached: Reached, limit: GroundingLimit
+    problem: Problem, world: StaticWorld, tolerance_s: float, reached: Reached, limit: GroundingLimit
 ) -> Iterator[GroundActions | None]:
     """Makes the actions of the reached bindings; yields None every CHECK_EVERY of them."""
-    maker = _Maker(world, tick_s, limit)
+    maker = _Maker(world, limit)
     for schema in sorted(world.domain.actions, key=lambda action: action.name):
         names = [parameter.name for parameter in schema.parameters]
         tested = without_static(schema, world)
@@ -149,15 +158,14 @@ def _reachable(
             if number % CHECK_EVERY == 0:
                 yield None
             maker.add(tested, dict(zip(names, arguments, strict=True)))
-    yield maker.result(reached.facts)
+    yield maker.result(problem, tolerance_s, reached.facts)
 
 
 class _Maker:
     """Makes ground actions in order, within a limit of steps and of memory."""
 
-    def __init__(self, world: StaticWorld, tick_s: float, limit: GroundingLimit) -> None:
+    def __init__(self, world: StaticWorld, limit: GroundingLimit) -> None:
         self._world = world
-        self._tick_s = tick_s
         self._limit = limit
         self._facts = FactTable((), limit)
         self._actions: list[GroundAction] = []
@@ -165,7 +173,7 @@ class _Maker:
 
     def add(self, schema: Action, binding: Binding) -> None:
         """Makes one more action unless it is never applicable or achieves nothing."""
-        action = instance(len(self._actions), schema, binding, self._world, self._facts, self._tick_s)
+        action = instance(len(self._actions), schema, binding, self._world, self._facts)
         if action is None:
             return
         self._actions.append(action)
@@ -175,7 +183,17 @@ class _Maker:
                 f"{len(self._actions)} ground actions take too much memory, the last of '{schema.name}'"
             )
 
-    def result(self, reached: Iterable[Fact] | None) -> GroundActions:
-        """The actions made."""
-        facts = None if reached is None else frozenset(reached)
-        return GroundActions(self._world, self._tick_s, tuple(self._facts), tuple(self._actions), facts)
+    def result(self, problem: Problem, tolerance_s: float, reached: frozenset[Fact] | None) -> GroundActions:
+        """The actions made, with their durations in units of a time grid."""
+        ranges = {(action.shortest, action.longest) for action in self._actions}
+        grid = time_grid(tolerance_s, ranges, [timed.time_s for timed in problem.timed])
+        durations = {bounds: grid.duration(bounds) or (0, 0) for bounds in ranges}
+        actions = self._actions
+        if self._world.temporal:
+            actions = [_lasting(action, *durations[action.shortest, action.longest]) for action in actions]
+        return GroundActions(self._world, tolerance_s, grid, tuple(self._facts), tuple(actions), reached)
+
+
+def _lasting(action: GroundAction, shortest: int, longest: int | None) -> GroundAction:
+    """The action with a duration in units; an instantaneous one keeps its 0."""
+    return replace(action, shortest=shortest, longest=longest)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from tailor.executive.planning.ground.durations import duration_range, ticks_of
+from fractions import Fraction
+
+from tailor.executive.planning.ground.durations import duration_range, range_ns
 from tailor.executive.planning.ground.ground_action import (
     INSTANT,
     MOMENTS,
@@ -25,14 +27,15 @@ from tailor.executive.planning.ground.ground_formula import (
 from tailor.executive.planning.pddl.language import Action, Condition, When
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
+_INSTANT = (Fraction(0), Fraction(0))
 MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
 
 
 def instance(
-    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable, tick_s: float
+    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable
 ) -> GroundAction | None:
-    """The ground action of a complete binding; None if it is never applicable or achieves nothing."""
-    bounds = duration_range(schema.duration or (), binding, world) if schema.duration is not None else (0.0, 0.0)
+    """The ground action of a complete binding, its durations in ns; None if never applicable or without effect."""
+    bounds = _INSTANT if schema.duration is None else duration_range(schema.duration, binding, world)
     conditions = _conditions(schema.conditions, binding, world, facts)
     if bounds is None or conditions is None:
         return None
@@ -50,8 +53,8 @@ def instance(
         external_conditions(conditions, effects),
         effects,
         bits,
-        *ticks_of(bounds, tick_s),
-        bounds[0],
+        *range_ns(bounds),
+        float(bounds[0]),
         not any(effect.conditions for effect in effects),
     )
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.ground.durations import TimeGrid
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
@@ -25,17 +26,17 @@ class Frame:
     orderings: Orderings
     first_node: int
     moments: int  # nodes per step
-    tick_s: float
+    grid: TimeGrid
 
     def steps(self) -> tuple[Step, ...]:
         """The steps by start time; of simultaneous ones the newest first, as VHPOP prints them."""
         times, temporal = self.orderings.earliest(), self.moments == 2
-        tick = self.tick_s if temporal else 1.0
         steps = []
         for number, name in enumerate(self.names, 1):
             node = self.first_node + (number - 1) * self.moments
-            duration = round((times[node + 1] - times[node]) * tick, 9) if temporal else 1.0
-            steps.append(Step(number, name, round(times[node] * tick, 9), duration))
+            duration = self.grid.seconds(times[node + 1] - times[node]) if temporal else 1.0
+            start = self.grid.seconds(times[node]) if temporal else float(times[node])
+            steps.append(Step(number, name, start, duration))
         return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
 
     def pairs(self) -> Iterator[tuple[int, int]]:
@@ -66,7 +67,7 @@ class Frame:
             tuple(self.pairs()),
             durative,
             self.bounds(),
-            self.tick_s,
+            self.grid.unit_s,
             bindings,
         )
 
@@ -74,7 +75,7 @@ class Frame:
 def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
     """The finished plan of a ground search."""
     names = tuple(action.name for action in plan.steps)
-    frame = Frame(names, plan.orderings, task.first_node, task.moments, task.tick_s)
+    frame = Frame(names, plan.orderings, task.first_node, task.moments, task.grid)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 

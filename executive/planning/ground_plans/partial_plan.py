@@ -78,7 +78,7 @@ def initial_plan(task: GroundTask) -> PartialPlan:
     masks = no_masks(len(task.names))
     orderings: Orderings = Closure()
     if task.temporal:
-        orderings = TemporalNetwork.start(tuple(tick for _, tick in task.timed))
+        orderings = TemporalNetwork.start(tuple(time for _, time in task.timed), task.grid.separation)
         for number, (literal, _) in enumerate(task.timed):
             masks[literal] |= 1 << FIRST + number
     cell: OpenCondition | None = None

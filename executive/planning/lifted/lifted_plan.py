@@ -64,7 +64,7 @@ class LiftedPlan(NamedTuple):
 def initial_plan(task: LiftedTask) -> LiftedPlan:
     """The plan without steps whose open conditions are the goal, the first at the head."""
     ticks = tuple(tick for _, tick in task.ground.timed)
-    orderings: Orderings = TemporalNetwork.start(ticks) if task.moments == 2 else Closure()
+    orderings: Orderings = TemporalNetwork.start(ticks, task.ground.grid.separation) if task.moments == 2 else Closure()
     choices = {(v.name, GOAL_STEP): task.world.choices(v) for v in task.goal_variables}
     empty = LiftedPlan((), orderings, Bindings().with_variables(choices), None, None, None, 0, 0, 0)
     plan = opened(empty, of_step(task.goal, GOAL_STEP), GOAL, GOAL)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import duration_range, ticks_of
+from tailor.executive.planning.ground.durations import TimeGrid, duration_range, range_ns
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -22,7 +23,7 @@ class Schema:
     """An action schema; its parameters are renamed ?v1, ?v2, ... over the whole domain, as VHPOP prints them.
 
     An action whose duration depends on parameters gives one schema per choice of objects for these parameters, which
-    are then `fixed`. Durations are in ticks; `longest` is None without an upper limit.
+    are then `fixed`. Durations are in units of the time grid; `longest` is None without an upper limit.
     """
 
     name: str
@@ -37,7 +38,7 @@ class Schema:
     duration_s: float  # shortest duration
 
 
-def schemata(world: StaticWorld, tick_s: float, limit: GroundingLimit) -> tuple[Schema, ...]:
+def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple[Schema, ...]:
     """The domain's schemata by name.
 
     Raises:
@@ -49,7 +50,7 @@ def schemata(world: StaticWorld, tick_s: float, limit: GroundingLimit) -> tuple[
     ]
     expanded: list[Schema] = []
     for action, names in renamed:
-        expanded += _schemata(action, names, Lifter(world, parameters, limit), world, tick_s)
+        expanded += _schemata(action, names, Lifter(world, parameters, limit), world, grid)
     return tuple(sorted(expanded, key=lambda schema: schema.name))
 
 
@@ -60,7 +61,7 @@ def shuffled(schema: Schema, rng: RandomSource) -> Schema:
 
 
 def _schemata(
-    action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, tick_s: float
+    action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, grid: TimeGrid
 ) -> Iterator[Schema]:
     """The schemata of one action: one per choice of the parameters that its duration depends on."""
     durative = world.temporal
@@ -75,6 +76,9 @@ def _schemata(
     effects = lifted_effects(action, names, conditions, lifter, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
     for fixed, bounds in _durations(action, lifter, world):
+        duration = grid.duration(range_ns(bounds))
+        if duration is None:
+            continue  # ground actions fit the grid: this one is never applicable
         yield Schema(
             action.name,
             parameters,
@@ -83,17 +87,17 @@ def _schemata(
             equalities,
             {names[name]: value for name, value in fixed.items()},
             effects,
-            *ticks_of(bounds, tick_s),
-            bounds[0],
+            *duration,
+            float(bounds[0]),
         )
 
 
 def _durations(
     action: Action, lifter: Lifter, world: StaticWorld
-) -> Iterator[tuple[Mapping[str, str], tuple[float, float]]]:
+) -> Iterator[tuple[Mapping[str, str], tuple[Fraction, Fraction | float]]]:
     """Choices of the parameters that the duration depends on, with shortest and longest duration in seconds."""
     if action.duration is None:
-        yield {}, (0.0, 0.0)
+        yield {}, (Fraction(0), Fraction(0))
         return
     relevant = {term for bound in action.duration for term in _terms(bound.value)}
     for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in relevant), {}):

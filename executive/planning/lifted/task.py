@@ -126,7 +126,7 @@ def lifted_task(
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
-    schemas = schemata(world, ground.tick_s, limit)
+    schemas = schemata(world, ground.grid, limit)
     if rng is not None:
         schemas = tuple(shuffled(schema, rng) for schema in schemas)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))

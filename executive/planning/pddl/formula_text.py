@@ -11,6 +11,8 @@ def format_atom(fact: Fact) -> str:
 
 
 def format_number(value: float) -> str:
-    """A number with at most six decimals and no trailing zeros: 3, 0.01, 28.04."""
-    text = f"{value:.6f}".rstrip("0").rstrip(".")
-    return text or "0"
+    """A number with at most nine decimals and no trailing zeros: 3, 0.01, 28.04."""
+    text = repr(round(float(value), 9))
+    if "e" in text:  # of very large and very small numbers
+        text = f"{value:.9f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

@@ -1,16 +1,17 @@
-"""Durations that a problem allows for a step; the validator's own evaluation of PDDL arithmetic."""
+"""Durations that a problem allows for a step; the validator's own evaluation of PDDL arithmetic, in exact fractions."""
 
 from __future__ import annotations
 
 import math
 import operator
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric
 from tailor.executive.planning.plans.state import Binding
 
-_OPERATORS: dict[str, Callable[[float, float], float]] = {
+_OPERATORS: dict[str, Callable[[Fraction, Fraction], Fraction]] = {
     "+": operator.add,
     "-": operator.sub,
     "*": operator.mul,
@@ -20,7 +21,7 @@ _OPERATORS: dict[str, Callable[[float, float], float]] = {
 
 def allowed_durations(
     bounds: tuple[DurationBound, ...], binding: Binding, values: Mapping[Fact, float]
-) -> tuple[float, float] | None:
+) -> tuple[Fraction, Fraction | float] | None:
     """Shortest and longest duration of a step in seconds.
 
     Args:
@@ -36,17 +37,17 @@ def allowed_durations(
         numbers = [(bound.operator, _value(bound.value, binding, values)) for bound in bounds]
     except (KeyError, ZeroDivisionError):
         return None
-    shortest = max([0.0, *(value for comparison, value in numbers if comparison != "<=")])
-    longest = min([math.inf, *(value for comparison, value in numbers if comparison != ">=")])
+    shortest = max([Fraction(0), *(value for comparison, value in numbers if comparison != "<=")])
+    longest = min([value for comparison, value in numbers if comparison != ">="], default=math.inf)
     return (shortest, longest) if shortest <= longest else None
 
 
-def _value(number: Numeric, binding: Binding, values: Mapping[Fact, float]) -> float:
+def _value(number: Numeric, binding: Binding, values: Mapping[Fact, float]) -> Fraction:
     """The value of an arithmetic expression; raises KeyError or ZeroDivisionError when it has none."""
     if isinstance(number, Number):
-        return number.value
+        return Fraction(str(number.value))
     if isinstance(number, Function):
-        return values[(number.name, *(binding.get(term, term) for term in number.terms))]
+        return Fraction(str(values[(number.name, *(binding.get(term, term) for term in number.terms))]))
     result, *others = (_value(operand, binding, values) for operand in number.operands)
     for other in others:
         result = _OPERATORS[number.operator](result, other)

@@ -122,7 +122,7 @@ def _moments(plan: Plan, schemata: Mapping[str, Action], problem: Problem) -> li
         else:
             moments.append(_Moment(step.start, 1, step.id, ("start", "over")))
             moments.append(_Moment(step.start + step.duration, 0 if step.duration else 2, step.id, ("end",)))
-    return sorted(moments, key=lambda moment: (round(moment.time, 6), moment.rank))
+    return sorted(moments, key=lambda moment: (round(moment.time, 8), moment.rank))
 
 
 def _formulas(action: Action, moments: Collection[When]) -> list[Formula]:

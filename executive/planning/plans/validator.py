@@ -15,8 +15,9 @@ from tailor.executive.planning.plans.plan import Plan, Step
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.state import Binding, Objects, State, conditions_at, fact_of, holds
 
-SAME_TIME_S = 1e-6  # events closer than this happen together
-DURATION_SLACK_S = 0.0051  # half a tick of 0.01 s: durations are printed in whole ticks
+SAME_TIME_S = 1e-6  # events closer than this, or than half a tick, happen together
+SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
+SLACK_S = 1e-7  # of a float
 
 
 class _Unsound(Exception):
@@ -77,17 +78,17 @@ def _bind(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding
         if argument not in objects.of(parameter):
             raise _Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
     binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
-    _check_duration(step, action, binding, objects)
     return action, binding
 
 
-def _check_duration(step: Step, action: Action, binding: Binding, objects: Objects) -> None:
+def _check_duration(step: Step, action: Action, binding: Binding, objects: Objects, tick_s: float) -> None:
     if action.duration is None:
         return
     allowed = allowed_durations(action.duration, binding, objects.problem.values)
     if allowed is None:
         raise _Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
-    if not allowed[0] - DURATION_SLACK_S <= step.duration <= allowed[1] + DURATION_SLACK_S:
+    slack_s = SLACK_TICKS * tick_s + SLACK_S
+    if not allowed[0] - slack_s <= step.duration <= allowed[1] + slack_s:
         raise _Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
 
 
@@ -102,7 +103,9 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
     began: dict[int, State] = {}  # state just before the start of each step
     for events in _happenings(plan, objects):
         starting = [event.step for event in events if event.step and event.step.id not in bound]
-        bound.update((step.id, _bind(step, domain, objects)) for step in starting)
+        for step in starting:
+            bound[step.id] = _bind(step, domain, objects)
+            _check_duration(step, *bound[step.id], objects, plan.tick_s)
         _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
         changes = [(event, *_changes(event, state, began, objects, bound)) for event in events]
@@ -132,9 +135,10 @@ def _happenings(plan: Plan, objects: Objects) -> Iterator[list[_Event]]:
     if not plan.durative:
         yield from ([event] for event in sorted(events, key=lambda event: event.time))
         return
+    same_s = min(SAME_TIME_S, plan.tick_s / 2)
     group: list[_Event] = []
     for event in sorted(events, key=lambda event: (event.time, event.rank)):
-        if group and event.time - group[0].time > SAME_TIME_S:
+        if group and event.time - group[0].time > same_s:
             yield group
             group = []
         group.append(event)

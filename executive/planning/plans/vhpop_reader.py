@@ -42,6 +42,7 @@ class _Draft:
     bounds: list[tuple[int | None, ...]] = field(default_factory=list)
     bindings: list[str] = field(default_factory=list)
     tick_s: float = DEFAULT_TICK_S
+    decimals: int = 0  # of the times in the plain form
     consumer: int | None = None
     part: str = ""  # "orderings" or "bindings" while their lines follow
     has_goal: bool = False
@@ -51,8 +52,9 @@ def parse_plan(text: str) -> Plan:
     """The plan in a text of this planner, a recording or an external planner.
 
     The plain form, and the competitions' lines `(action args)` or `START: (action args) [DURATION]`, have no initial
-    state, links or orderings; their steps are numbered in their order. Start times and durations of a durative
-    causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has a line "tolerance = ...".
+    state, links or orderings; their steps are numbered in their order, and their tick is 0.01 s or the last digit
+    printed. Start times and durations of a durative causal-link form are those of the printed bounds, in ticks of
+    0.01 s unless the text has a line "tolerance = ...".
 
     Args:
       text: One of the forms; "Initial  :" and the paper's "Initial 0 :" are both accepted.
@@ -78,7 +80,8 @@ def parse_plan(text: str) -> Plan:
         return _from_links(draft)
     if draft.plain:
         durative = draft.durations > 0
-        return Plan(draft.problem, (), tuple(draft.plain), durative=durative)
+        tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS)) if durative else DEFAULT_TICK_S
+        return Plan(draft.problem, (), tuple(draft.plain), durative=durative, tick_s=tick_s)
     raise PlanTextError("plan text: expected steps such as '1:(action args)' or a part 'Goal     :'; there is no plan")
 
 
@@ -120,6 +123,7 @@ def _read_step(line: str, draft: _Draft) -> None:
         draft.links.append(Link(_whole(match[1]), _literal(match[2]), draft.consumer))
     elif match := _PLAIN.fullmatch(line):
         duration = _number(match[3]) if match[3] else 1.0
+        draft.decimals = max(draft.decimals, *(len((text or "").partition(".")[2]) for text in (match[1], match[3])))
         draft.durations += match[3] is not None
         draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), _number(match[1]), duration))
     elif _FACT.fullmatch(line) and draft.consumer is None:

@@ -1,8 +1,8 @@
-"""Orderings of nodes that take time: a simple temporal network with all-pairs bounds in ticks.
+"""Orderings of nodes that take time: a simple temporal network with all-pairs bounds in whole units of a time grid.
 
 `rows[b][a]` is the greatest t_b - t_a that the constraints allow. Kept minimal by an incremental shortest-path update
-(Dechter, Meiri & Pearl 1991). An order between two nodes costs at least one tick, so that no two dependent events
-coincide.
+(Dechter, Meiri & Pearl 1991). An order between two nodes costs at least one tick (`tick` units, VHPOP's tolerance), so
+that no two dependent events coincide.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tailor.executive.planning.structures.orderings import GOAL, INITIAL, HasDuration
 
-UNBOUNDED = 10**18  # ticks; sums of two stay far above any real bound
+UNBOUNDED = 10**24  # units; sums of two stay far above any real bound
 _FAR = UNBOUNDED // 2  # as good as unbounded
 Row = tuple[int, ...]
 _FREE: Row = (UNBOUNDED, UNBOUNDED)  # bounds between a new step's start and end and unrelated nodes
@@ -22,16 +22,17 @@ class TemporalNetwork(NamedTuple):
 
     rows: tuple[Row, ...]
     late: tuple[int, ...]
+    tick: int = 1
 
     @classmethod
-    def start(cls, timed: tuple[int, ...]) -> TemporalNetwork:
-        """Initial state at time 0, the goal, and nodes at fixed ticks."""
+    def start(cls, timed: tuple[int, ...], tick: int = 1) -> TemporalNetwork:
+        """Initial state at time 0, the goal, and nodes at fixed times."""
         times = [0, None, *timed]
         rows = tuple(
             tuple(0 if a == b else UNBOUNDED if s is None or t is None else t - s for a, s in enumerate(times))
             for b, t in enumerate(times)
         )
-        return cls(rows, tuple(_late(row, node) for node, row in enumerate(rows)))
+        return cls(rows, tuple(_late(row, node, tick) for node, row in enumerate(rows)), tick)
 
     @property
     def entries(self) -> int:
@@ -42,17 +43,18 @@ class TemporalNetwork(NamedTuple):
         """See `Orderings`: the nodes of start and end, bounded by the duration."""
         start = len(self.rows)
         end = start + 1
+        tick = self.tick
         longest = UNBOUNDED if action.longest is None else action.longest
-        first = self.rows[INITIAL] + (-1, -1 - action.shortest)
+        first = self.rows[INITIAL] + (-tick, -tick - action.shortest)
         unbounded = (UNBOUNDED,) * start
         own = [(*unbounded, 0, -action.shortest), (*unbounded, longest, 0)]
         if before != GOAL:
             via = self.rows[before] + _FREE
             node = start + moment
-            if via[INITIAL] + first[node] < 1:
+            if via[INITIAL] + first[node] < tick:
                 return None
-            first = _through(first, first[node] - 1, via)
-            own = [_through(row, row[node] - 1, via) for row in own]
+            first = _through(first, first[node] - tick, via)
+            own = [_through(row, row[node] - tick, via) for row in own]
         late = list(self.late)
         late[INITIAL] |= 3 << start
         rows = [first, *[row + _FREE for row in self.rows[1:]], *own]
@@ -61,26 +63,27 @@ class TemporalNetwork(NamedTuple):
             if other != INITIAL and row[INITIAL] < _FAR:
                 rows[other] = _through(row, row[INITIAL], first)
                 if other < start:
-                    late[other] = _late(rows[other], other)
-        return TemporalNetwork(tuple(rows), (*late, _late(rows[start], start), _late(rows[end], end)))
+                    late[other] = _late(rows[other], other, tick)
+        late += [_late(rows[start], start, tick), _late(rows[end], end, tick)]
+        return TemporalNetwork(tuple(rows), tuple(late), tick)
 
     def ordered(self, a: int, b: int) -> TemporalNetwork | None:
         """See `Orderings`: t_a <= t_b - 1 tick."""
         if self.late[b] >> a & 1:
             return None
-        if b == GOAL or self.rows[a][b] <= -1:
+        if b == GOAL or self.rows[a][b] <= -self.tick:
             return self
-        via = self.rows[b]
+        via, tick = self.rows[b], self.tick
         rows, late = list(self.rows), list(self.late)
         for node, row in enumerate(self.rows):
-            reach = row[a] - 1
+            reach = row[a] - tick
             if reach < row[b]:
                 rows[node] = changed = _through(row, reach, via)
-                late[node] = _late(changed, node)
-        return TemporalNetwork(tuple(rows), tuple(late))
+                late[node] = _late(changed, node, tick)
+        return TemporalNetwork(tuple(rows), tuple(late), tick)
 
     def earliest(self) -> tuple[float, ...]:
-        """Earliest times in ticks; the goal's is the makespan."""
+        """Earliest times in units; the goal's is the makespan."""
         times = [-bound for bound in self.rows[INITIAL]]
         times[GOAL] = max([0, *times[GOAL + 1 :]])
         return tuple(times)
@@ -100,8 +103,8 @@ def _bound(value: int) -> int | None:
     return value if value < _FAR else None
 
 
-def _late(row: Row, node: int) -> int:
+def _late(row: Row, node: int, tick: int) -> int:
     """The nodes that cannot be a tick or more before this one; the goal is after all."""
     if node == GOAL:
         return 1 << GOAL
-    return sum([1 << other for other, bound in enumerate(row) if bound < 1 and other != GOAL], 1 << GOAL)
+    return sum([1 << other for other, bound in enumerate(row) if bound < tick and other != GOAL], 1 << GOAL)

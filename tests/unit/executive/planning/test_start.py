@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-import tailor.executive.planning as planning
+from tailor.executive import planning
 from tests.support.planning_problems import DATA
 
 FILES = [str(DATA / "own" / f"soccer-{part}.pddl") for part in ("domain", "p1")]
@@ -13,7 +13,7 @@ SLOW = ("numpy", "matplotlib", "multiprocessing", "tailor.executive.planning.lif
 
 
 def test_a_plan_is_printed_without_loading_slow_modules():
-    code = "import sys; from tailor.tools.main import main; code = main(); print(*sys.modules, sep=chr(10)); sys.exit(code)"
+    code = "import sys; from tailor.tools.main import main; main(); print(*sys.modules, sep=chr(10))"
     run = subprocess.run([sys.executable, "-c", code, "plan", *FILES], capture_output=True, text=True, check=True)
     assert "2:(dribbleball pos2 pos3)" in run.stdout
     assert [name for name in run.stdout.split() if name.startswith(SLOW)] == []

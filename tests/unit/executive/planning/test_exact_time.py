@@ -1,0 +1,90 @@
+"""Durations are exact: whatever the tolerance, plans are sound, last what PDDL asks, and are printed in full."""
+
+import math
+
+import pytest
+
+from tailor.executive.planning import MATCHING, Settings, format_links, format_plan, parse_plan, validate
+from tailor.executive.planning.ground.durations import TimeGrid, time_grid
+from tests.support.planning_problems import OWN, own, read, solve
+
+TOLERANCES = (1e-6, 0.001, 0.01, 0.25, 0.3, 0.5, 1, 7, 1000)
+DURATIVE = [name for name in OWN if "durative" in name]
+
+FACTORY = """(define (domain factory) (:requirements :durative-actions :duration-inequalities :timed-initial-literals)
+  (:predicates (part ?x) (cut ?x) (hot) (done ?x) (open)) (:functions (length ?x) (speed))
+  (:durative-action cut :parameters (?x) :duration (= ?duration (/ (length ?x) (speed)))
+    :condition (at start (part ?x)) :effect (at end (cut ?x)))
+  (:durative-action heat :parameters () :duration (and (>= ?duration 1.4) (<= ?duration 2.7182))
+    :condition (over all (open)) :effect (and (at start (hot)) (at end (not (hot)))))
+  (:durative-action weld :parameters (?x) :duration (= ?duration 0.0625)
+    :condition (and (at start (cut ?x)) (over all (hot))) :effect (at end (done ?x))))"""
+TASK = """(define (problem p) (:domain factory) (:objects a b)
+  (:init (part a) (part b) (= (speed) 0.7) (= (length a) 1) (= (length b) 2.1) (at 0.333 (open)))
+  (:goal (and (done a) (done b))))"""
+
+
+@pytest.mark.parametrize("tolerance_s", TOLERANCES)
+@pytest.mark.parametrize("name", [*DURATIVE, "factory"])
+@pytest.mark.parametrize("ground", [True, False])
+def test_plans_are_sound_whatever_the_tolerance(name, tolerance_s, ground):
+    if not ground and name in ("soccer-durative-p2", "soccer-durative-p3", "kitchen-durative-s2"):
+        pytest.skip("many plans when lifted")
+    domain, problem = read(FACTORY, TASK) if name == "factory" else own(name)
+    plan = solve(
+        domain, problem, Settings(MATCHING.rankings, MATCHING.flaw_orders, ground=ground, tolerance_s=tolerance_s)
+    ).plan
+    assert validate(plan, domain, problem) == ""
+    for text in (format_links(plan), format_plan(plan)):
+        assert validate(parse_plan(text), domain, problem) == ""
+
+
+def test_durations_are_printed_with_the_digits_they_need():
+    domain, problem = read(FACTORY, TASK)
+    for tolerance_s in (0.01, 0.25, 1):
+        plan = solve(domain, problem, Settings(tolerance_s=tolerance_s)).plan
+        durations = {step.action: step.duration for step in plan.steps}
+        assert durations["cut", "b"] == 3
+        assert durations["cut", "a"] == 1.428571429  # 10/7, to the nanosecond
+        assert durations["weld", "a"] == 0.0625
+        assert 1.4 <= durations["heat",] <= 2.7182
+        assert "(cut a)[1.428571429]" in format_plan(plan)
+        assert "(weld a)[0.0625]" in format_plan(plan)
+
+
+def test_dependent_events_are_a_tolerance_apart():
+    domain, problem = own("soccer-durative-p1")
+    for tolerance_s in (0.001, 0.01, 0.3):
+        plan = solve(domain, problem, Settings(tolerance_s=tolerance_s)).plan
+        steps = {step.id: step for step in plan.steps}
+        gaps = [steps[j].start - steps[i].start - steps[i].duration for i, j in plan.orderings]
+        assert min(gaps) == pytest.approx(tolerance_s)
+
+
+def test_the_grid_holds_the_tolerance_all_durations_and_times():
+    grid = time_grid(0.01, [(1_400_000_000, 1_400_000_000), (25_000_000, None)], [0.5])
+    assert grid == TimeGrid(5_000_000, 2)
+    assert grid.units(0.5) == 100
+    assert grid.seconds(281) == 1.405
+    assert time_grid(0.01, [(0, 0), (3 * 10**9, 3 * 10**9)], []) == TimeGrid(10**7, 1)
+    assert time_grid(1, [(4 * 10**8, 4 * 10**8)], []) == TimeGrid(2 * 10**8, 2)  # no longer than the shortest action
+
+
+def test_a_duration_with_limits_lies_within_them():
+    grid = TimeGrid(10**7, 1)
+    assert grid.duration((0, 0)) == (0, 0)
+    assert grid.duration((0, 5 * 10**7)) == (1, 5)  # what may take time takes a tick
+    assert grid.duration((15_000_000, None)) == (2, None)
+    assert grid.duration((15_000_000, 17_000_000)) is None
+
+
+def test_long_durations_beside_short_ones_are_exact():
+    domain = """(define (domain d) (:requirements :durative-actions) (:predicates (p) (q))
+      (:durative-action long :parameters () :duration (= ?duration 900000000) :effect (at end (p)))
+      (:durative-action short :parameters () :duration (= ?duration 0.000001)
+        :condition (at start (p)) :effect (at end (q))))"""
+    task = "(define (problem x) (:domain d) (:init) (:goal (q)))"
+    domain, problem = read(domain, task)
+    plan = solve(domain, problem).plan
+    assert validate(plan, domain, problem) == ""
+    assert math.isclose(plan.makespan, 900000000.01, abs_tol=0.02)
