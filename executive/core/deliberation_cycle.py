@@ -16,6 +16,7 @@ from tailor.executive.core.plan_source import PlanSource, current_problem, reque
 from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.refinement.course_check import is_likelier_to_fail
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 
@@ -65,7 +66,7 @@ def _with_deliberation(context: Context, state: State) -> State:
     task = state.task
     ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
     idle = task.running is None and task.decision is None
-    if ongoing or not (idle or _bindings_violated(state)):
+    if ongoing or not (idle or _situation_changed(context, state)):
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
@@ -146,12 +147,18 @@ def _starts_another(decision: Decision, running: Running) -> bool:
     return (first.action.name, first.step, first.asserted) != same
 
 
-def _bindings_violated(state: State) -> bool:
-    """Whether a believed value to which the running sequence is bound has moved beyond its tolerance."""
+def _situation_changed(context: Context, state: State) -> bool:
+    """Whether a believed value to which the running sequence is bound has moved, or objects now put it at risk."""
     decision = state.task.decision
     if decision is None or state.task.running is None:
         return False
-    return decision.watch.bindings_violated(state.belief)
+    if decision.watch.bindings_violated(state.belief):
+        return True
+    now, choice = decision.watch.among_changed_objects(state.belief), decision.choice
+    if now is None:
+        return False
+    models, settings = context.models, context.settings.refinement
+    return is_likelier_to_fail(decision.sequence, choice.values, choice.failure, now, models, settings)
 
 
 def _prepared(context: Context, state: State, budget: Budget) -> State:

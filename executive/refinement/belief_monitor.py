@@ -28,14 +28,20 @@ class BeliefMonitor:
         self._objects = ContextMonitor(sequence)
 
     def bindings_violated(self, belief: Belief) -> bool:
-        """Whether a value or an object has moved beyond its tolerance and the plan can still be instantiated."""
+        """Whether a value has moved beyond its tolerance and the plan can still be instantiated."""
         try:
-            violated = any(self._violated(*binding, belief) for binding in self._bindings)
-            if not (violated or self._objects.objects_changed(belief)):
+            if not any(self._violated(*binding, belief) for binding in self._bindings):
                 return False
         except Conflict:
             return False
         return not isinstance(self._pattern.sequence(belief), Failure)
+
+    def among_changed_objects(self, belief: Belief) -> ActionSequence | None:
+        """The plan instantiated anew if an object is new, gone or moved beyond its tolerance; otherwise None."""
+        if not self._objects.objects_changed(belief):
+            return None
+        sequence = self._pattern.sequence(belief)
+        return None if isinstance(sequence, Failure) else sequence
 
     def _violated(self, identifier: int, bound: float, tolerance: float, belief: Belief) -> bool:
         believed = self._pattern.value(identifier, belief)

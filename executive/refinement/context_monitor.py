@@ -1,4 +1,4 @@
-"""Monitors the objects in whose context a sequence was decided: one that is new, gone or moved is a new situation."""
+"""Monitors the objects in whose context a sequence was decided: whether one is new, gone or moved."""
 
 from __future__ import annotations
 

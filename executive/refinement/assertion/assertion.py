@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from tailor.executive.interfaces.action_context import ContextRows
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.assertion.feasibility_check import FeasibilityCheck
-from tailor.executive.refinement.assertion.subgoal_comparison import SubgoalComparison, with_accepted_risk
+from tailor.executive.refinement.assertion.subgoal_comparison import (
+    SubgoalComparison,
+    with_accepted_risk,
+    with_any_risk,
+)
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
+HOPELESS = 0.9  # predicted probability of failure beyond which no way among objects is taken
 RISK_MARGIN = 0.05  # above the least failure probability of the samples; refinement needs more than a single point
 
 
@@ -38,6 +44,7 @@ class Assertion:
         self._position = 0
         self._feasibility: FeasibilityCheck | None = None
         self._comparison: SubgoalComparison | None = None
+        self._last_resort = ""  # why: every way is risky, and the comparison decides which one is taken
         # Before the first subgoal of the current action: sequence, position, least failure probability
         self._without_subgoal = (sequence, 0, 1.0)
 
@@ -91,7 +98,7 @@ class Assertion:
             self._accept_least_risk(least_failure + RISK_MARGIN)
             return True
         if depth >= self._settings.assertion_depth:
-            return Failure(f"{reason} even after {depth} asserted subgoals")
+            return self._resort(f"{reason} even after {depth} asserted subgoals", instance.context)
         if not depth:
             self._without_subgoal = (self._sequence, self._position, least_failure)
         alternative = with_subgoal(self._sequence, self._position)
@@ -100,6 +107,24 @@ class Assertion:
             self._comparison = SubgoalComparison(self._sequence, alternative, *args)
         else:
             self._assert_subgoal(alternative)
+        return True
+
+    def _resort(self, reason: str, objects: ContextRows) -> bool | Failure:
+        """Among objects, whose price is known, the way with the lower expected cost is taken; otherwise fail."""
+        if not objects:
+            return Failure(reason)
+        direct, position, _ = self._without_subgoal
+        self._position, self._last_resort = position, reason
+        args = (position, self._models, self._settings, self._rng)
+        self._comparison = SubgoalComparison(direct, self._sequence, *args)
+        return True
+
+    def _take(self, comparison: SubgoalComparison) -> bool | Failure:
+        """Take the cheaper way without limits, unless it is hopeless."""
+        if comparison.failure > HOPELESS:
+            return Failure(self._last_resort)
+        self._sequence, self._last_resort = with_any_risk(comparison.cheaper), ""
+        self._move_to(self._position + 1)
         return True
 
     def _accept_least_risk(self, risk: float) -> None:
@@ -116,12 +141,14 @@ class Assertion:
         self._sequence = with_accepted_risk(self._sequence, self._position, risk)
         self._move_to(self._position + 1)
 
-    def _compare(self, comparison: SubgoalComparison, budget: Budget) -> bool:
+    def _compare(self, comparison: SubgoalComparison, budget: Budget) -> bool | Failure:
         """Decide between both sequences by expected cost; False: the budget is spent."""
         cheaper = comparison.advance(budget)
         if cheaper is None:
             return False
         self._comparison = None
+        if self._last_resort:
+            return self._take(comparison)
         if cheaper:
             self._assert_subgoal(with_subgoal(self._sequence, self._position))
         else:

@@ -22,7 +22,7 @@ class SubgoalComparison:
 
     Args:
       direct: The sequence without the subgoal.
-      with_subgoal: The same with a subgoal asserted at `position`.
+      with_subgoal: The same with subgoals asserted at `position`.
       position: Index in `direct` of the action that may fail.
       models: Loaded models.
       settings: `risk_cost_s` is the price of a failure, `comparison_checks` the effort on each side.
@@ -44,11 +44,15 @@ class SubgoalComparison:
             with_subgoal = with_any_risk(with_subgoal)
         else:
             with_subgoal = with_accepted_risk(with_subgoal, position + 1, settings.p_fail_settle)
-        sides = (with_accepted_risk(direct, position, 1.0), position + 1), (with_subgoal, position + 2)
+        end = position + 1 + len(with_subgoal.actions) - len(direct.actions)
+        sides = (with_accepted_risk(direct, position, 1.0), position + 1), (with_subgoal, end)
+        self._sequences = tuple(sequence for sequence, _ in sides)
+        self._objectives = []
         self._solvers = []
         for sequence, end in sides:
             actions = sequence.actions[position:end]
             objective = SequenceObjective(actions, sequence.variables, models, limited, arrival_ids)
+            self._objectives.append(objective)
             self._solvers.append(solver_for(objective, limited, rng, objective.vectors(sequence.starts)))
 
     def advance(self, budget: Budget) -> bool | None:
@@ -59,6 +63,25 @@ class SubgoalComparison:
         if not (direct.finished and with_subgoal.finished):
             return None
         return with_subgoal.value < direct.value
+
+    @property
+    def cheaper(self) -> ActionSequence:
+        """The sequence with the lower expected cost, once both searches have finished."""
+        return self._sequences[self._index]
+
+    @property
+    def failure(self) -> float:
+        """Predicted probability that it fails; 1 if it has no valid choice."""
+        best = self._solvers[self._index].best
+        if best is None:
+            return 1.0
+        each = [float(prediction.failure[0]) for prediction in self._objectives[self._index].predict(best)]
+        return 1.0 - float(np.prod([1.0 - failure for failure in each]))
+
+    @property
+    def _index(self) -> int:
+        direct, with_subgoal = self._solvers
+        return int(with_subgoal.value < direct.value)
 
 
 def with_accepted_risk(sequence: ActionSequence, position: int, risk: float) -> ActionSequence:

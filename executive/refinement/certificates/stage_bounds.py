@@ -15,6 +15,7 @@ from tailor.executive.interfaces.action import unchanged
 from tailor.executive.interfaces.models import ModelBounds
 from tailor.executive.interfaces.values import Array, Columns, Spans
 from tailor.executive.refinement.certificates.boxes import Boxes
+from tailor.executive.refinement.objective.context_success import ContextBounds
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage import Stage
 from tailor.executive.refinement.solvers.chain_structure import Link
@@ -66,9 +67,19 @@ class StageBound:
             cost = cost + settings.energy_weight * self.energy.lower_bound(*arguments).mean(axis=0)
         if self.success is not None:
             failure = np.maximum(1 - self.success.upper_bound(*arguments), 0.0)
-            cost = cost + self.stage.failure_cost_s * failure.mean(axis=0)
+            cost = cost + self._least_price(failure, arguments)
             cost = np.where(failure.max(axis=0) > self.stage.p_fail_max, np.inf, cost)
         return np.broadcast_to(cost, (len(before), len(own)))
+
+    def _least_price(self, failure: Array, arguments: tuple[Columns, Columns]) -> Array:
+        """Least expected price of failures; one that meets an object has a price of its own."""
+        price: Array
+        if not isinstance(self.success, ContextBounds):
+            price = self.settings.risk_cost_s * failure.mean(axis=0)
+            return price
+        own, met = (np.maximum(1 - bound, 0.0) for bound in self.success.upper_bounds(*arguments))
+        price = self.settings.risk_cost_s * own.mean(axis=0) + self.stage.context_cost_s * met.mean(axis=0)
+        return price
 
     def _parameters(self, before: Boxes, own: Boxes) -> tuple[Columns, Columns]:
         """Lower and upper ends of the action's parameters; each column broadcasts to (n_arrivals, before, own)."""

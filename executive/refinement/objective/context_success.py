@@ -26,15 +26,20 @@ class ContextSuccess:
 
     def probability(self, arguments: Array) -> Array:
         """Probability of success, shape (n,), for arguments of shape (n, k); one model call for all objects."""
+        own, in_spite = self.factors(arguments)
+        return own * in_spite
+
+    def factors(self, arguments: Array) -> tuple[Array, Array]:
+        """Probability of success by itself, and in spite of the objects, each of shape (n,)."""
         count, objects = len(arguments), len(self.rows)
         extended = np.empty((objects, count, arguments.shape[1] + self.rows.shape[1]))
         extended[:, :, : arguments.shape[1]] = arguments
         extended[:, :, arguments.shape[1] :] = self.rows[:, None]
         beside = self.beside.probability(extended.reshape(objects * count, -1)).reshape(objects, count)
-        product = np.ones(count) if self.own is None else self.own.probability(arguments)
+        product: Array = np.ones(count)
         for probability in beside:  # in this order, on every machine
             product = product * probability
-        return product
+        return np.ones(count) if self.own is None else self.own.probability(arguments), product
 
     @property
     def bounds(self) -> ContextBounds | None:
@@ -55,13 +60,17 @@ class ContextBounds:
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """Lower bound of the probability; it has no standard deviation."""
-        bounds = [bound.lower_bound(*box) for bound, box in self._factors(lower, upper)]
-        return self._product(bounds)
+        own, in_spite = self._factored([bound.lower_bound(*box) for bound, box in self._factors(lower, upper)])
+        return own * in_spite
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """Upper bound of the probability."""
-        bounds = [bound.upper_bound(*box) for bound, box in self._factors(lower, upper)]
-        return self._product(bounds)
+        own, in_spite = self.upper_bounds(lower, upper)
+        return own * in_spite
+
+    def upper_bounds(self, lower: Columns, upper: Columns) -> tuple[Array, Array]:
+        """Upper bounds of success by itself, and in spite of the objects."""
+        return self._factored([bound.upper_bound(*box) for bound, box in self._factors(lower, upper)])
 
     def within(self, lower: Columns, upper: Columns) -> ContextBounds:
         """Bounds that are valid only for arguments in this box, each object's with the leaves near it."""
@@ -83,9 +92,10 @@ class ContextBounds:
             factors.append((bound, ((*lower, *constant), (*upper, *constant))))
         return factors
 
-    @staticmethod
-    def _product(bounds: list[Array]) -> Array:
-        product: Array = np.ones(1)
+    def _factored(self, bounds: list[Array]) -> tuple[Array, Array]:
+        """Bound of success by itself, and the product of the others."""
+        one: Array = np.ones(1)
+        own, product = (one if self.own is None else np.clip(bounds.pop(0), 0.0, 1.0)), one
         for bound in bounds:  # in the order of the probabilities: rounding keeps the order of products
             product = product * np.clip(bound, 0.0, 1.0)
-        return product
+        return own, product

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.arrivals import displacements
+from tailor.executive.refinement.objective.context_success import ContextSuccess
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
@@ -29,6 +30,7 @@ class Prediction:
     failure: Array  # mean probability of failure, including the risk to the next action
     worst_failure: Array  # maximum over the displaced arrivals
     energy_j: Array
+    failure_s: Array  # expected price of failures; an object that is met has one of its own
 
 
 class Stage:
@@ -62,7 +64,7 @@ class Stage:
         self._settings = settings
         self._risk_to_next = risk_to_next
         self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
-        self.failure_cost_s = failure_cost_s(instance, settings)
+        self.context_cost_s = context_cost_s(instance, settings)
         self._template = np.array([variables[i].value or 0.0 for i in ids])
         self.slots = np.array([j for j, i in enumerate(ids) if i in columns], dtype=np.intp)
         self.sources = np.searchsorted(self.columns, [columns[i] for i in ids if i in columns])
@@ -86,22 +88,31 @@ class Stage:
         arguments = self.action.arguments(parameters)
         self.evaluations += count * arrivals
         mean, std = self.models.duration.predict(arguments)
-        failure = worst = energy = np.zeros(count)
-        if self.models.success is not None:
-            failures = 1 - self.models.success.probability(arguments)
+        failure = own = worst = energy = met = np.zeros(count)
+        success = self.models.success
+        if isinstance(success, ContextSuccess):
+            alone, in_spite = success.factors(arguments)
+            failures = 1 - alone * in_spite
+            own, met = _mean(1 - alone, arrivals), _mean(1 - in_spite, arrivals)
+        elif success is not None:
+            failures = 1 - success.probability(arguments)
+            own = _mean(failures, arrivals)
+        if success is not None:
             failure, worst = _mean(failures, arrivals), failures.reshape(arrivals, count).max(axis=0)
         if self._risk_to_next is not None:
-            failure = 1 - (1 - failure) * (1 - _mean(self._risk_to_next(parameters), arrivals))
+            risk = _mean(self._risk_to_next(parameters), arrivals)
+            failure, own = 1 - (1 - failure) * (1 - risk), 1 - (1 - own) * (1 - risk)
         if self.models.energy is not None:
             energy = _mean(self.models.energy.predict(arguments)[0], arrivals)
-        return Prediction(_mean(mean, arrivals), _mean(std, arrivals), failure, worst, energy)
+        price_s = self._settings.risk_cost_s * own + self.context_cost_s * met
+        return Prediction(_mean(mean, arrivals), _mean(std, arrivals), failure, worst, energy, price_s)
 
     def cost(self, samples: Array) -> Array:
         """Seconds, shape (n,), for samples of shape (n, len(columns)); +inf is INVALID."""
         prediction, settings = self.predict(samples), self._settings
         cost: Array = prediction.duration_s + settings.k_std * prediction.std_s
         if self.models.success is not None or self._risk_to_next is not None:
-            cost += self.failure_cost_s * prediction.failure
+            cost += prediction.failure_s
         if self.models.energy is not None:
             cost += settings.energy_weight * prediction.energy_j
         valid = np.isfinite(cost) & (prediction.worst_failure <= self.p_fail_max)
@@ -127,11 +138,11 @@ class Stage:
         return displaced
 
 
-def failure_cost_s(instance: InstantiatedAction, settings: RefinementSettings) -> float:
-    """Price of a failed action; higher beside objects that cost more to meet. Settings without a price keep none."""
+def context_cost_s(instance: InstantiatedAction, settings: RefinementSettings) -> float:
+    """Price of meeting an object, at least that of a failure. Settings without a price keep none."""
     context = instance.action.context
-    if context is None or not instance.context or settings.risk_cost_s == 0:
-        return settings.risk_cost_s
+    if context is None or settings.risk_cost_s == 0:
+        return 0.0
     return max(settings.risk_cost_s, context.failure_cost_s)
 
 

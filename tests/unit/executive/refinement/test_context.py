@@ -139,7 +139,19 @@ def test_leg_to_a_subgoal_that_cannot_be_safe_is_accepted_at_its_least_risk():
     result = asserted(given, hard)
     assert names(result)[-1] == "goToPose"
     assert all(action.risk is not None and action.risk >= 0.5 for action in result.actions[:1])
-    assert isinstance(asserted(given, replace(hard, p_fail_settle=0.2)), Failure)
+
+
+def test_where_every_way_is_risky_the_likeliest_one_is_taken():
+    near = ((-2.0, 0.3, 0.2), IN_THE_WAY)
+    given = beside(near, [GO_AROUND], [START, GOAL])
+    result = asserted(given, replace(EXACT, compare_subgoals=False, p_fail_settle=0.2))
+    assert len(names(result)) == 1 + EXACT.assertion_depth
+    assert all(action.risk == 1.0 for action in result.actions)
+    search = Refinement(result, BESIDE, EXACT, np.random.default_rng(0))
+    search.advance(CheckBudget(300))
+    assert search.choice.valid
+    direct = beside(near, [GO_AROUND], [START, GOAL])
+    assert search.choice.failure[0] < 1 - success_of(direct.actions[0], ARGUMENTS[:1])[0]
 
 
 def monitor(belief) -> ContextMonitor:

@@ -1,0 +1,72 @@
+"""Check of a running course: how likely it fails from here, among the objects that are believed now.
+
+A believed object moves with every percept. A course that is as likely to succeed as when it was decided is kept: each
+new search may lead around the other side, and time is lost in turning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.assertion.asserted_subgoal import start_indices
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
+from tailor.executive.refinement.objective.settings import RefinementSettings
+
+MAX_RISE = 0.05  # of the predicted probability of failure since the decision
+
+
+def is_likelier_to_fail(
+    decided: ActionSequence,
+    values: Mapping[int, float],
+    failure: Sequence[float],
+    now: ActionSequence,
+    models: Models,
+    settings: RefinementSettings,
+) -> bool:
+    """Whether the decided course fails with a clearly higher probability than was predicted for it.
+
+    Args:
+      decided: Sequence whose first action runs.
+      values: Chosen values by variable id.
+      failure: Predicted probability of failure of each action within the horizon, when it was decided.
+      now: The plan instantiated from the belief of now.
+      models: Loaded models.
+      settings: Horizon and spread of arrivals.
+    """
+    course = from_here(decided.bind(values), now)
+    objective = SequenceObjective(course.within(settings.horizon), course.variables, models, settings)
+    predicted = [float(prediction.failure[0]) for prediction in objective.predict(np.empty(0))]
+    return _any_of(predicted) > _any_of(failure) + MAX_RISE
+
+
+def from_here(course: ActionSequence, now: ActionSequence) -> ActionSequence:
+    """A bound course whose first action starts from the state of now, and whose objects are those of now."""
+    first, believed = course.actions[0], _start(now, now.actions[0])
+    variables = list(course.variables)
+    for j in start_indices(first.action):
+        value = believed.get(first.action.parameters[j].quantity)
+        if value is not None:
+            variables[first.variables[j]] = variables[first.variables[j]].bound_to(value)
+    actions = tuple(
+        replace(each, context=now.contexts.get(each.action.name, ())) if each.action.context else each
+        for each in course.actions
+    )
+    return replace(course, actions=actions, variables=tuple(variables))
+
+
+def _start(sequence: ActionSequence, instance: InstantiatedAction) -> dict[str, float | None]:
+    """Values of an action's start state by quantity."""
+    parameters = instance.action.parameters
+    return {
+        parameters[j].quantity: sequence.variables[instance.variables[j]].value for j in start_indices(instance.action)
+    }
+
+
+def _any_of(probabilities: Sequence[float]) -> float:
+    """Probability that any of independent failures happens."""
+    return 1.0 - float(np.prod([1.0 - probability for probability in probabilities]))

@@ -1,0 +1,59 @@
+"""A running course is kept while it is as likely to succeed as when it was decided, wherever objects seem to be."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tailor.executive.refinement.course_check import from_here, is_likelier_to_fail
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tests.unit.executive.refinement.synthetic_context import BESIDE, GO_AROUND, beside
+
+START = {"x": -2.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+GOAL = {"x": 2.0, "y": 0.0, "phi": (-1.0, 1.0), "v": 0.0}
+ASIDE = (0.0, 1.0, 0.2)
+EXACT = RefinementSettings(arrival_spread=(), certify_checks=0)
+
+
+def now(objects, start=START):
+    return beside(objects, [GO_AROUND], [start, GOAL])
+
+
+def likelier(objects, start=START, failure=(0.0,)) -> bool:
+    decided = now((ASIDE,))
+    values = {variable.id: 0.0 for variable in decided.free()}
+    return is_likelier_to_fail(decided, values, failure, now(objects, start), BESIDE, EXACT)
+
+
+@pytest.mark.parametrize(
+    ("objects", "expected"),
+    [
+        ((ASIDE,), False),
+        (((0.0, 0.8, 0.2),), False),  # it moved, and is still out of the way
+        (((0.0, 0.1, 0.2),), True),
+        ((ASIDE, (1.0, 0.0, 0.2)), True),  # a new one
+        ((), False),
+    ],
+)
+def test_only_an_object_in_the_way_matters(objects, expected):
+    assert likelier(objects) is expected
+
+
+def test_object_that_was_passed_does_not_matter():
+    in_the_way = ((-1.0, 0.1, 0.2),)
+    assert likelier(in_the_way)
+    assert not likelier(in_the_way, {**START, "x": 0.5})
+
+
+def test_risk_that_was_accepted_is_not_decided_anew():
+    assert likelier(((0.0, 0.1, 0.2),))
+    assert not likelier(((0.0, 0.1, 0.2),), failure=(0.99,))
+
+
+def test_course_starts_from_the_state_of_now():
+    decided, here = now((ASIDE,)), now(((0.5, 0.5, 0.2),), {**START, "x": 0.5, "v": 0.4})
+    course = from_here(decided.bind({variable.id: 0.3 for variable in decided.free()}), here)
+    first = course.actions[0]
+    values = {p.name: course.variables[i].value for p, i in zip(first.action.parameters, first.variables, strict=True)}
+    assert (values["x"], values["v"], values["xg"], values["phig"]) == (0.5, 0.4, 2.0, 0.3)
+    assert np.allclose(first.context, here.actions[0].context)
