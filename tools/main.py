@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import importlib
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
 from tailor import __version__
@@ -52,6 +54,15 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "models": ("tailor.tools.commands.learn.models", "list, show, plot and check action models"),
     "evaluate": ("tailor.tools.commands.measure.evaluate", "reproduce the paper's tables and figures"),
     "bench": ("tailor.tools.commands.measure.bench", "measure speed and memory"),
+    "completion": ("tailor.tools.completion", "print a script that completes commands and flags in a shell"),
+}
+# by the folder of a command's module
+GROUPS = {
+    "run": "robots and plans",
+    "look": "runs, live and recorded",
+    "learn": "action models",
+    "measure": "evaluations and benchmarks",
+    "completion": "the shell",
 }
 
 
@@ -73,7 +84,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
     name, *rest = arguments
     if name not in COMMANDS:
-        print(f"tailor: unknown command '{name}' (expected one of: {', '.join(COMMANDS)})", file=sys.stderr)
+        print(f"tailor: unknown command '{plain(name)}'{_nearest(name, COMMANDS)} (see tailor --help)", file=sys.stderr)
         return 2
     try:
         code = _call(name, rest)
@@ -105,14 +116,25 @@ class _Parser(argparse.ArgumentParser):
     """Reports an error in one line, like all other errors, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message} (see {self.prog} --help)")
+        unknown = re.match(r"unrecognized arguments: (--[^\s=]+)", message)
+        meant = _nearest(unknown[1], self._option_string_actions) if unknown else ""
+        raise UsageError(f"{message}{meant} (see {self.prog} --help)")
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
+    """A question about the known word that was probably meant; empty if none is like it."""
+    near = difflib.get_close_matches(word, list(known), n=1)
+    return f", did you mean {near[0]}?" if near else ""
 
 
 def _overview() -> str:
     width = max(map(len, COMMANDS))
-    lines = [f"  {name:<{width}}  {text}" for name, (_, text) in COMMANDS.items()]
-    usage = "usage: tailor COMMAND [...]   (see tailor COMMAND --help)"
-    return "\n".join([usage, "", "commands:", *lines])
+    lines = ["usage: tailor COMMAND [...]   (see tailor COMMAND --help)"]
+    for group, title in GROUPS.items():
+        lines += ["", f"{title}:"]
+        own = (name for name, (module, _) in COMMANDS.items() if group in module.split("."))
+        lines += [f"  {name:<{width}}  {COMMANDS[name][1]}" for name in own]
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":
