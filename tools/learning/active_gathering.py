@@ -20,7 +20,7 @@ from tailor.executive import domains
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.tools.learning import gathering
 from tailor.tools.learning.refined_choices import Choice, refined_choices
-from tailor.tools.learning.run_gathering import modelled_actions, models_hash, prepare
+from tailor.tools.learning.run_gathering import prepare_chosen
 from tailor.tools.learning.steps import Step, counted
 from tailor.tools.lockstep import action_run
 
@@ -68,14 +68,11 @@ def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]
 
     about: dict[str, Any] = {
         "source": "lock-step, choices with the largest disagreement",
-        "seed": active.seed,
-        "scenarios": list(active.scenarios),
         "situations": len(active.situations),
-        "models_sha256": models_hash(domains.load(active.domain).robot, active.zoo),
         "on_policy": False,  # they are selected, so they do not tell how often an optimiser's choices are wrong
         "episodes": active.episodes,
     }
-    prepare(active.domain, active.folder, modelled_actions(active.domain), about, active.situations, resume)
+    prepare_chosen(active, about, active.situations, resume)
     total = len(active.situations)
     missing = [first for first in range(0, total, CHUNK) if not _pool_path(active, first).exists()]
     refined = Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_refine)(active, m) for m in missing)

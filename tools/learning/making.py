@@ -82,6 +82,10 @@ class Making:
         """Folder of the finished models."""
         return self.rounds / "zoo"
 
+    def chooser(self, number: int) -> Path:
+        """Folder of the models that choose the episodes of round `number`, from 0."""
+        return self.rounds / f"zoo-{number}"
+
     @property
     def data(self) -> list[Path]:
         """Folders with the data sets of the random episodes, and of each round."""
@@ -97,7 +101,7 @@ def make(making: Making) -> Iterator[Step]:
     """
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
-        zoo = making.rounds / f"zoo-{number}"
+        zoo = making.chooser(number)
         yield from _trained(making, zoo, making.data[: number + 1], CHOOSING)
         yield from _round(making, number, each, zoo)
     yield from _trained(making, making.zoo, making.data, making.kinds)

@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from tailor.executive import domains
 from tailor.executive.composition import load_models
@@ -62,14 +62,7 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     """
     from joblib import Parallel, delayed
 
-    about: dict[str, Any] = {
-        "source": "lock-step, refined choices",
-        "seed": policy.seed,
-        "scenarios": list(policy.scenarios),
-        "models_sha256": models_hash(domains.load(policy.domain).robot, policy.zoo),
-    }
-    about["episodes"] = policy.runs
-    prepare(policy.domain, policy.folder, modelled_actions(policy.domain), about, policy.jobs, resume)
+    prepare_chosen(policy, {"source": "lock-step, refined choices", "episodes": policy.runs}, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
 
@@ -80,6 +73,46 @@ def models_hash(robot: str, zoo: str) -> str:
     models = {**loaded.durations, **loaded.successes}
     entries = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
     return hashlib.sha256("\n".join(entries).encode()).hexdigest()
+
+
+class Chosen(Protocol):
+    """Data sets of choices by the current models; see `Policy` and `active_gathering.Active`."""
+
+    @property
+    def domain(self) -> str:
+        """Name of the domain."""
+        ...
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """Where they choose."""
+        ...
+
+    @property
+    def seed(self) -> int:
+        """Of situations and noise."""
+        ...
+
+    @property
+    def zoo(self) -> str:
+        """Folder of the models."""
+        ...
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the data sets."""
+        ...
+
+
+def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], resume: bool) -> None:
+    """Create the folders of data sets that models choose; see `prepare`."""
+    entries = {
+        **about,
+        "seed": chosen.seed,
+        "scenarios": list(chosen.scenarios),
+        "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
+    }
+    prepare(chosen.domain, chosen.folder, modelled_actions(chosen.domain), entries, runs, resume)
 
 
 def prepare(

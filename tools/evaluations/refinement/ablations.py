@@ -16,7 +16,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, share_interval
-from tailor.tools.evaluations.refinement.replicas import RANDOM_ZOO, Recipe, replica
+from tailor.tools.evaluations.refinement.replicas import Recipe, replica
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
@@ -111,8 +111,8 @@ def row(name: str, judged: Judged) -> dict[str, Any]:
 def _without_policy(domain: str, starts: Sequence[int], arguments: argparse.Namespace) -> list[dict[str, Any]]:
     """Rows of models with an on-policy round, and of the same without it."""
     recipe = Recipe(domain, (arguments.scenario,), arguments.model_episodes, arguments.model_runs)
-    zoo = replica(recipe, 1, arguments.store, arguments.jobs)
-    both, random = (_run(domain, made, ABLATIONS[:1], starts, arguments) for made in (zoo, zoo.with_name(RANDOM_ZOO)))
+    made = replica(recipe, 1, arguments.store, arguments.jobs)
+    both, random = (_run(domain, zoo, ABLATIONS[:1], starts, arguments) for zoo in (made.zoo, made.chooser(0)))
     default = both["default"]
     return [
         row("trained anew", Judged(both["h1"], default, default)),

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
@@ -114,9 +113,8 @@ def _scenarios(arguments: argparse.Namespace, preset: Preset) -> tuple[str, list
 def _other_models(domain: str, scenarios: Sequence[str], arguments: argparse.Namespace) -> list[str]:
     """Zoos of models that are trained anew."""
     recipe = Recipe(domain, tuple(scenarios), arguments.model_episodes, arguments.model_runs)
-    return [
-        str(Path(replica(recipe, number, arguments.store, arguments.jobs))) for number in range(1, arguments.models + 1)
-    ]
+    numbers = range(1, arguments.models + 1)
+    return [str(replica(recipe, number, arguments.store, arguments.jobs).zoo) for number in numbers]
 
 
 def _paper(preset: Preset, domain: str) -> list[str]:

@@ -4,30 +4,26 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
-from rich.progress import Progress
 from scipy import stats
 
 from tailor.executive import domains
-from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
-from tailor.tools.learning import gathering, run_gathering
-from tailor.tools.learning.training_request import TrainingRequest
-from tailor.tools.learning.training_run import train_models
+from tailor.tools.learning.making import CHOOSING, Making, make
+from tailor.tools.learning.recipe import Round, read_recipe, recipe_path
+from tailor.tools.learning.steps import show
 
-RANDOM_ZOO = "zoo-random"  # models before the on-policy round, beside those after it
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """How a replica is made.
+    """In what a replica differs from the recipe of the robot's models.
 
     Attributes:
       domain: Name of the domain.
@@ -57,55 +53,27 @@ def configure_replicas(parser: argparse.ArgumentParser) -> None:
                         help="runs a scenario of its on-policy round (default %(default)s; 0: none)")  # fmt: skip
 
 
-def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Path:
-    """A zoo with models trained on episodes that no other replica has seen; made at the first call, found at the next.
+def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
+    """Models learned as those that ship, from episodes that no other replica has seen; made once.
 
-    A call that was broken off goes on where it stopped.
+    A call that was broken off goes on where it stopped. Energies are not learned: while they have no price, no choice
+    depends on them.
 
     Args:
       recipe: What goes into it.
       number: Which one, from 1.
       store: Folder for all replicas; other controllers or bodies, other replicas.
       jobs: Processes.
+
+    Raises:
+      UsageError: The robot's models have no recipe, or see `make`.
     """
-    made_by = episodes_sha256(recipe.domain)[:12]
-    folder = (
-        store
-        / "replicas"
-        / "-".join([recipe.robot, *recipe.scenarios, str(recipe.episodes), str(recipe.runs), made_by])
-        / str(number)
-    )
-    seed = FIRST_SEED + number
-    _gather(recipe, seed, folder / "random", jobs)
-    zoo = _trained(recipe, seed, folder / RANDOM_ZOO, [folder / "random"])
-    if not recipe.runs:
-        return zoo
-    policy = run_gathering.Policy(recipe.domain, recipe.scenarios, recipe.runs, seed, str(zoo), folder / "policy")
-    _finish(run_gathering.run_policy(policy, jobs), f"model {number}: on-policy")
-    return _trained(recipe, seed, folder / "zoo", [folder / "random", folder / "policy"])
-
-
-def _gather(recipe: Recipe, seed: int, folder: Path, jobs: int) -> None:
-    for action in run_gathering.modelled_actions(recipe.domain):
-        spec = gathering.DataSetSpec(recipe.domain, action, recipe.episodes, seed, folder / action)
-        gathering.prepare(spec, resume=True)
-        _finish(gathering.gather(spec, gathering.missing_parts(spec), jobs), f"{action}, seed {seed}")
-
-
-def _finish(running: Any, title: str) -> None:
-    with Progress(transient=True, console=Console(stderr=True)) as progress:
-        for _ in progress.track(running, total=None, description=title):
-            pass
-
-
-def _trained(recipe: Recipe, seed: int, zoo: Path, data: list[Path]) -> Path:
-    """Train as `tailor train` does, unless that has been done."""
-    whole = zoo / "whole"  # written last
-    if not whole.exists():
-        with Console(stderr=True).status(f"training in {zoo}"):
-            train_models(TrainingRequest(recipe.robot, zoo, data=tuple(data), seed=seed))
-        whole.touch()
-    return zoo
+    rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
+    shipped = read_recipe(recipe_path(recipe.robot))
+    own = replace(shipped, episodes=recipe.episodes, seed=FIRST_SEED + number, rounds=rounds)
+    making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
+    show(make(making), False, {}, f"model {number}: ")
+    return making
 
 
 def over_models(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
