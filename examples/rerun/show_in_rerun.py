@@ -25,7 +25,7 @@ def main(recording: str, target: str) -> None:
     with open(recording, "rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         for schema, channel, message, value in reader.iter_decoded_messages():
-            rr.set_time("time", duration=message.log_time * 1e-9)
+            rr.set_time("time", timestamp=message.log_time * 1e-9)
             if schema.name == "tf2_msgs/msg/TFMessage":
                 for each in value.transforms:
                     parent = frames.setdefault(each.header.frame_id, f"/{each.header.frame_id}")

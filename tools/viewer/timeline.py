@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas import messages as m
+from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.scenes.flat import flat, projected
@@ -100,7 +101,10 @@ class RunTimeline:
         """Ground truth that can be drawn, else a series of numbers."""
         if isinstance(message, NOT_SHOWN):
             return []
-        if key.partition("/")[2] in TRUTH_KEYS and (scene := self._scenes.of_truth(message)):
+        robot, _, topic = key.partition("/")
+        if topic in TRUTH_KEYS and not self._scenes.robot and robot in robot_names():  # the executive is not up yet
+            self._scenes = RobotScenes(spec_of_robot(robot).name)
+        if topic in TRUTH_KEYS and (scene := self._scenes.of_truth(message)):
             return self._path(at_s, "truth", scene)
         return self._sampled(at_s, f"series {key.rpartition('/')[2]}", event_fields.numbers(message))
 

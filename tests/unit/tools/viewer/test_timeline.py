@@ -60,6 +60,13 @@ def test_an_arm_has_a_pen_without_a_heading_and_links_that_turn() -> None:
     assert "outline believed column" in kinds(first) - kinds(second), "what does not change is sent once"
 
 
+def test_a_simulator_is_drawn_as_its_robot_before_the_executive_is_up() -> None:
+    events = RunTimeline().events_of(0.0, "agilo/sim/truth", SoccerGroundTruth(0, *[0.0] * 9))
+    assert "outline truth chassis" in kinds(events)
+    stranger = RunTimeline().events_of(0.0, "b21/sim/pose", m.PlanarTruth(0, *[0.0] * 5))
+    assert "outline truth robot" in kinds(stranger), "by convention"
+
+
 def arm_status(lift: float) -> m.ExecStatus:
     return synthetic_run.status(0, "EXECUTING", "", "reach", 0, 0.1, 1.0, (0.3, 0.0, lift, 0.0))
 
