@@ -7,6 +7,7 @@ Needs rerun-sdk and mcap-ros2-support beside Tailor:
 """
 
 import sys
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -25,6 +26,8 @@ def main(recording: str, target: str) -> None:
     with open(recording, "rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         for schema, channel, message, value in reader.iter_decoded_messages():
+            if schema is None:
+                continue
             rr.set_time("time", timestamp=message.log_time * 1e-9)
             if schema.name == "tf2_msgs/msg/TFMessage":
                 for each in value.transforms:
@@ -37,13 +40,13 @@ def main(recording: str, target: str) -> None:
                     rr.log(path, moved(marker.pose.position, marker.pose.orientation), drawn(marker))
 
 
-def moved(place, turn) -> rr.Transform3D:
+def moved(place: Any, turn: Any) -> rr.Transform3D:
     """Pose of a frame or a marker in its parent."""
     rotation = rr.Quaternion(xyzw=(turn.x, turn.y, turn.z, turn.w))
     return rr.Transform3D(translation=(place.x, place.y, place.z), quaternion=rotation)
 
 
-def drawn(marker):
+def drawn(marker: Any) -> Any:
     """A marker as rerun's shape."""
     colour = [round(255 * part) for part in (marker.color.r, marker.color.g, marker.color.b, marker.color.a)]
     half = np.array((marker.scale.x, marker.scale.y, marker.scale.z)) / 2

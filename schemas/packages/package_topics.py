@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, is_dataclass
-from importlib import import_module
+from dataclasses import dataclass, is_dataclass, replace
+from importlib import import_module, resources
 from typing import Any
 
 from tailor.schemas.messages import ArmRequest, EStop, Message
 from tailor.schemas.packages.discovery import Package
+from tailor.schemas.packages.msg_reader import read_messages
 from tailor.schemas.packages.ros_names import PACKAGE, ros_type
+from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.packages.topic import Topic
 
 SOURCES = ("driver", "executive", "simulator")
@@ -31,12 +33,17 @@ class PackageTopics:
 
 def add_topics(known: Mapping[str, Topic], packages: Sequence[Package]) -> PackageTopics:
     """Add the topics of packages, those of one package all or none."""
-    topics, faults = dict(known), {}
+    topics, faults = dict(known), dict[str, tuple[str, ...]]()
     for package in packages:
         if package.spec is None or package.faults or not package.spec.topics:
             continue
         try:
-            added = _load(package.spec.topics)
+            types = messages_of(package.spec)
+        except Exception as error:
+            faults[package.name] = (f"messages = '{package.spec.messages}': {error}",)
+            continue
+        try:
+            added = _typed(_load(package.spec.topics), types)
         except Exception as error:
             wrong: tuple[str, ...] = (f"topics = '{package.spec.topics}': {type(error).__name__}: {error}",)
         else:
@@ -46,6 +53,31 @@ def add_topics(known: Mapping[str, Topic], packages: Sequence[Package]) -> Packa
         else:
             topics.update(added)
     return PackageTopics(topics, faults)
+
+
+def messages_of(spec: DomainSpec) -> dict[str, Any]:
+    """Message types of the files in the folder that a spec names, by name; none if it names none.
+
+    Raises:
+      ValueError: A file cannot be read; the message names file and line.
+    """
+    package, _, path = spec.messages.rpartition(":")
+    if not spec.messages:
+        return {}
+    folder: Any = resources.files(package or spec.package) / path
+    return dict(read_messages(folder))
+
+
+def _typed(added: Any, types: Mapping[str, type]) -> Any:
+    """The table with types for their names; what is no table, or has no such type, is left for the check."""
+    if not isinstance(added, Mapping):
+        return added
+    return {
+        name: replace(topic, type=types.get(topic.type, topic.type))
+        if isinstance(topic, Topic) and isinstance(topic.type, str)
+        else topic
+        for name, topic in added.items()
+    }
 
 
 def _load(written: str) -> Any:

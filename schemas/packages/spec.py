@@ -26,6 +26,7 @@ class DomainSpec:
       driver: File that declares command, axes with limits, and sensors with rates.
       body: Callable without arguments that returns a tailor.simnodes.body.Body; empty for a robot without simulator.
       topics: Topics of the robot beside those that Tailor ships, by name; loaded with the table of topics.
+      messages: Folder of a ROS 2 interface package, `FOLDER/msg/*.msg`; a topic may name its type by the file's name.
       sampler: Callable without arguments that returns a TaskSampler, see tailor.tools.lockstep.action_run.
       features: Tuple of FeatureSpaces beside those that Tailor ships.
       scenarios: Folder of scenario files, from which `draw` draws.
@@ -42,6 +43,7 @@ class DomainSpec:
     driver: str = "driver.toml"
     body: str = ""
     topics: str = ""
+    messages: str = ""
     sampler: str = ""
     features: str = ""
     scenarios: str = "scenarios"

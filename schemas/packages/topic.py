@@ -16,7 +16,7 @@ class Topic:
     """One row of the table; `{robot}` in a key is a placeholder for the robot's name."""
 
     key: str
-    type: type[Message]
+    type: type[Message]  # in the table of a package with `messages` also the name of one of its files, e.g. "Grip"
     rate_hz: float  # 0: on demand or on change
     source: Source
     fresh_s: float | None = None  # a message older than this is stale; None: never

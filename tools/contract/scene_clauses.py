@@ -50,11 +50,12 @@ def belief_is_drawn_where_the_truth_is(subject: Subject, case: str) -> Iterator[
 
 @clause("scenario", needs="scene")
 def subgoals_have_places(subject: Subject, case: str) -> Iterator[str]:
-    """A subgoal with values for all quantities of an action's goal is drawn somewhere."""
+    """A subgoal with values for all quantities of an action's last label is drawn somewhere."""
     view = subject.scene
     for name, action in subject.domain.actions.items():
-        goals = {p.name.removesuffix("g"): (p.lower + p.upper) / 2 for p in action.parameters if p.name.endswith("g")}
-        if goals and view.of_subgoal(goals) is None:
+        last = max(parameter.argument for parameter in action.parameters)
+        goals = {p.quantity: (p.lower + p.upper) / 2 for p in action.parameters if p.argument == last}
+        if view.of_subgoal(goals) is None:
             yield f"{name}: of_subgoal returns None for {', '.join(goals)}"
 
 

@@ -44,6 +44,7 @@ class RobotScenes:
         """Load the scene that a domain declares; "" or a domain that is not installed: the convention alone."""
         self._view: Any = planar_convention
         self._names: tuple[str, ...] = ()
+        self._quantities: dict[str, dict[str, str]] = {}
         self._truth: dict[type, Scene] = {}
         self.robot = self.fault = ""
         self.has_odometry = False
@@ -53,6 +54,8 @@ class RobotScenes:
         except UsageError:
             spec = None
         if spec is not None:
+            actions = loaded.actions.items()
+            self._quantities = {name: {p.name: p.quantity for p in action.parameters} for name, action in actions}
             self.has_odometry = "odom" in loaded.sensors
             self.robot, self._names = spec.robot, tuple(_bare(name) for name in loaded.belief_names)
             self._view = part(spec, "scene") if spec.scene else planar_convention
@@ -83,10 +86,14 @@ class RobotScenes:
             for parameter in action.parameters:
                 if parameter.label != start:
                     known = values.setdefault(parameter.label, {})
-                    known.setdefault(parameter.name.removesuffix("g"), parameter.value)
+                    known.setdefault(self._quantity(action.action, parameter.name), parameter.value)
                     free |= set() if parameter.bound else {parameter.label}
         poses = ((label, self._called("of_subgoal", known), "phi" in known) for label, known in values.items())
         return tuple(Subgoal(label, pose, headed, label in free) for label, pose, headed in poses if pose is not None)
+
+    def _quantity(self, action: str, parameter: str) -> str:
+        """Quantity of an action's parameter as its domain declares it."""
+        return self._quantities.get(action, {}).get(parameter, parameter.removesuffix("g"))
 
     def _made(self, function: str, argument: Any) -> Scene | None:
         scene = self._called(function, argument)

@@ -10,6 +10,7 @@ from tailor.tools.new_robot.templates import kinds
 from tests.support.bus_system import ROOT
 from tests.support.robots.fresh_environment import Environment, built, copied_source
 
+PORTER = ROOT / "tests" / "support" / "robots" / "porter"
 FORKLIFT = ROOT / "tests" / "support" / "robots" / "forklift"
 EPISODES = 120  # few, for time's sake: enough to learn from
 
@@ -66,3 +67,14 @@ def test_a_package_with_messages_axes_and_features_of_its_own_runs(editable, env
     assert "truck_msgs/msg/TruckCommand" in run(work, "tailor", "info", "run.mcap")
     if editable:
         assert "passed" in run(folder, "pytest")
+
+
+def test_a_robot_with_two_outlets_runs_and_one_guard_stops_both(environment, run, tmp_path):
+    folder = Path(shutil.copytree(PORTER, tmp_path / "porter"))
+    environment.install("--no-build-isolation", "--editable", folder)
+    from_episodes_to_a_verified_run(run, folder, "depot", "porter-3")
+    told = run(folder, "tailor", "info", "run.mcap")
+    assert "porter_msgs/msg/RailCommand" in told
+    assert "porter_msgs/msg/GripCommand" in told
+    stopped = run(folder, "python", ROOT / "tests" / "e2e" / "packages" / "silence_one_outlet.py", free_endpoint())
+    assert stopped.strip() == "stopped"

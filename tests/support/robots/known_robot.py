@@ -8,7 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from tailor.schemas import codec, typesystem
+from tailor.schemas.own import converters
 from tailor.schemas.packages import discovery
+from tailor.schemas.topics import TOPICS
 from tailor.tools.new_robot.names import package_of
 from tailor.tools.new_robot.templates import write_robot
 
@@ -16,15 +19,37 @@ from tailor.tools.new_robot.templates import write_robot
 @contextmanager
 def known_robot(name: str, kind: str, into: Path) -> Iterator[Path]:
     """The folder of a new robot; commands in this process know it meanwhile."""
-    folder, package = write_robot(name, kind, into), package_of(name)
-    point, declared = EntryPoint(name, f"{package}:SPEC", discovery.GROUP), discovery._declared
+    with known_package(name, package_of(name), write_robot(name, kind, into)) as folder:
+        yield folder
+
+
+@contextmanager
+def known_package(domain: str, package: str, folder: Path) -> Iterator[Path]:
+    """A folder with the package of a robot; commands in this process know its domain meanwhile."""
+    point, declared = EntryPoint(domain, f"{package}:SPEC", discovery.GROUP), discovery._declared
     try:
         with pytest.MonkeyPatch.context() as patch:
             patch.syspath_prepend(str(folder))
             patch.setattr(discovery, "_declared", lambda: iter([*declared(), point]))
-            discovery.packages.cache_clear()
+            _forget()
             yield folder
     finally:
-        discovery.packages.cache_clear()
+        _forget()
         for module in [each for each in sys.modules if each.split(".")[0] == package]:
             del sys.modules[module]
+
+
+def _forget() -> None:
+    """Read packages, topics and message types anew."""
+    TOPICS.__dict__.pop("_read", None)
+    for cached in (
+        discovery.packages,
+        typesystem.message_types,
+        typesystem.own_types,
+        typesystem.typestore,
+        typesystem.type_of,
+        codec._codec,
+        codec._limit,
+        converters,
+    ):
+        cached.cache_clear()

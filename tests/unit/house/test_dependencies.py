@@ -14,7 +14,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 TEST_MODULES = [
     p.relative_to(ROOT).as_posix() for folder in ("tests", "examples") for p in (ROOT / folder).rglob("*.py")
 ]
-OURS = {"tailor", "tests", "truck"}  # truck: a robot's package that tests install
+OURS = {"tailor", "tests", "truck", "porter"}  # the last two: robots' packages that tests install
 DISTRIBUTIONS = packages_distributions()
 
 

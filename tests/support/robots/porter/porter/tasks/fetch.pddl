@@ -1,0 +1,5 @@
+(define (problem fetch)
+  (:domain depot)
+  (:objects home shelf wide tight)
+  (:init (at home) (next home shelf) (loads shelf) (open wide) (tighter wide tight))
+  (:goal (holding tight)))

@@ -1,0 +1,5 @@
+(define (problem tour)
+  (:domain depot)
+  (:objects home gate shelf wide tight)
+  (:init (at home) (next home gate) (next gate shelf) (loads shelf) (open wide) (tighter wide tight))
+  (:goal (and (visited gate) (holding tight))))
