@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float32]
 
 BATCH = 128
-STEPS = 2000
+STEPS = 4000  # half as many: errors 5 % larger on 2000 episodes of each soccer action
 LEARNING_RATE = 1e-2
 DECAYS = np.float32(0.9), np.float32(0.999)  # of the two moments
 TINY = np.float32(1e-8)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.executive import domains
+from tailor.models.cards.card import KINDS
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
@@ -28,6 +29,7 @@ from tailor.tools.learning.training_request import (
     DEFAULT_FAILURE_LEARNER,
     DEFAULT_LEARNER,
     TrainingRequest,
+    data_sets,
 )
 from tailor.tools.learning.training_run import train_models
 
@@ -172,9 +174,21 @@ def _trained(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...]
         present = tuple(folder for folder in (*data, *near) if any(folder.glob(f"*/{MANIFEST}")))
         if not present:
             raise UsageError(f"{making.work}: no episodes to train on")
-        train_models(_request(making, zoo, present, kinds))
+        _train(_request(making, zoo, present, kinds), making.jobs)
         (zoo / WHOLE).touch()
     yield Step(title, 1, 1)
+
+
+def _train(request: TrainingRequest, jobs: int) -> None:
+    """Train each model in a process of its own: equal bits for any number of jobs."""
+    from joblib import Parallel, delayed
+
+    each = [
+        dataclasses.replace(request, actions=(action,), kinds=(kind,))
+        for kind in request.kinds or KINDS
+        for action in data_sets(request)
+    ]
+    Parallel(n_jobs=jobs)(delayed(train_models)(one) for one in each)
 
 
 def _request(making: Making, zoo: Path, data: tuple[Path, ...], kinds: tuple[str, ...]) -> TrainingRequest:

@@ -1,5 +1,6 @@
 """Making models from recipes: from seeds, resumable, and the same bits again."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from tailor.schemas.installed import robot_names
 from tailor.tools.learning import making as making_module
 from tailor.tools.learning.making import Making, install, make
 from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
+from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
 TINY = Recipe(40, rounds=(Round("on-policy", ("approach",), 1),))
@@ -19,13 +21,13 @@ def trained(monkeypatch) -> list:
     """Requests of training, which writes a card and no model."""
     requests = []
 
-    def train(request) -> None:
+    def train(request, jobs) -> None:
         requests.append(request)
         folder = request.zoo / request.robot / "goToPose"
         folder.mkdir(parents=True)
         (folder / "duration.card.json").write_text(f"of {len(request.data)}")
 
-    monkeypatch.setattr(making_module, "train_models", train)
+    monkeypatch.setattr(making_module, "_train", train)
     monkeypatch.setattr(making_module, "check_complete", lambda _: None)
     monkeypatch.setattr(making_module.run_gathering, "models_hash", lambda *_: "models")
     monkeypatch.setattr(making_module.run_gathering, "_run", lambda *_: [])
@@ -41,6 +43,20 @@ def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, tr
     ]  # fmt: skip
     assert all(request.command == "make" for request in trained)
     assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
+
+
+def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypatch) -> None:
+    """So several processes can train, and no model depends on the others."""
+    for action in ("goToPose", "reach"):
+        (tmp_path / action).mkdir()
+        (tmp_path / action / "manifest.json").touch()
+    requests: list[TrainingRequest] = []
+    monkeypatch.setattr(making_module, "train_models", requests.append)
+    whole = TrainingRequest("agilo", tmp_path, data=(tmp_path,), kinds=("duration", "success"))
+    making_module._train(whole, 1)
+    each = [(request.actions, request.kinds) for request in requests]
+    assert each == [((a,), (k,)) for k in ("duration", "success") for a in ("goToPose", "reach")]
+    assert {replace(request, actions=(), kinds=whole.kinds) for request in requests} == {whole}
 
 
 def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_others(tmp_path: Path) -> None:
