@@ -7,6 +7,7 @@ disagree most (active). Every point is the mean over sets of models, each gather
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -92,7 +93,12 @@ def run(arguments: argparse.Namespace) -> int:
             "seed": arguments.seed if arguments.seed is not None else _first_seed(domain),
         }
     )
-    rows = [_row(Point(method, count), settings) for count in episodes for method in arguments.methods]
+    points = [Point(method, count) for count in episodes for method in arguments.methods]
+    found: dict[Point, list[dict[str, float]]] = {point: [] for point in points}
+    for number in range(1, settings.sets + 1):  # whole curves first: a later call with more sets finds these again
+        for point in points:
+            found[point].append(_figures(point, number, settings))
+    rows = [_row(point, found[point], settings.starts) for point in points]
     plots = {}
     if arguments.report is not None:
         plots["improvement over episodes"] = _plot(rows, arguments.report / "learning-curves.png")
@@ -108,15 +114,14 @@ def _first_seed(domain: str) -> int:
     return FIRST_SEED + int(runs_sha256(domain)[:DIGITS], 16)
 
 
-def _row(point: Point, settings: argparse.Namespace) -> dict[str, Any]:
-    sets = [_figures(point, number, settings) for number in range(1, settings.sets + 1)]
+def _row(point: Point, sets: Sequence[dict[str, float]], starts: int) -> dict[str, Any]:
     gains = np.array([figures["improvement_pct"] for figures in sets])
     means = {key: float(np.mean([figures[key] for figures in sets])) for key in sets[0] if key != "improvement_pct"}
     return {
         "gathered": point.method,
         "episodes": point.episodes,
         "sets": len(sets),
-        "n": settings.starts * len(sets),
+        "n": starts * len(sets),
         "improvement_pct": float(gains.mean()),
         "ci95": mean_interval(gains),
         **means,
@@ -124,14 +129,26 @@ def _row(point: Point, settings: argparse.Namespace) -> dict[str, Any]:
 
 
 def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[str, float]:
-    """What one set of models gains, and how far it errs."""
+    """What one set of models gains, and how far it errs; found again if it was measured before."""
     robot = domains.load(settings.domain).robot
     shipped = read_recipe(recipe_path(robot))
     recipe = point.recipe(shipped, settings.scenario, FIRST_RECIPE_SEED + number)
     work = settings.store / "learning-curves" / str(recipe.episodes)
     making = Making(robot, recipe, work, settings.jobs, "tailor evaluate learning-curves", CHOOSING)
     title = f"{point.method} {point.episodes}, set {number}: "
+    name = f"figures-{settings.scenario}-{settings.seed}-{settings.starts}-{settings.fresh}.json"
+    path = making.rounds / name  # its folder stands for source and recipe
+    if path.exists():
+        known: dict[str, float] = json.loads(path.read_text())
+        return known
     show(make(making), settings.json, {}, title)
+    figures = _measured(making, title, settings)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(figures))
+    return figures
+
+
+def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[str, float]:
     task = Task(settings.domain, settings.scenario, zoo=str(making.zoo))
     seeds = range(settings.seed, settings.seed + settings.starts)
     runs = run_all(task, (GREEDY, REFINED), seeds, settings.jobs, settings.store, title)

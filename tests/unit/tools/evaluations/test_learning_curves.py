@@ -20,7 +20,7 @@ def test_every_way_of_gathering_has_as_many_episodes_of_each_action(method: str)
     assert 0 < recipe.beside < 100  # or the executive refuses to start among objects
 
 
-def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypatch, capsys) -> None:
+def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypatch, capsys, tmp_path) -> None:
     made, starts = [], []
     monkeypatch.setattr(learning_curves, "make", lambda making: made.append(making) or [])
 
@@ -34,6 +34,7 @@ def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypat
     monkeypatch.setattr(learning_curves, "run_all", run_all)
     monkeypatch.setattr(learning_curves, "_errors", lambda *_: {"error_pct": 2.0})
     flags = ["--domain", "soccer", "--episodes", "100", "--sets", "2", "--starts", "3", "--methods", "random", "active"]
+    flags += ["--store", str(tmp_path)]
     assert main(["evaluate", "learning-curves", *flags, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert [(row["gathered"], row["episodes"], row["sets"], row["n"]) for row in rows] == [
@@ -43,6 +44,10 @@ def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypat
     assert rows[0]["ci95"][0] < 14.0 < rows[0]["ci95"][1]
     assert len(set(starts)) == 1  # all sets are judged from the same starts
     assert len({making.zoo for making in made}) == 4
+    flags[flags.index("--sets") + 1] = "3"
+    assert main(["evaluate", "learning-curves", *flags, "--json"]) == 0
+    assert [making.recipe.seed for making in made[4:]] == [FIRST_RECIPE_SEED + 3] * 2  # the other sets are known
+    assert [row["n"] for row in json.loads(capsys.readouterr().out)["rows"]] == [9, 9]
 
 
 def test_a_domain_must_be_named(capsys) -> None:
