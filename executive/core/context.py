@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 from tailor.executive import planning
 from tailor.executive.core.reasons import Cause, Reason
@@ -18,15 +19,20 @@ MAX_GOAL_BYTES = 8000  # each status contains the goal and must not exceed the m
 
 @dataclass(frozen=True, slots=True)
 class PlannerCommand:
-    """External planner, preferred to the built-in search; `command` as in a shell, empty: none."""
+    """External planner, preferred to the built-in search; `command` as in a shell, or a planner's name, empty: none."""
 
     command: str = ""
     limit_s: float = 10.0  # it is killed after that time
-    engine: planning.EngineName = "auto"  # of the built-in search
+    engine: Literal["auto", "pocl", "forward", "kairos"] = "auto"  # of the built-in search, or kairos-planner
+    after_plans: int = 0  # that the built-in search refines before the external planner is requested
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.limit_s) and self.limit_s > 0):
             raise UsageError(f"planner.limit_s is {self.limit_s:g}, expected seconds above 0")
+        if self.after_plans < 0:
+            raise UsageError(f"planner.after_plans is {self.after_plans}, expected at least 0")
+        if self.engine == "kairos" and self.command not in ("", "kairos"):
+            raise UsageError(f'planner.engine is "kairos", expected no other planner.command than it: {self.command}')
 
 
 @dataclass(frozen=True, slots=True)

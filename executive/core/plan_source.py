@@ -43,6 +43,18 @@ class PlanFound:
     refusal: Cause | None = None
 
 
+class _HeadStart:
+    """A budget that also ends when a search has refined so many plans."""
+
+    def __init__(self, budget: Budget, search: planning.Search, plans: int) -> None:
+        self._budget, self._search, self._plans = budget, search, plans
+        self.granted = 0
+
+    def spent(self) -> bool:
+        """See `Budget`."""
+        return self._search.counts[1] >= self._plans or self._budget.spent()
+
+
 class PlanSource:
     """Plan for one problem, from the first source that yields one; resumable from tick to tick."""
 
@@ -68,14 +80,13 @@ class PlanSource:
         self._make_request = make_request
         self._answer: PlanAnswer | None = None
         self._limit_s = context.settings.external.limit_s + GRACE_S
+        self._after_plans = context.settings.external.after_plans
         self._domain = context.pddl_domain
         self._problem = problem
         self._search = planning.Search(context.pddl_domain, problem, context.settings.planner, ground)
-        self._work = (
-            planning.PacedWork(reuse, REUSE_FREE_PORTIONS) if reuse is not None else None
-        )  # reuse, validation or completion
+        self._work = planning.PacedWork(reuse, REUSE_FREE_PORTIONS) if reuse is not None else None  # or validation ...
         if reuse is None:
-            self._request()
+            self._request_if_due()
 
     def receive(self, answer: PlanAnswer) -> None:
         """Keep the first answer to the pending request; ignore answers to other requests."""
@@ -104,10 +115,12 @@ class PlanSource:
             found, self._work = self._work.result, None
             if found is not None:
                 return found
-            self._request()
+            self._request_if_due()
 
-    def _request(self) -> None:
-        self.request = self._make_request() if self._make_request is not None else None
+    def _request_if_due(self, ended: bool = False) -> None:
+        """Make the request, once, as soon as the search has had its head start or has ended."""
+        if self._make_request is not None and (ended or self._search.counts[1] >= self._after_plans):
+            self.request, self._make_request = self._make_request(), None
 
     def _next(self, budget: Budget) -> planning.Work[PlanFound] | None:
         """The work on what the external planner or the search has come to; None if there is nothing yet."""
@@ -116,8 +129,12 @@ class PlanSource:
                 return None
             self.request = None
             return _from_answer(self._answer, self._domain, self._problem)
-        result = self._search.advance(budget)
-        return validated(result, "searched", self._domain, self._problem) if result is not None else None
+        limited = budget if self._make_request is None else _HeadStart(budget, self._search, self._after_plans)
+        result = self._search.advance(limited)
+        if result is not None and (self._make_request is None or result.status in ("solved", "unsolvable")):
+            return validated(result, "searched", self._domain, self._problem)
+        self._request_if_due(ended=result is not None)
+        return None
 
 
 def validated(

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from tailor.runtime.planners.named import named_planner
 from tailor.runtime.processes.child import bound_to_parent
 from tailor.schemas.errors import UsageError
 
@@ -58,7 +59,8 @@ class PlannerProcess:
         """Starts the child as `command DOMAIN PROBLEM` in its own process group.
 
         Args:
-          command: Program and arguments, quoted as in a shell but run without one: "vhpop -g -f MW-Loc".
+          command: Program and arguments, quoted as in a shell but run without one: "vhpop -g -f MW-Loc"; or a name:
+            "kairos", "kairos:5", "up:pyperplan".
           domain: PDDL text, passed in a file.
           problem: PDDL text, passed in a file.
           limit_s: Wall time in seconds after which the group is killed; vhpop's own -T has a resolution of minutes.
@@ -152,7 +154,10 @@ class PlannerProcess:
 
 
 def split_command(command: str) -> list[str]:
-    """A planner's command as program and arguments; raises UsageError if the program does not exist."""
+    """A planner's command or name as program and arguments; raises UsageError if it does not exist."""
+    named = named_planner(command)
+    if named is not None:
+        return named
     try:
         words = shlex.split(command)
     except ValueError as error:

@@ -8,10 +8,12 @@ from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.core.context import PlannerCommand, Settings
+from tailor.runtime.planners.named import KAIROS, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.plan_search import DURATIVE_HEAD_START
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +53,22 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
     from tailor.executive import domains
 
     scenario = deployment.scenario or domains.scenarios(domain)[0]
-    settings = deployment.executive
-    settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
-    if deployment.planner.command:
-        split_command(deployment.planner.command)
-        settings = replace(settings, external=deployment.planner)
+    settings, planner = deployment.executive, _external(deployment.planner, domain)
+    if deployment.planner.engine != "kairos":
+        settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
+    if planner.command:
+        split_command(planner.command)
+        settings = replace(settings, external=planner)
     return ExecutiveConfig(domain, scenario, settings, deployment.zoo)
+
+
+def _external(planner: PlannerCommand, domain: str) -> PlannerCommand:
+    """The external planner of an engine's name; with "auto" kairos-planner for durations, if it is installed."""
+    from tailor.executive import domains
+
+    if planner.engine == "kairos":
+        return replace(planner, command=KAIROS)
+    durative = ":durative-action" in domains.load(domain).pddl.lower()
+    if planner.engine == "auto" and not planner.command and durative and kairos_installed():
+        return replace(planner, command=KAIROS, after_plans=max(planner.after_plans, DURATIVE_HEAD_START))
+    return planner

@@ -19,8 +19,8 @@ def configure_system(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--planner",
         metavar="COMMAND",
-        help="plan with an external vhpop binary, e.g. 'vhpop -v1 -f MW-Loc', in its own process with time and "
-        "memory limits",
+        help="plan with an external program, e.g. 'vhpop -v1 -f MW-Loc', or with kairos or up:ENGINE (of "
+        "unified-planning), in its own process with time and memory limits",
     )
     parser.add_argument("--zoo", help="folder of action models (default: that of the robot)")
     configure_bus(parser)

@@ -68,7 +68,8 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     executive = config.executive
     flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.bus.endpoint]
     flags += ["--horizon", str(executive.settings.refinement.horizon)]
-    flags += ["--planner", executive.settings.external.command]
+    external = executive.settings.external
+    flags += ["--planner", "" if external.engine == "auto" and external.after_plans else external.command]
     flags += ["--config", config.deployment_file] if config.deployment_file else []
     flags += ["--zoo", executive.zoo] if executive.zoo else []
     return ProcessSpec(

@@ -29,9 +29,10 @@ def declared(requirements: list[str]) -> set[str]:
 
 RUN = declared(PROJECT["dependencies"])
 TEST = declared(PROJECT["optional-dependencies"]["test"])
+PLANNERS = declared(PROJECT["optional-dependencies"]["kairos"] + PROJECT["optional-dependencies"]["up"])
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
 OF_EXAMPLES = {"rerun"}  # for those who have it; Tailor needs no viewer
-OPTIONAL = {"cma", "kairos-planner", "pytest"}  # benchmarks leave out what is not installed; pytest's plug-in
+OPTIONAL = {"cma", "pytest", *PLANNERS}  # benchmarks leave out what is not installed; pytest's plug-in
 
 
 def imported_distributions(paths: list[str]) -> dict[str, str]:
@@ -39,7 +40,7 @@ def imported_distributions(paths: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for path in paths:
         for name in {name.split(".")[0] for name in imported_names(path)} - OURS - set(sys.stdlib_module_names):
-            known = {canonical(name)} & (RUN | TEST)  # a meta-package declares what another distribution contains
+            known = {canonical(name)} & (RUN | TEST | PLANNERS)  # a meta-package declares what another distribution contains
             found[known.pop() if known else canonical(DISTRIBUTIONS.get(name, [name])[0])] = path
     return found
 
@@ -58,7 +59,7 @@ def test_every_package_that_the_tests_import_is_declared() -> None:
     assert {name: path for name, path in imported.items() if name not in RUN | TEST | OF_EXAMPLES} == {}
 
 
-@pytest.mark.parametrize("name", sorted(RUN | TEST))
+@pytest.mark.parametrize("name", sorted(RUN | TEST | PLANNERS))
 def test_a_dependency_is_pinned_and_explained(name: str) -> None:
     assert name in PINNED
     page = (Path(ROOT) / "docs" / "dependencies.md").read_text()

@@ -2,9 +2,11 @@
 
 import argparse
 import sys
+from types import SimpleNamespace
 
 import pytest
 
+from tailor.executive import domains
 from tailor.executive.core.context import PlannerCommand
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
@@ -33,6 +35,40 @@ def test_a_flag_wins_over_the_file_and_leaves_the_rest(tmp_path):
 
 def test_the_default_is_no_external_planner(tmp_path):
     assert config(tmp_path, "").settings.external == PlannerCommand()
+
+
+def test_kairos_by_name_is_an_external_planner(tmp_path, monkeypatch):
+    monkeypatch.setattr("tailor.runtime.planners.named.find_spec", lambda name: object())
+    external = config(tmp_path, '[planner]\nengine = "kairos"\n').settings.external
+    assert (external.command, external.after_plans) == ("kairos", 0)
+    with pytest.raises(UsageError, match="expected no other planner.command"):
+        config(tmp_path, '[planner]\nengine = "kairos"\ncommand = "vhpop"\n')
+
+
+def test_kairos_that_is_not_installed_is_an_error_with_the_pip_command(tmp_path, monkeypatch):
+    monkeypatch.setattr("tailor.runtime.planners.named.find_spec", lambda name: None)
+    with pytest.raises(UsageError, match=r"pip install 'tailor\[kairos\]'"):
+        config(tmp_path, '[planner]\nengine = "kairos"\n')
+
+
+@pytest.mark.parametrize(
+    ("installed", "durative", "engine", "command"),
+    [
+        (True, True, "auto", "kairos"),
+        (False, True, "auto", ""),
+        (True, False, "auto", ""),
+        (True, True, "pocl", ""),
+    ],
+)
+def test_auto_asks_kairos_only_for_durations_and_only_if_installed(
+    tmp_path, monkeypatch, installed, durative, engine, command
+):
+    monkeypatch.setattr("tailor.runtime.planners.named.find_spec", lambda name: object() if installed else None)
+    if durative:
+        monkeypatch.setattr(domains, "load", lambda name: SimpleNamespace(pddl="(:durative-action"))
+    external = config(tmp_path, f'[planner]\nengine = "{engine}"\n').settings.external
+    assert external.command == command
+    assert (external.after_plans > 0) is bool(command), "short problems keep the search's plans"
 
 
 def test_a_missing_planner_is_an_error(tmp_path):

@@ -21,7 +21,6 @@ from tailor.executive.planning import (
     FlawOrder,
     Problem,
     Result,
-    Search,
     Settings,
     Unsupported,
     format_links,
@@ -34,10 +33,11 @@ from tailor.executive.planning.flaws.flaw_orders import NAMED
 from tailor.executive.planning.flaws.ranking import NAMES
 from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.plan_search import built_in, external, with_kairos
 
 MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # about 1 GB of memory
-_POLL_S = 0.002  # period of polling an external planner
+KAIROS_GRACE_S = 5.0  # beyond its own time limit
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -60,8 +60,9 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
     add("-h", "--heuristic", metavar="RANKING", default="",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
-    add("--engine", choices=get_args(EngineName), default="auto",
-        help="partial-order search, search through states, or both by turns (default auto)")  # fmt: skip
+    add("--engine", choices=(*get_args(EngineName), "kairos"), default="auto",
+        help="partial-order search, search through states, both by turns (auto, default), or kairos-planner; auto also "
+        "asks that for durative problems, if it is installed")  # fmt: skip
     add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
         help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
@@ -109,8 +110,8 @@ def _configure_costs(group: argparse._ArgumentGroup) -> None:
     add(
         "--planner",
         metavar="COMMAND",
-        help="plan with an external vhpop binary, "
-        "in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc'",
+        help="plan with an external program in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc', "
+        "or with kairos, kairos:SECONDS, up:ENGINE (of unified-planning)",
     )
 
 
@@ -164,19 +165,6 @@ def _positive(text: str) -> int:
 
 
 # --- running -------------------------------------------------------------------------------------
-@dataclasses.dataclass(slots=True)
-class _TimeBudget:
-    """Grants work until a deadline of wall time."""
-
-    deadline: float
-    granted: int = 0
-
-    def spent(self) -> bool:
-        """See `Budget`."""
-        self.granted += 1
-        return time.monotonic() >= self.deadline
-
-
 def run(args: argparse.Namespace) -> int:
     """Plans and prints; returns exit code 0 with a plan, 1 without."""
     started = time.process_time()
@@ -188,7 +176,7 @@ def run(args: argparse.Namespace) -> int:
         if args.json:
             print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
         raise
-    result = _run_external(args, texts, domain, problem) if args.planner else _search(args, domain, problem)
+    result = _plan(args, texts, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if result.plan is not None:
         fault = validate(result.plan, domain, problem)
@@ -229,34 +217,30 @@ def settings_of(args: argparse.Namespace) -> Settings:
     )
 
 
-def _search(args: argparse.Namespace, domain: Domain, problem: Problem) -> Result:
+def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
+    """The result of the planner or engine that the options name."""
     limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
-    search = Search(domain, problem, settings_of(args))
-    result = search.advance(_TimeBudget(time.monotonic() + limit_s))
-    if result is None:
-        return Result("limit", None, f"no plan within {limit_s:g} s", *search.counts)
-    return result
+    if args.planner:
+        return external(args.planner, texts, domain, problem, limit_s)
+    if args.engine == "kairos":
+        name = "kairos" if args.time_limit is None else f"kairos:{limit_s:g}"
+        return external(name, texts, domain, problem, limit_s + KAIROS_GRACE_S)
+    settings = settings_of(args)
+    if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
+        result, planner = with_kairos(texts, domain, problem, settings, limit_s)
+        if planner and args.verbose:
+            print(f"the plan is by {planner}", file=sys.stderr)
+        return result
+    return built_in(domain, problem, settings, limit_s)
 
 
-def _run_external(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
-    """Runs the external planner; parses its plan and adds missing causal links."""
-    from tailor.executive.planning import completed, parse_plan
-    from tailor.runtime.processes.planner_process import PlannerProcess
+def _kairos_applies(domain: Domain) -> bool:
+    """Whether the domain has durations and kairos-planner is installed."""
+    if all(action.duration is None for action in domain.actions):
+        return False
+    from tailor.runtime.planners.named import kairos_installed
 
-    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
-    child = PlannerProcess(args.planner, *texts, limit_s)
-    try:
-        while (answer := child.poll()) is None:
-            time.sleep(_POLL_S)
-    finally:
-        child.kill()
-    try:
-        plan = completed(parse_plan(answer.output), domain, problem)
-    except UsageError as error:
-        return Result("limit", None, f"{answer.reason}; {error}", 0, 0)
-    if isinstance(plan, str):
-        return Result("limit", None, f"the planner's plan is unsound: {plan}", 0, 0)
-    return Result("solved", plan, "", 0, 0)
+    return kairos_installed()
 
 
 # --- printing ------------------------------------------------------------------------------------

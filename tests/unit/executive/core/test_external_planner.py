@@ -185,3 +185,36 @@ def test_a_replay_without_the_recorded_answer_is_noticed():
         for t in run.recorded
     ]
     assert list(replay(line_context(WITH_PLANNER), deaf)) != run.published
+
+
+def with_head_start(plans):
+    return line_context(Settings(external=PlannerCommand("kairos", LIMIT_S, after_plans=plans)))
+
+
+def test_a_search_that_ends_within_its_head_start_makes_the_request_needless():
+    run = Run(lambda r: answer_of(r, well), context=with_head_start(10_000)).go()
+    assert run.messages(PlanRequest) == []
+    assert run.messages(PlanReport)[0][1].way == "searched"
+
+
+@pytest.mark.parametrize(("outcome", "ways"), [("answered", ["external"]), ("crashed", ["external", "searched"])])
+def test_after_the_head_start_the_planner_is_asked_and_the_search_goes_on_if_that_fails(outcome, ways):
+    run = Run(lambda r: answer_of(r, well, outcome), context=with_head_start(2)).go()
+    assert len(run.messages(PlanRequest)) == 1
+    assert [report.way for _, report in run.messages(PlanReport)][: len(ways)] == ways
+    assert run.state.task.result == "achieved"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_run_with_a_head_start_is_replayed_bit_for_bit(seed):
+    rng = np.random.default_rng(seed)
+    run = Run(lambda r: answer_of(r, well), context=with_head_start(2), budget=lambda: FickleBudget(rng)).go(ticks=60)
+    assert any(report.way == "external" for _, report in run.messages(PlanReport))
+    assert list(replay(with_head_start(2), run.recorded)) == run.published
+
+
+def test_what_is_proven_unsolvable_needs_no_request():
+    run = Run(lambda r: answer_of(r, well), context=with_head_start(10_000))
+    run.go(ticks=5, goals=((1, "(and (at a) (at b) (not (place a)))"),))
+    assert run.messages(PlanRequest) == []
+    assert run.messages(PlanReport)[0][1].status == "unsolvable"

@@ -1,0 +1,55 @@
+"""Prints a plan of one of unified-planning's engines for a PDDL problem: ENGINE DOMAIN PROBLEM."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+
+def main(engine: str, domain: str, problem: str) -> int:
+    """Plan and print; 0 with a plan, 1 without.
+
+    Args:
+      engine: Name of the engine, e.g. "pyperplan".
+      domain: Path of the domain.
+      problem: Path of the problem.
+    """
+    from unified_planning.io import PDDLReader
+    from unified_planning.shortcuts import OneshotPlanner, get_environment
+
+    get_environment().credits_stream = None
+    if engine not in get_environment().factory.engines:
+        print(f"no engine {engine} is installed")  # the reader of plans quotes this line
+        return 1
+    task = PDDLReader().parse_problem(domain, problem)
+    with OneshotPlanner(name=engine) as planner:
+        result = planner.solve(task)
+    if result.plan is None:
+        print(f"; {result.status.name}")
+        return 1
+    for line in _lines(result.plan, task):
+        print(line)
+    return 0
+
+
+def _lines(plan: Any, task: Any) -> Iterator[str]:
+    """The lines of the competitions' format: `(action args)`, or `START: (action args) [DURATION]`."""
+    from unified_planning.plans import PlanKind
+
+    if plan.kind is PlanKind.TIME_TRIGGERED_PLAN:
+        for start, action, duration in plan.timed_actions:
+            yield f"{float(start):.6f}: {_action(action)} [{float(duration or 0):.6f}]"
+        return
+    if plan.kind is not PlanKind.SEQUENTIAL_PLAN:
+        plan = plan.convert_to(PlanKind.SEQUENTIAL_PLAN, task)
+    for action in plan.actions:
+        yield _action(action)
+
+
+def _action(instance: Any) -> str:
+    return f"({' '.join([instance.action.name, *map(str, instance.actual_parameters)])})"
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

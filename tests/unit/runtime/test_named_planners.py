@@ -1,0 +1,90 @@
+"""Planners from Python packages run by name; one that is not installed is reported with its pip command."""
+
+from importlib.util import find_spec
+
+import pytest
+
+from tailor.executive.planning import validate
+from tailor.runtime.planners import named
+from tailor.runtime.processes.planner_process import PlannerProcess, split_command
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.plan_search import external
+from tailor.tools.main import main
+from tests.support.planning_problems import DATA, own
+
+KITCHEN = [str(DATA / "own" / f"kitchen-{name}.pddl") for name in ("domain", "s2")]
+DURATIVE = [str(DATA / "own" / f"kitchen-durative-{name}.pddl") for name in ("domain", "s2")]
+NEEDED = {"kairos": "kairos", "up:pyperplan": "up_pyperplan", "up:tamer": "up_tamer"}
+
+
+def plan_by(command, name):
+    needed = NEEDED[command.partition(":")[0] if command.startswith("kairos") else command]
+    if find_spec(needed) is None:
+        pytest.skip(f"{needed} is not installed")
+    domain, problem = own(name)
+    folder = DATA / "own"
+    texts = (folder / f"{name.rsplit('-', 1)[0]}-domain.pddl").read_text(), (folder / f"{name}.pddl").read_text()
+    result = external(command, texts, domain, problem, 60.0)
+    assert result.plan is not None, result.reason
+    assert validate(result.plan, domain, problem) == ""
+    return result.plan
+
+
+@pytest.mark.parametrize("name", ["kitchen-s2", "kitchen-durative-s3"])
+@pytest.mark.parametrize("command", ["kairos", "kairos:0.2"])
+def test_kairos_plans_are_sound_and_linked(command, name):
+    assert plan_by(command, name).links
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [("up:pyperplan", "kitchen-s2"), ("up:tamer", "kitchen-s2"), ("up:tamer", "kitchen-durative-s2")],
+)
+def test_engines_of_unified_planning_give_sound_and_linked_plans(command, name):
+    assert plan_by(command, name).links
+
+
+@pytest.mark.parametrize(
+    ("command", "package"), [("kairos", "kairos-planner"), ("kairos:3", "kairos-planner"), ("up:x", "unified-planning")]
+)
+def test_a_missing_package_is_one_line_with_the_pip_command(command, package, monkeypatch, capsys):
+    monkeypatch.setattr(named, "find_spec", lambda name: None)
+    assert main(["plan", *KITCHEN, "--planner", command]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    extra = command.partition(":")[0]
+    assert f"the package {package} is not installed, install it with: pip install 'tailor[{extra}]'" in line
+
+
+@pytest.mark.parametrize("command", ["kairos:", "kairos:soon", "kairos:-1", "kairos:inf", "up:"])
+def test_what_follows_the_colon_is_checked(command, monkeypatch):
+    monkeypatch.setattr(named, "find_spec", lambda name: object())
+    with pytest.raises(UsageError, match="expected"):
+        split_command(command)
+
+
+def test_other_commands_are_programs():
+    assert split_command("true --kairos") == ["true", "--kairos"]
+    assert named.named_planner("kairos --no-anytime") is None
+
+
+def test_an_engine_that_is_not_installed_is_named():
+    if find_spec("unified_planning") is None:
+        pytest.skip("unified_planning is not installed")
+    child = PlannerProcess("up:nonsense", "(define (domain d))", "(define (problem p))", 60.0)
+    while (answer := child.poll()) is None:
+        pass
+    assert "no engine nonsense is installed" in answer.output
+
+
+def test_auto_asks_kairos_for_a_long_durative_problem_and_falls_back_to_the_search(monkeypatch, capsys):
+    if not named.kairos_installed():
+        pytest.skip("kairos-planner is not installed")
+    assert main(["plan", *DURATIVE, "-v"]) == 0
+    assert "kairos" not in capsys.readouterr().err, "short: the head start is enough"
+    monkeypatch.setattr("tailor.tools.cli.plan_search.DURATIVE_HEAD_START", 3)
+    assert main(["plan", *DURATIVE, "-v"]) == 0
+    assert "the plan is by kairos" in capsys.readouterr().err
+    monkeypatch.setattr(named, "named_planner", lambda command: ["true"])
+    monkeypatch.setattr("tailor.runtime.processes.planner_process.named_planner", lambda command: ["true"])
+    assert main(["plan", *DURATIVE, "-v"]) == 0
+    assert "kairos" not in capsys.readouterr().err, "it had no plan: the search has one"
