@@ -15,7 +15,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
-from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.writing.writing_track import WritingTrack, writing_track
 
 
@@ -50,6 +50,13 @@ class RecordedBody(PowerCubeBody):
 def write(
     text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody, velocities: Sequence[Point] = ()
 ) -> WritingTrack:
+    """Write capitals; see `run_writing`."""
+    return run_writing(text, mode, models, seed, body, velocities)[0]
+
+
+def run_writing(
+    text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody, velocities: Sequence[Point] = ()
+) -> tuple[WritingTrack, Run]:
     """Write capitals; the same seed gives the same letters, start and noise in every mode.
 
     Args:
@@ -72,4 +79,4 @@ def write(
     body.command((0.0, 0.0))
     body.advance(round(0.2e9))  # until the last state is out
     outputs = [message for message in run.messages if not isinstance(message, JointState)]  # the truth is one, too
-    return writing_track(mode.name, text, [*body.readings, *outputs])
+    return writing_track(mode.name, text, [*body.readings, *outputs]), run

@@ -11,13 +11,16 @@ import numpy as np
 from joblib import Parallel, delayed
 from rich.progress import track
 
+from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
 from tailor.tools.evaluations.arm.perfect_greedy import greedy_velocities
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
+from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
+from tailor.tools.lockstep.run import Run
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
-from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_run import RecordedBody, WritingMode, run_writing
 from tailor.tools.writing.writing_track import WritingTrack
 
 ALL_AHEAD = 9  # more actions than a letter has
@@ -47,6 +50,7 @@ class Figures:
     rms_jerk: float
     roughness: float
     bias_s: float  # predicted minus actual, a reach
+    costs: Costs = NO_COSTS
 
 
 Found = Mapping[str, Mapping[Key, Figures]]  # by mode
@@ -67,7 +71,7 @@ def _measured(wanted: Sequence[tuple[WritingMode, Key]], zoo: str, jobs: int) ->
 
 
 def _figures(mode: WritingMode, key: Key, zoo: str) -> Figures:
-    written = write_letter(mode, *key, zoo)
+    written, run = _written(mode, *key, zoo)
     actual_s = np.diff(written.arrivals_s, prepend=0.0)
     return Figures(
         written.result == "achieved",
@@ -77,14 +81,19 @@ def _figures(mode: WritingMode, key: Key, zoo: str) -> Figures:
         rms_jerk(written),
         roughness(written),
         float((written.predicted_s - actual_s).mean() + 0.1),  # an action ends one period before its waypoint
+        costs_of(run, domains.load("arm")),
     )
 
 
 def write_letter(mode: WritingMode, letter: str, seed: int, zoo: str) -> WritingTrack:
     """One letter in one mode."""
+    return _written(mode, letter, seed, zoo)[0]
+
+
+def _written(mode: WritingMode, letter: str, seed: int, zoo: str) -> tuple[WritingTrack, Run]:
     models = Models({"reach/duration": PerfectReach()}, {}) if mode in ORACLES else _models(zoo)
     velocities = greedy_velocities(letter, seed) if mode == PERFECT_GREEDY else ()
-    return write(letter, mode, models, seed, RecordedBody(), velocities)
+    return run_writing(letter, mode, models, seed, RecordedBody(), velocities)
 
 
 @lru_cache(maxsize=2)

@@ -24,7 +24,8 @@ from tailor.tools.evaluations.arm.letter_figures import (
     measure_letters,
     write_letter,
 )
-from tailor.tools.evaluations.paired_comparison import Comparison, compare
+from tailor.tools.evaluations.costs import Costs
+from tailor.tools.evaluations.paired_comparison import Comparison, compare, compare_means
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.figures.letters import draw_letters
@@ -33,7 +34,8 @@ DOMAINS = ("arm",)
 PAPER = "paper: 4-5 actions, n = 4: 10.6 s greedy, 10.0 s refined, 5.7 %, p = 0.08"
 REMARKS = (
     "each mode against stopping at each waypoint, against greedy by the learned model and against greedy by the "
-    "simulator's own outcome; ci95: over letters, the mean of a letter's seeds counts once",
+    "simulator's own outcome; ci95: over letters, the mean of a letter's seeds counts once; energy and arrival_… with "
+    "the difference to learned greedy",
     "an oracle chooses by the controller's own rule, averaged over temperatures; all ahead is the ceiling",
 )
 SHOWN = "FTAS"  # in the picture
@@ -87,8 +89,27 @@ def _row(name: str, found: Found, keys: Sequence[Key]) -> dict[str, Any]:
         if mode.name in found:
             column, other = f"against_{mode.name.replace(' ', '_')}", _against(mode.name, name, found, keys)
             row |= {f"{column}_pct": other.improvement_pct, f"{column}_ci95": other.ci95}
+    row |= _costs(name, found, keys)
     measured = ("waypoint_mrad", "peak_current_a", "rms_jerk", "roughness", "bias_s")
     return row | {field: _mean(mine, field) for field in measured}
+
+
+def _costs(name: str, found: Found, keys: Sequence[Key]) -> dict[str, Any]:
+    """Energy and errors of arrival, and how much more they are than of learned greedy; letters are units."""
+    greedy, mine = ([found[mode][key].costs for key in keys] for mode in (LEARNED_GREEDY.name, name))
+    letters, columns = [letter for letter, _ in keys], dict[str, Any]()
+    for cost in ("energy_j", *sorted({each for costs in mine for each, _ in costs.arrival})):
+        first, second = ([_cost(costs, cost) for costs in some] for some in (greedy, mine))
+        if np.isfinite([*first, *second]).all():
+            column = cost if cost == "energy_j" else f"arrival_{cost}"
+            columns[column] = float(np.mean(second))
+            if first != second:
+                columns[f"{column}_more_ci95"] = compare_means(first, second, letters).ci95
+    return columns
+
+
+def _cost(costs: Costs, name: str) -> float:
+    return costs.energy_j if name == "energy_j" else dict(costs.arrival).get(name, float("nan"))
 
 
 def _against(baseline: str, name: str, found: Found, keys: Sequence[Key]) -> Comparison:

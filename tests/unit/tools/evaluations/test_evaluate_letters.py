@@ -13,6 +13,7 @@ from tailor.tools.evaluations.arm import letters
 from tailor.tools.evaluations.arm.letter_figures import Figures
 from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import FRICTION, PerfectReach
+from tailor.tools.evaluations.costs import Costs
 
 
 def test_the_oracle_predicts_what_the_controller_plans():
@@ -50,6 +51,23 @@ def test_a_row_compares_with_stopping_learned_greedy_and_perfect_greedy():
     for column, gain_pct in (("improvement", 10), ("against_stopping", 20), ("against_perfect_greedy", 5)):
         assert abs(refined[f"{column}_pct"] - gain_pct) < 2
     assert refined["against_stopping_ci95"][0] > 0
+
+
+def test_costs_are_compared_with_those_of_learned_greedy_over_letters():
+    some = found()
+    for mode, energy_j in (("greedy", 4.0), ("refined", 5.0)):
+        for letter, seed in some[mode]:
+            own = 0.1 * (ord(letter) % 3) * (mode == "refined")
+            costs = Costs(0, energy_j + own + 0.01 * seed, (("position_rad", 0.02),))
+            some[mode][letter, seed] = replace(some[mode][letter, seed], costs=costs)
+    rows = {row["mode"]: row for row in letters.rows_of(some)}
+    refined = rows["refined"]
+    assert refined["energy_j"] == pytest.approx(5.11)
+    low, high = refined["energy_j_more_ci95"]
+    assert 1.0 < low < 1.1 < high < 1.2
+    assert refined["arrival_position_rad"] == pytest.approx(0.02)
+    assert rows["greedy"]["energy_j"] == pytest.approx(4.01)
+    assert "energy_j" not in rows["stopping"]  # not known there
 
 
 def test_more_seeds_of_equal_letters_make_no_interval_narrower():
