@@ -26,7 +26,8 @@ REMARKS = (
     "before: the same controllers, nothing is predicted to fail. after: learned success, asserted subgoals. baseline: "
     "the same controllers on ways around the believed objects, from a graph of poses and arcs.",
     "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
-    "succeeds. *_slower_pct: in the mean, against before, where both succeed; of after where the subgoal was needless.",
+    "succeeds. *_slower_pct: in the mean, against before, where both succeed; of after where the subgoal was needless; "
+    "baseline_needless_slower_pct: of the baseline from these starts, where before may have been lucky.",
     "after_to_baseline_pct: how much slower after is than the baseline where both succeed; 95 % interval by start.",
 )
 
@@ -79,6 +80,7 @@ def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
         "ci95_after": share_interval(len(successes[AFTER]), n),
         "needless_pct": 100 * len(needless) / n,
         "needless_slower_pct": slower_pct(before, after, needless)[0],
+        "baseline_needless_slower_pct": slower_pct(before, baseline, needless)[0],
         "baseline_success_pct": 100 * len(successes[BASELINE]) / n,
         "ci95_baseline": share_interval(len(successes[BASELINE]), n),
         "baseline_slower_pct": slower_pct(before, baseline, successes[BEFORE])[0],
