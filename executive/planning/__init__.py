@@ -7,6 +7,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tailor.executive.planning.anytime import AnytimeSearch
     from tailor.executive.planning.pddl.domain_reader import parse_domain
     from tailor.executive.planning.pddl.errors import PddlError, Unsupported
     from tailor.executive.planning.pddl.language import Domain, Literal
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from tailor.executive.planning.plans.completion import completed, completion
     from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
     from tailor.executive.planning.plans.portions import PacedWork, Work
+    from tailor.executive.planning.plans.quality import quality
     from tailor.executive.planning.plans.state import Objects
     from tailor.executive.planning.plans.suffix import relink, shortest_suffix, suffix
     from tailor.executive.planning.plans.validator import validate, validation
@@ -36,6 +38,7 @@ __all__ = [
     "EXCERPT_STEPS",
     "GOAL",
     "MATCHING",
+    "AnytimeSearch",
     "Domain",
     "EngineName",
     "FlawOrder",
@@ -65,6 +68,7 @@ __all__ = [
     "parse_domain",
     "parse_plan",
     "parse_problem",
+    "quality",
     "relink",
     "shortest_suffix",
     "suffix",
@@ -73,6 +77,8 @@ __all__ = [
 ]
 
 _MODULES = {
+    "AnytimeSearch": "anytime",
+    "quality": "plans.quality",
     "apply_action": "plans.action_effects",
     "completed": "plans.completion",
     "completion": "plans.completion",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Generic
 
@@ -48,6 +48,8 @@ class BestFirst(Generic[P]):
         self._orders: tuple[FlawOrder, ...] = settings.flaw_orders
         self.generated = 0
         self.visited = 0
+        self.is_hopeless: Callable[[P], bool] | None = None  # of an anytime search: the plan leads to none better
+        self.goes_on = False  # whether the search continues after a plan
 
     def run(self) -> Iterator[Result | None]:
         """Refines one plan per iteration; yields None until the result."""
@@ -88,9 +90,14 @@ class BestFirst(Generic[P]):
             if len(plan.steps) > self._step_limit:
                 self._pruned = True
                 continue
+            if self.is_hopeless is not None and self.is_hopeless(plan):
+                yield None
+                continue
             if plan.open is None and plan.threats is None and space.is_complete(plan):
                 yield Result("solved", space.extract(plan), "", self.generated, self.visited)
-                return
+                if not self.goes_on:
+                    return
+                continue
             self.visited += 1
             queue.generated += self._push(space.refine(plan, queue.order), plans)
             yield None

@@ -1,4 +1,4 @@
-"""Partial-order search and the forward engine by turns: the first proof or plan counts."""
+"""Two engines by turns: the first proof or plan counts."""
 
 from __future__ import annotations
 
@@ -11,6 +11,11 @@ from tailor.executive.planning.plans.plan import Result
 SHORT_STEPS = 20  # partial-order search seldom solves problems with longer relaxed plans
 HEAD_START = 2000  # plans refined first where relaxed plans are short: what is found by then keeps its plan and counts
 SHARE = 4  # plans refined per evaluated state, which takes ten times as long as a plan
+
+
+def head_start(expected_steps: int) -> int:
+    """The plans that partial-order search refines before the forward engine starts."""
+    return HEAD_START if expected_steps <= SHORT_STEPS else SHARE
 
 
 class Engine(Protocol):
@@ -34,9 +39,11 @@ class Engine(Protocol):
 class Portfolio:
     """Runs both engines until one has a plan or a proof, or both have reached a limit; counts are sums."""
 
-    def __init__(self, partial: Engine, forward: Engine, expected_steps: int) -> None:
-        self._engines = (partial, forward)
-        self._head_start = HEAD_START if expected_steps <= SHORT_STEPS else SHARE
+    def __init__(self, first: Engine, second: Engine, head_start: int, share: int = SHARE) -> None:
+        """The first engine is advanced by `head_start` portions, then by `share` for each one of the second."""
+        self._engines = (first, second)
+        self._head_start = head_start
+        self._share = share
 
     @property
     def generated(self) -> int:
@@ -50,9 +57,9 @@ class Portfolio:
 
     def run(self) -> Iterator[Result | None]:
         """See `Engine`."""
-        partial, forward = (engine.run() for engine in self._engines)
+        first, second = (engine.run() for engine in self._engines)
         reasons: list[str] = []
-        portions = [(partial, self._head_start), (forward, 1)]
+        portions = [(first, self._head_start), (second, 1)]
         while portions:
             for work, portion in portions.copy():
                 result = yield from _advanced(work, portion)
@@ -63,8 +70,8 @@ class Portfolio:
                     return
                 reasons += [result.reason] if result.status == "limit" else []
                 portions = [(other, n) for other, n in portions if other is not work]
-            portions = [(work, SHARE if work is partial else 1) for work, _ in portions]
-        yield Result("limit", None, "; ".join(reasons), self.generated, self.visited)
+            portions = [(work, self._share if work is first else 1) for work, _ in portions]
+        yield Result("limit", None, "; ".join(dict.fromkeys(reasons)), self.generated, self.visited)
 
 
 def _advanced(work: Iterator[Result | None], portion: int) -> Generator[None, None, Result | None]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from dataclasses import replace
 from typing import Any
 
 from tailor.executive.interfaces.budget import Budget
@@ -17,8 +18,8 @@ from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plan_space import PlanSpace
 from tailor.executive.planning.plans.plan import Result
-from tailor.executive.planning.portfolio import Engine, Portfolio
-from tailor.executive.planning.settings import DEFAULT, Settings
+from tailor.executive.planning.portfolio import HEAD_START, Engine, Portfolio, head_start
+from tailor.executive.planning.settings import DEFAULT, DEFAULT_RANKINGS, Settings, rankings_for
 from tailor.executive.planning.structures.random_source import RandomSource
 
 
@@ -81,34 +82,40 @@ class Search:
             assert grounded is not None
             if settings.random_open_conditions:
                 grounded = shuffled(grounded, rng)
-            task = yield from make_task(self._problem, grounded, settings.action_cost)
-            self._engine = self._make_engine(task, grounded, rng)
+            self._engine = yield from self._make_engine(grounded, rng)
             yield from self._engine.run()
         except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), *self.counts)
 
-    def _make_engine(self, task: GroundTask, grounded: GroundActions, rng: RandomSource) -> Engine:
+    def _make_engine(self, grounded: GroundActions, rng: RandomSource) -> Generator[None, None, Engine]:
         """The engine of the settings."""
         settings = self._settings
+        task = yield from make_task(self._problem, grounded, settings.action_cost)
         if settings.engine == "pocl":
-            return self._partial_order(task, grounded, rng)
+            return (yield from self._partial_order(task, grounded, rng))
         forward = ForwardEngine(task, grounded, settings.node_limit, settings.step_limit)
         if settings.engine == "forward":
             return forward
-        partial = self._partial_order(task, grounded, rng)
-        return Portfolio(partial, forward, forward.expected_steps) if forward.applies else partial
+        partial = yield from self._partial_order(task, grounded, rng)
+        return Portfolio(partial, forward, head_start(forward.expected_steps)) if forward.applies else partial
 
-    def _partial_order(self, task: GroundTask, grounded: GroundActions, rng: RandomSource) -> Engine:
-        settings = self._settings
-        space: PlanSpace[Any]
-        if settings.ground:
-            space = GroundSpace(task, grounded.world, settings, rng)
-        else:
-            from tailor.executive.planning.lifted.task import lifted_task
-            from tailor.executive.planning.lifted_space import LiftedSpace
+    def _partial_order(
+        self, task: GroundTask, grounded: GroundActions, rng: RandomSource
+    ) -> Generator[None, None, Engine]:
+        """Partial-order search; with a metric two by turns: one ranks by it, the other is for coverage."""
+        settings, metric = self._settings, self._problem.metric
+        if settings.rankings or not metric or settings.search != "A":
+            return self._searching(task, grounded, settings, rng)
+        eager = task
+        if metric == "cost" and settings.action_cost == "unit":
+            eager = yield from make_task(self._problem, grounded, "metric")
+        by_metric = replace(settings, rankings=rankings_for(settings, metric))
+        first = self._searching(eager, grounded, by_metric, rng)
+        second = self._searching(task, grounded, replace(settings, rankings=DEFAULT_RANKINGS), rng)
+        return Portfolio(first, second, HEAD_START, share=1)
 
-            order = rng if settings.random_open_conditions else None
-            space = LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)
+    def _searching(self, task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource) -> Engine:
+        space = plan_space(task, grounded, settings, rng)
         return BestFirst[Any](space, settings) if settings.search == "A" else Deepening[Any](space, settings)
 
     def _ground(self) -> Iterator[None]:
@@ -122,3 +129,14 @@ class Search:
                 yield None
             else:
                 self._cache.last = grounded
+
+
+def plan_space(task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource) -> PlanSpace[Any]:
+    """The plan space of the settings: ground, or with variables."""
+    if settings.ground:
+        return GroundSpace(task, grounded.world, settings, rng)
+    from tailor.executive.planning.lifted.task import lifted_task
+    from tailor.executive.planning.lifted_space import LiftedSpace
+
+    order = rng if settings.random_open_conditions else None
+    return LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)

@@ -34,7 +34,8 @@ class Settings:
       search: A* ("A") or IDA* ("IDA").
       ground: Plan with ground actions; False: with variables (lifted).
       weight: Weight of the heuristic against the cost of the steps, finite and at least 0.
-      action_cost: Cost of a step: 1, its duration in seconds, or its duration relative to the shortest action.
+      action_cost: Cost of a step: 1, its duration in seconds, its duration relative to the shortest action, or what it
+        adds to (total-cost); with variables the last is 1.
       node_limit: Maximum number of generated plans, and of evaluated states.
       step_limit: Maximum number of steps in a plan.
       engine: Partial-order search ("pocl"), search through states ("forward": no durations, disjunctions or
@@ -53,7 +54,7 @@ class Settings:
     search: OneOf["A", "IDA"] = "A"
     ground: bool = True
     weight: float = 1.0
-    action_cost: OneOf["unit", "duration", "relative"] = "unit"
+    action_cost: OneOf["unit", "duration", "relative", "metric"] = "unit"
     node_limit: int = 100_000
     step_limit: int = 200
     ground_limit: int = MAX_STEPS

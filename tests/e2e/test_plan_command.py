@@ -1,13 +1,17 @@
 """`tailor plan` as a user meets it: forms of output, exit codes, errors, an external planner."""
 
+import io
+import itertools
 import json
 import subprocess
 import sys
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
 from tailor.executive.planning import parse_plan, validate
+from tailor.tools.cli import plan_limits
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own, printed
 from tests.unit.executive.planning.test_language import LAMPS, SWITCHES
@@ -244,3 +248,64 @@ def test_a_graph_is_sound_whatever_characters_names_have(capsys, tmp_path):
     assert code == 0
     for line in dot.splitlines():
         assert line.replace("\\\\", "").replace('\\"', "").count('"') % 2 == 0, line
+
+
+# --- habits of VHPOP's users ---------------------------------------------------------------------
+@pytest.mark.parametrize("order", [(DOMAIN, PROBLEM), (PROBLEM, DOMAIN)])
+def test_one_file_or_standard_input_may_hold_both(capsys, tmp_path, monkeypatch, order):
+    expected = plan(capsys, DOMAIN, PROBLEM)[1]
+    both = tmp_path / "both.pddl"
+    both.write_text("; a comment with (a parenthesis\n" + "\n".join(Path(name).read_text() for name in order))
+    assert plan(capsys, str(both)) == (0, expected, "")
+    for files in ([], ["-"]):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(both.read_bytes())))
+        assert plan(capsys, *files) == (0, expected, "")
+
+
+def test_errors_of_a_text_with_both_name_its_lines(capsys, tmp_path):
+    both = tmp_path / "both.pddl"
+    text = Path(DOMAIN).read_text() + "\n" + Path(PROBLEM).read_text()
+    both.write_text(text.replace("(:goal", "(:gaol"))
+    line = next(n for n, line in enumerate(text.splitlines(), 1) if "(:goal" in line)
+    code, _, err = plan(capsys, str(both))
+    assert code == 2
+    assert f"both.pddl:{line}:" in err
+    both.write_text(Path(DOMAIN).read_text())
+    assert "found no (define (problem" in plan(capsys, str(both))[2]
+    both.write_text(text + Path(PROBLEM).read_text())
+    assert "a second problem" in plan(capsys, str(both))[2]
+
+
+OLD_OPTIONS = ("-d", "-d1", "-v12", "-t unlimited", "-T unlimited", "-l unlimited")
+
+
+@pytest.mark.parametrize("options", OLD_OPTIONS)
+def test_options_of_older_versions_are_accepted(capsys, options):
+    expected = plan(capsys, DOMAIN, PROBLEM)[1]
+    assert plan(capsys, *options.split(), DOMAIN, PROBLEM)[:2] == (0, expected)
+
+
+def test_the_version_is_printed(capsys):
+    with pytest.raises(SystemExit) as end:
+        plan(capsys, "-V")
+    assert end.value.code == 0
+    assert capsys.readouterr().out.startswith("tailor ")
+
+
+def test_anytime_reports_each_improvement(capsys):
+    code, out, err = plan(capsys, *DURATIVE, "--anytime", "-f", "MW-Loc", "-l", "2000")
+    assert code == 0
+    values = [float(line.split()[1].rstrip(",")) for line in err.splitlines() if line.startswith("makespan ")]
+    assert values == [56.08, 28.04]
+    assert "best plan found" in err
+    assert out == plan(capsys, *DURATIVE, "-h", "ADDR/MAKESPAN/LIFO", "-f", "MW-Loc")[1] or "24.04" in out
+
+
+def test_memory_is_limited(capsys, monkeypatch):
+    assert 5 < plan_limits.memory_mb() < 50_000
+    values = itertools.count(100.0, 0.5)  # MB at the start and at each look
+    monkeypatch.setattr(plan_limits, "memory_mb", lambda: next(values))
+    code, _, err = plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "--engine", "pocl", "--memory-limit", "1")
+    assert code == 1
+    assert "no plan within 1 MB of memory" in err
+    assert plan(capsys, DOMAIN, PROBLEM, "--memory-limit", "none")[0] == 2

@@ -2,55 +2,77 @@
 
 from __future__ import annotations
 
-import math
+import sys
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
-from tailor.executive.planning import Domain, Problem, Result, Search, Settings
+from tailor.executive.planning import AnytimeSearch, Domain, Problem, Result, Search, Settings
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.plan_limits import Limits
 
 DURATIVE_HEAD_START = 500  # plans refined by the built-in search, about 0.1 s: short problems keep its plans
 _POLL_S = 0.002  # period of polling an external planner
 
 
 @dataclass(slots=True)
-class _Budget:
-    """Grants work until a deadline of wall time, or until the search has refined so many plans."""
+class _HeadStart:
+    """Grants work within the limits until the search has refined so many plans."""
 
-    deadline: float
+    limits: Limits
     search: Search
-    plans: float = math.inf
-    granted: int = field(default=0)
+    plans: int
+    granted: int = 0
 
     def spent(self) -> bool:
         """See `Budget`."""
         self.granted += 1
-        return self.search.counts[1] >= self.plans or time.monotonic() >= self.deadline
+        return self.search.counts[1] >= self.plans or self.limits.spent()
 
 
-def built_in(domain: Domain, problem: Problem, settings: Settings, limit_s: float) -> Result:
+def built_in(domain: Domain, problem: Problem, settings: Settings, limits: Limits) -> Result:
     """The result of the built-in search."""
-    search = Search(domain, problem, settings)
-    return _searched(search, time.monotonic() + limit_s, limit_s)
+    return _searched(Search(domain, problem, settings), limits)
 
 
 def with_kairos(
-    texts: tuple[str, str], domain: Domain, problem: Problem, settings: Settings, limit_s: float
+    texts: tuple[str, str], domain: Domain, problem: Problem, settings: Settings, limits: Limits
 ) -> tuple[Result, str]:
     """The built-in search with a head start, then kairos-planner's first plan, then the rest of the search.
 
     Returns:
       The result, and the name of the planner that found it; "" for the built-in search.
     """
-    search, deadline = Search(domain, problem, settings), time.monotonic() + limit_s
-    result = search.advance(_Budget(deadline, search, DURATIVE_HEAD_START))
+    search = Search(domain, problem, settings)
+    result = search.advance(_HeadStart(limits, search, DURATIVE_HEAD_START))
     if result is None or result.status in ("limit", "unsupported"):
-        found = external("kairos", texts, domain, problem, deadline - time.monotonic())
+        found = external("kairos", texts, domain, problem, limits.left_s)
         if found.plan is not None:
             generated, visited = search.counts
             return replace(found, generated=generated, visited=visited), "kairos"
-        result = _searched(search, deadline, limit_s)
+        result = _searched(search, limits)
     return result, ""
+
+
+def anytime(search: AnytimeSearch, limits: Limits) -> Result:
+    """The best plan within the limits; prints each better one on standard error. An interrupt ends the search."""
+    started = time.process_time()
+    try:
+        while not search.ended and not limits.reason:
+            result = search.advance(limits)
+            if result is not None and result.plan is not None:
+                print(
+                    f"{search.measure} {search.value:g}, {len(result.plan.steps)} steps, {search.counts[0]} plans "
+                    f"generated, {time.process_time() - started:.2f} s CPU",
+                    file=sys.stderr,
+                )
+    except KeyboardInterrupt:
+        limits.reason = "interrupted"
+    if search.best is None:
+        return Result("limit", None, limits.reason, *search.counts)
+    if search.best.plan is not None:
+        why = "no plan is better" if search.ended == "proven" else search.ended or limits.reason
+        print(f"best plan found: {why}", file=sys.stderr)
+    return search.best
 
 
 def external(command: str, texts: tuple[str, str], domain: Domain, problem: Problem, limit_s: float) -> Result:
@@ -73,6 +95,6 @@ def external(command: str, texts: tuple[str, str], domain: Domain, problem: Prob
     return Result("solved", plan, "", 0, 0)
 
 
-def _searched(search: Search, deadline: float, limit_s: float) -> Result:
-    result = search.advance(_Budget(deadline, search))
-    return result or Result("limit", None, f"no plan within {limit_s:g} s", *search.counts)
+def _searched(search: Search, limits: Limits) -> Result:
+    result = search.advance(limits)
+    return result or Result("limit", None, limits.reason, *search.counts)

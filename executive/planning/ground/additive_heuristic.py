@@ -67,7 +67,9 @@ def sum_of(parts: Iterable[Value]) -> Value:
 
 
 def action_costs(actions: Sequence[GroundAction], kind: str) -> tuple[float, ...]:
-    """The cost of each action: 1, its duration in seconds, or its duration relative to the shortest one."""
+    """The cost of each action: 1, its duration in seconds, that relative to the shortest one, or the metric's."""
+    if kind == "metric":
+        return tuple(action.cost for action in actions)
     durations = [action.duration_s or 1.0 for action in actions]
     if kind == "unit" or not durations:
         return (1,) * len(durations)

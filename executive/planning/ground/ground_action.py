@@ -41,6 +41,7 @@ class GroundAction:
     longest: int | None = 0
     duration_s: float = 0.0  # shortest duration
     simple: bool = True  # no conditional effects
+    cost: float = 0.0  # by which it increases the total cost
 
     def __str__(self) -> str:
         return f"({' '.join(self.name)})"

@@ -22,7 +22,7 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 from tailor.executive.planning.structures.orderings import FIRST
 
-CostOf = OneOf["unit", "duration", "relative"]
+CostOf = OneOf["unit", "duration", "relative", "metric"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

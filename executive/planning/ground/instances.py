@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import duration_range, range_ns
+from tailor.executive.planning.ground.durations import duration_range, evaluate, range_ns
 from tailor.executive.planning.ground.ground_action import (
     INSTANT,
     MOMENTS,
@@ -37,7 +37,8 @@ def instance(
     """The ground action of a complete binding, its durations in ns; None if never applicable or without effect."""
     bounds = _INSTANT if schema.duration is None else duration_range(schema.duration, binding, world)
     conditions = _conditions(schema.conditions, binding, world, facts)
-    if bounds is None or conditions is None:
+    cost = Fraction(0) if schema.cost is None else evaluate(schema.cost, binding, world)
+    if bounds is None or conditions is None or cost is None or cost < 0:
         return None
     effects = _useful(conditions, _effects(schema, binding, world, facts))
     if not effects:
@@ -56,6 +57,7 @@ def instance(
         *range_ns(bounds),
         float(bounds[0]),
         not any(effect.conditions for effect in effects),
+        float(cost),
     )
 
 

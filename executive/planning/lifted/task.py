@@ -165,9 +165,9 @@ def _achievers(schemas: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achi
 
 
 def _costs(schemas: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:
-    """The cost of each schema: 1, its duration in seconds, or its duration relative to the shortest one."""
+    """The cost of each schema: 1 (also by the metric), its duration in seconds, or that relative to the shortest."""
     durations = {schema: schema.duration_s or 1.0 for schema in schemas}
-    if kind == "unit" or not durations:
+    if kind in ("unit", "metric") or not durations:
         return dict.fromkeys(durations, 1.0)
     unit = min(durations.values()) if kind == "relative" else 1.0
     return {schema: duration / unit for schema, duration in durations.items()}

@@ -64,8 +64,8 @@ def read_action(form: Form, domain: Domain) -> Action:
     else:
         conditions = (Condition(read_formula(parts.get(":precondition", empty), scope)),)
         bounds = None
-    effects = _effects(parts.get(":effect", empty), scope, durative)
-    return Action(name, variables, conditions, effects, bounds)
+    effect, cost = _without_cost(parts.get(":effect", empty), scope)
+    return Action(name, variables, conditions, _effects(effect, scope, durative), bounds, cost)
 
 
 def _parts(form: Form) -> dict[str, Node]:
@@ -128,6 +128,38 @@ def _literal(form: Form, scope: Scope) -> Effect:
         expect(form, 1)
         return Effect(read_atom(form_of(form.items[1], "an atom"), scope), positive=False)
     return Effect(read_atom(form, scope), positive=True)
+
+
+# --- cost ----------------------------------------------------------------------------------------
+def _without_cost(node: Node, scope: Scope) -> tuple[Node, Numeric | None]:
+    """The effect without (increase (total-cost) ...), and by how much it increases; only at the effect's top."""
+    form = form_of(node, "an effect")
+    parts = form.items[1:] if form.head == "and" else [form]
+    increases = [part for part in parts if _is_cost(part)]
+    if not increases:
+        return node, None
+    if len(increases) > 1:
+        raise increases[1].place.error("(total-cost) is increased twice")
+    timed = form_of(increases[0], "an effect")
+    increase = form_of(timed.items[2], "an effect") if timed.head == "at" else timed
+    expect(increase, 2)
+    cost = _numeric(increase.items[2], scope)
+    if isinstance(cost, Number) and cost.value < 0:
+        raise increase.place.error("expected a cost of at least 0")
+    kept = [part for part in parts if part is not increases[0]]
+    return Form(form.place, [Word("and", form.place), *kept]), cost
+
+
+def _is_cost(node: Node) -> bool:
+    """Whether this is (increase (total-cost) ...), alone or in (at start ...) or (at end ...)."""
+    if not isinstance(node, Form):
+        return False
+    if node.head == "at" and len(node.items) == 3:
+        return _is_cost(node.items[2])
+    if node.head != "increase" or len(node.items) < 2:
+        return False
+    quantity = node.items[1]
+    return isinstance(quantity, Form) and quantity.head == "total-cost" and len(quantity.items) == 1
 
 
 # --- durations -----------------------------------------------------------------------------------

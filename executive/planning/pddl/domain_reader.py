@@ -16,7 +16,7 @@ SUPPORTED = frozenset(
         ":strips", ":typing", ":equality", ":negative-preconditions", ":disjunctive-preconditions",
         ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
         ":conditional-effects", ":adl", ":durative-actions", ":duration-inequalities", ":time",
-        ":timed-initial-literals", ":fluents", ":numeric-fluents",
+        ":timed-initial-literals", ":action-costs", ":fluents", ":numeric-fluents",
     }
 )  # fmt: skip
 _FIRST = (":types", ":constants", ":predicates", ":functions")

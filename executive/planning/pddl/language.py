@@ -148,6 +148,7 @@ class Action:
     conditions: tuple[Condition, ...]
     effects: tuple[Effect, ...]
     duration: tuple[DurationBound, ...] | None = None
+    cost: Numeric | None = None  # by which it increases (total-cost)
 
 
 # --- domains -------------------------------------------------------------------------------------

@@ -35,7 +35,7 @@ class Problem:
     goal_text: str
     values: Mapping[Fact, float] = field(default_factory=dict)  # of static functions
     timed: tuple[TimedLiteral, ...] = ()
-    metric: OneOf["", "makespan"] = ""
+    metric: OneOf["", "makespan", "cost"] = ""
 
     def with_initial(self, facts: Iterable[Fact]) -> Problem:
         """The same problem from another initial state.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.action_reader import number_of
@@ -15,7 +16,11 @@ from tailor.executive.planning.pddl.typed_lists import read_typed
 
 MAX_OBJECTS = 10_000
 MAX_TIMED = 200  # each is a node of every temporal network
-_METRICS = {"total-time", "makespan"}
+_METRICS: dict[str, OneOf["makespan", "cost"]] = {
+    "total-time": "makespan",
+    "makespan": "makespan",
+    "total-cost": "cost",
+}
 
 
 @dataclass(slots=True)
@@ -28,7 +33,7 @@ class _Draft:
     timed: list[TimedLiteral] = field(default_factory=list)
     goal: Formula | None = None
     goal_text: str = ""
-    makespan: bool = False
+    metric: OneOf["", "makespan", "cost"] = ""
 
 
 def parse_problem(text: str, domain: Domain, source: str = "problem") -> Problem:
@@ -54,7 +59,7 @@ def parse_problem(text: str, domain: Domain, source: str = "problem") -> Problem
         raise form.place.error("the problem has no (:goal ...)")
     return Problem(
         name, domain, draft.objects, tuple(draft.initial), draft.goal, draft.goal_text, draft.values,
-        tuple(draft.timed), "makespan" if draft.makespan else "",
+        tuple(draft.timed), draft.metric,
     )  # fmt: skip
 
 
@@ -154,7 +159,7 @@ def _read_metric(form: Form, draft: _Draft) -> None:
     name = quantity.text if isinstance(quantity, Word) else quantity.head
     if direction != "minimize" or name not in _METRICS:
         raise form.place.unsupported(f"the metric {direction} {_text_of(quantity)}")
-    draft.makespan = True
+    draft.metric = _METRICS[name]
 
 
 def _text_of(node: Node) -> str:

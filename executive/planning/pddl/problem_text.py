@@ -29,8 +29,9 @@ def format_problem(problem: Problem) -> str:
         "  )",
         f"  (:goal {problem.goal_text})",
     ]
-    if problem.metric == "makespan":
-        lines.append("  (:metric minimize (total-time))")
+    if problem.metric:
+        quantity = "total-time" if problem.metric == "makespan" else "total-cost"
+        lines.append(f"  (:metric minimize ({quantity}))")
     return "\n".join(lines) + "\n)\n"
 
 

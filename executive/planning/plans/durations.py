@@ -34,7 +34,7 @@ def allowed_durations(
       a divisor is 0.
     """
     try:
-        numbers = [(bound.operator, _value(bound.value, binding, values)) for bound in bounds]
+        numbers = [(bound.operator, evaluated(bound.value, binding, values)) for bound in bounds]
     except (KeyError, ZeroDivisionError):
         return None
     shortest = max([Fraction(0), *(value for comparison, value in numbers if comparison != "<=")])
@@ -42,13 +42,18 @@ def allowed_durations(
     return (shortest, longest) if shortest <= longest else None
 
 
-def _value(number: Numeric, binding: Binding, values: Mapping[Fact, float]) -> Fraction:
-    """The value of an arithmetic expression; raises KeyError or ZeroDivisionError when it has none."""
+def evaluated(number: Numeric, binding: Binding, values: Mapping[Fact, float]) -> Fraction:
+    """The value of an arithmetic expression over static functions.
+
+    Raises:
+      KeyError: A function has no value.
+      ZeroDivisionError: A divisor is 0.
+    """
     if isinstance(number, Number):
         return Fraction(str(number.value))
     if isinstance(number, Function):
         return Fraction(str(values[(number.name, *(binding.get(term, term) for term in number.terms))]))
-    result, *others = (_value(operand, binding, values) for operand in number.operands)
+    result, *others = (evaluated(operand, binding, values) for operand in number.operands)
     for other in others:
         result = _OPERATORS[number.operator](result, other)
     return result

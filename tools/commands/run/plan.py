@@ -15,7 +15,9 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, get_args
 
+from tailor import __version__
 from tailor.executive.planning import (
+    AnytimeSearch,
     Domain,
     EngineName,
     FlawOrder,
@@ -31,9 +33,11 @@ from tailor.executive.planning import (
 )
 from tailor.executive.planning.flaws.flaw_orders import NAMED
 from tailor.executive.planning.flaws.ranking import NAMES
+from tailor.executive.planning.pddl.definitions import split_definitions
 from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.plan_search import built_in, external, with_kairos
+from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.cli.plan_search import anytime, built_in, external, with_kairos
 
 MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # about 1 GB of memory
@@ -45,8 +49,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.conflict_handler = "resolve"
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
-    parser.add_argument("domain", metavar="DOMAIN", type=Path, help="PDDL domain file, - for standard input")
-    parser.add_argument("problem", metavar="PROBLEM", type=Path, help="PDDL problem file, - for standard input")
+    parser.add_argument(
+        "files",
+        metavar="FILE",
+        nargs="*",
+        type=Path,
+        help="PDDL, first DOMAIN, then PROBLEM: two files, or both in one file or on standard input (-, or no file)",
+    )
+    parser.add_argument("-V", "--version", action="version", version=f"tailor {__version__}")
     search = parser.add_argument_group("search, as in VHPOP")
     _configure_search(search)
     _configure_costs(search)
@@ -60,6 +70,10 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
     add("-h", "--heuristic", metavar="RANKING", default="",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
+    add("-d", "--domain-constraints", *(f"-d{level}" for level in range(10)), action="store_true",
+        help=argparse.SUPPRESS)  # as VHPOP's; lifted planning always keeps the domains of parameters  # fmt: skip
+    add("--anytime", action="store_true",
+        help="after the first plan search for better ones by the metric, within the limits")  # fmt: skip
     add("--engine", choices=(*get_args(EngineName), "kairos"), default="auto",
         help="partial-order search, search through states, both by turns (auto, default), or kairos-planner; auto also "
         "asks that for durative problems, if it is installed")  # fmt: skip
@@ -87,15 +101,22 @@ def _configure_costs(group: argparse._ArgumentGroup) -> None:
         default=1.0,
         help="weight of the heuristic against the cost of the steps (default 1)",
     )
-    add("-a", "--action-cost", choices=("UNIT", "DURATION", "RELATIVE"), default="UNIT", type=str.upper,
-        help="cost of a step: 1, its duration, or that relative to the shortest (default UNIT)")  # fmt: skip
+    costs = ("UNIT", "DURATION", "RELATIVE", "METRIC")
+    add(
+        "-a",
+        "--action-cost",
+        choices=costs,
+        default="UNIT",
+        type=str.upper,
+        help="cost of a step: 1, its duration, that relative to the shortest, or its (total-cost) (default UNIT)",
+    )
     add(
         "-t",
         "--tolerance",
-        type=float,
+        type=_tolerance,
         default=0.01,
         metavar="S",
-        help="tick of a durative plan in seconds (default 0.01)",
+        help="tick of a durative plan in seconds (default 0.01); 'unlimited', as VHPOP 2 has it, is no time limit",
     )
     add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
     add("-S", "--seed", type=int, default=0, help="random seed (default 0)")
@@ -105,8 +126,10 @@ def _configure_costs(group: argparse._ArgumentGroup) -> None:
         type=_minutes,
         default=None,
         metavar="MINUTES",
-        help="time limit of the search in minutes, fractions allowed (default none)",
+        help="time limit of the search in minutes, fractions allowed, or 'unlimited' (default)",
     )
+    add("--memory-limit", type=_megabytes, default=512, metavar="MB",
+        help="memory limit of the search, or 'unlimited' (default 512)")  # fmt: skip
     add(
         "--planner",
         metavar="COMMAND",
@@ -122,9 +145,12 @@ def _configure_output(group: argparse._ArgumentGroup) -> None:
     forms.add_argument("--dot", action="store_true", help="print the partial order as a Graphviz graph")
     forms.add_argument("--svg", action="store_true", help="print the partial order as an SVG image")
     group.add_argument(
-        "-v", "--verbose", action="store_true", help="print the cost of the search on standard error (also -v1 ...)"
+        "-v",
+        "--verbose",
+        action="store_true",
+        help="print the cost of the search on standard error (also -v1 ...)",
     )
-    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(10)]
+    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(100)]
     group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)
 
 
@@ -149,6 +175,8 @@ class _LimitOrder(argparse.Action):
 
 def _minutes(text: str) -> float:
     """A time limit in minutes."""
+    if text == "unlimited":
+        return float("inf")
     try:
         minutes = float(text)
     except ValueError:
@@ -156,6 +184,20 @@ def _minutes(text: str) -> float:
     if not minutes >= 0:
         raise UsageError(f"--time-limit: expected a number of minutes of at least 0, found '{text}'")
     return minutes
+
+
+def _tolerance(text: str) -> float:
+    """A tick in seconds; VHPOP 2's time limit "unlimited" is the default, 0.01."""
+    return 0.01 if text == "unlimited" else float(text)
+
+
+def _megabytes(text: str) -> float:
+    """A limit of memory in MB."""
+    if text == "unlimited":
+        return float("inf")
+    if not text.isdecimal() or int(text) < 1:
+        raise UsageError(f"--memory-limit: expected a whole number of MB or 'unlimited', found '{text}'")
+    return float(text)
 
 
 def _positive(text: str) -> int:
@@ -169,12 +211,12 @@ def run(args: argparse.Namespace) -> int:
     """Plans and prints; returns exit code 0 with a plan, 1 without."""
     started = time.process_time()
     try:
-        texts = _read(args.domain), _read(args.problem)  # read once: standard input cannot be read again
-        domain = parse_domain(texts[0], str(args.domain))
-        problem = parse_problem(texts[1], domain, str(args.problem))
+        texts = _texts(args.files)  # read once: standard input cannot be read again
+        domain = parse_domain(texts[0], str(args.files[0]))
+        problem = parse_problem(texts[1], domain, str(args.files[-1]))
     except Unsupported as feature:
         if args.json:
-            print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.problem.stem, 0.0)))
+            print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.files[-1].stem, 0.0)))
         raise
     result = _plan(args, texts, domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
@@ -186,6 +228,17 @@ def run(args: argparse.Namespace) -> int:
         print(f"generated {result.generated}, visited {result.visited}, {cpu_ms:.1f} ms CPU", file=sys.stderr)
     _print(args, result, problem, cpu_ms)
     return 0 if result.plan is not None else 1
+
+
+def _texts(files: list[Path]) -> tuple[str, str]:
+    """The text of the domain and of the problem; an empty list becomes standard input."""
+    if len(files) > 2:
+        raise UsageError(f"expected at most two files, found {len(files)}")
+    if not files:
+        files.append(Path("-"))
+    if len(files) == 2:
+        return _read(files[0]), _read(files[1])
+    return split_definitions(_read(files[0]), str(files[0]))
 
 
 def _read(path: Path) -> str:
@@ -225,13 +278,15 @@ def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, prob
     if args.engine == "kairos":
         name = "kairos" if args.time_limit is None else f"kairos:{limit_s:g}"
         return external(name, texts, domain, problem, limit_s + KAIROS_GRACE_S)
-    settings = settings_of(args)
+    settings, limits = settings_of(args), Limits(limit_s, args.memory_limit)
+    if args.anytime:
+        return anytime(AnytimeSearch(domain, problem, settings), limits)
     if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
-        result, planner = with_kairos(texts, domain, problem, settings, limit_s)
+        result, planner = with_kairos(texts, domain, problem, settings, limits)
         if planner and args.verbose:
             print(f"the plan is by {planner}", file=sys.stderr)
         return result
-    return built_in(domain, problem, settings, limit_s)
+    return built_in(domain, problem, settings, limits)
 
 
 def _kairos_applies(domain: Domain) -> bool:

@@ -1,0 +1,132 @@
+"""First any plan, then better ones: by makespan, by cost, by steps; the search can be cut into slices."""
+
+from dataclasses import replace
+
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import (
+    DEFAULT,
+    MATCHING,
+    AnytimeSearch,
+    Settings,
+    Unsupported,
+    format_problem,
+    parse_domain,
+    parse_problem,
+    quality,
+    validate,
+)
+from tests.support.planning_problems import own, read, solve
+
+ROADS = """(define (domain roads) (:requirements :strips :action-costs)
+  (:predicates (at ?x) (road ?x ?y)) (:functions (total-cost) - number (length ?x ?y) - number)
+  (:action drive :parameters (?x ?y) :precondition (and (at ?x) (road ?x ?y))
+    :effect (and (not (at ?x)) (increase (total-cost) (length ?x ?y)) (at ?y)))
+  (:action fly :parameters (?x ?y) :precondition (at ?x)
+    :effect (and (not (at ?x)) (at ?y) (increase (total-cost) 100))))"""
+TRIP = """(define (problem p) (:domain roads) (:objects a b c d)
+  (:init (at a) (road a b) (road b c) (road c d) (road a d) (= (total-cost) 0)
+    (= (length a b) 1.5) (= (length b c) 2) (= (length c d) 0.25) (= (length a d) 20))
+  (:goal (at d)) (:metric minimize (total-cost)))"""
+DRIVES = [("drive", "a", "b"), ("drive", "b", "c"), ("drive", "c", "d")]
+
+
+def improvements(domain, problem, settings, checks=10**9):
+    """All results of an anytime search, advanced in slices of so many checks."""
+    search, results = AnytimeSearch(domain, problem, settings), []
+    while not search.ended:
+        result = search.advance(CheckBudget(checks))
+        results += [result] if result is not None else []
+    return search, results
+
+
+def test_the_makespan_falls_to_the_best_one():
+    domain, problem = own("kitchen-durative-s3")
+    search, results = improvements(domain, problem, DEFAULT)
+    assert [result.plan.makespan for result in results] == [56.08, 28.04]
+    assert search.ended == "proven"
+    assert search.best == results[-1]
+    assert all(validate(result.plan, domain, problem) == "" for result in results)
+
+
+@pytest.mark.parametrize("checks", [1, 7, 100])
+def test_slices_change_nothing(checks):
+    settings = Settings(node_limit=400)
+    whole = improvements(*own("kitchen-durative-s3"), settings)
+    sliced = improvements(*own("kitchen-durative-s3"), settings, checks)
+    assert sliced[1] == whole[1]
+    assert sliced[0].counts == whole[0].counts
+
+
+def test_the_first_plan_is_the_one_of_the_sure_rankings():
+    domain, problem = own("kitchen-durative-s3")
+    fastest = replace(problem, metric="makespan")
+    _, results = improvements(domain, fastest, Settings(flaw_orders=MATCHING.flaw_orders, node_limit=1000))
+    assert (results[0].generated, results[0].plan.makespan) == (solve(domain, problem).generated, 56.08)
+    assert results[-1].plan.makespan == 28.04
+
+
+def test_steps_fall_where_there_is_no_metric():
+    domain, problem = own("soccer-typed-p3")
+    search, results = improvements(domain, problem, Settings(engine="forward", node_limit=2000))
+    values = [len(result.plan.steps) for result in results]
+    assert values == sorted(set(values), reverse=True)
+    assert search.value == values[-1] <= 12
+
+
+@pytest.mark.parametrize(
+    "settings", [DEFAULT, Settings(ground=False, node_limit=500), Settings(action_cost="metric", engine="pocl")]
+)
+def test_costs_are_minimised(settings):
+    domain, problem = read(ROADS, TRIP)
+    search, _ = improvements(domain, problem, settings)
+    assert [step.action for step in search.best.plan.steps] == DRIVES
+    assert search.value == 3.75
+    assert quality(search.best.plan, problem) == 3.75
+    assert search.ended == ("proven" if settings.ground else "500 plans generated")
+
+
+def test_a_search_without_more_ranks_by_the_cost_first():
+    domain, problem = read(ROADS, TRIP)
+    assert [step.action for step in solve(domain, problem, DEFAULT).plan.steps] == DRIVES
+    without = read(ROADS, TRIP.replace("(:metric minimize (total-cost))", ""))
+    assert len(solve(*without, DEFAULT).plan.steps) == 1
+
+
+def test_problems_with_costs_are_written_as_they_were():
+    domain, problem = read(ROADS, TRIP)
+    assert parse_problem(format_problem(problem), domain) == problem
+
+
+@pytest.mark.parametrize(
+    ("effect", "reason"),
+    [
+        ("(and (at ?y) (when (at ?x) (increase (total-cost) 1)))", "a numeric effect"),
+        ("(and (at ?y) (decrease (total-cost) 1))", "a numeric effect"),
+        ("(and (at ?y) (increase (fuel) 1))", "a numeric effect"),
+    ],
+)
+def test_other_numeric_effects_stay_refused_by_name(effect, reason):
+    text = f"""(define (domain d) (:predicates (at ?x)) (:functions (total-cost) (fuel))
+      (:action go :parameters (?x ?y) :precondition (at ?x) :effect {effect}))"""
+    with pytest.raises(Unsupported, match=reason) as refused:
+        parse_domain(text, "d.pddl")
+    assert str(refused.value).startswith("d.pddl:2:")
+
+
+def test_an_unsolvable_problem_ends_at_once():
+    domain, problem = own("soccer-typed-p1")
+    search, results = improvements(domain, problem.with_goal("(and (robot-at r1 p1) (not (robot-at r1 p1)))"), DEFAULT)
+    assert [result.status for result in results] == ["unsolvable"]
+    assert search.best.plan is None
+
+
+# --- coverage ------------------------------------------------------------------------------------
+def test_the_makespan_ranking_alone_no_longer_decides_what_is_found(monkeypatch):
+    domain, problem = own("kitchen-durative-s3")
+    hard = replace(problem, metric="makespan")
+    monkeypatch.setattr("tailor.executive.planning.search.HEAD_START", 3)  # as if the metric's ranking took long
+    result = solve(domain, hard, Settings(flaw_orders=MATCHING.flaw_orders))
+    assert result.status == "solved"
+    assert result.generated <= 3 * solve(domain, problem).generated

@@ -1,0 +1,51 @@
+"""Limits of a search from the command line: wall time, and memory that the search takes."""
+
+from __future__ import annotations
+
+import math
+import resource
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+CHECKS_PER_LOOK = 256  # checks of the budget from one look at the memory to the next
+
+
+def memory_mb() -> float:
+    """Memory of the process; where the system does not report it, the most that it has taken."""
+    try:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 2**20
+    except OSError:
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        return peak / 2**20 if sys.platform == "darwin" else peak / 2**10
+
+
+@dataclass(slots=True)
+class Limits:
+    """A budget (see `Budget`) that is spent at a deadline, or when the process has grown too much."""
+
+    limit_s: float = math.inf
+    limit_mb: float = math.inf
+    granted: int = 0
+    reason: str = ""  # why the budget is spent
+    deadline: float = field(init=False)
+    started_mb: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.deadline = time.monotonic() + self.limit_s
+        self.started_mb = memory_mb()
+
+    @property
+    def left_s(self) -> float:
+        """Time until the deadline."""
+        return self.deadline - time.monotonic()
+
+    def spent(self) -> bool:
+        """See `Budget`."""
+        self.granted += 1
+        if time.monotonic() >= self.deadline:
+            self.reason = f"no plan within {self.limit_s:g} s"
+        elif self.granted % CHECKS_PER_LOOK == 0 and memory_mb() - self.started_mb > self.limit_mb:
+            self.reason = f"no plan within {self.limit_mb:g} MB of memory"
+        return bool(self.reason)
