@@ -21,6 +21,7 @@ LEGS = {
     "4 free": 3,
     "8 free": 5,
     "12 free": 7,
+    "24 free": 13,
 }  # case -> legs of goToPose, two free parameters at each waypoint
 
 

@@ -49,11 +49,12 @@ class SequenceObjective:
             stages.append(Stage(action, variables, columns, displaced_ids, models, settings, risk))
             arrival_ids = frozenset(action.variables)
         self.stages = tuple(stages)
+        self.coarse_stages = tuple(stage.at_exact_arrival() for stage in stages)
 
     @property
     def evaluations(self) -> int:
         """Number of model inputs predicted so far."""
-        return sum(stage.evaluations for stage in self.stages)
+        return sum(stage.evaluations for stage in (*self.stages, *self.coarse_stages))
 
     def __call__(self, candidates: Array) -> Array:
         """Cost in seconds, shape (n,), of candidates of shape (n, d); +inf is INVALID."""

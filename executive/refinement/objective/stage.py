@@ -6,6 +6,7 @@ INVALID (Algorithm 4) is decided here: failure too probable, or a prediction tha
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,6 +81,13 @@ class Stage:
     def n_arrivals(self) -> int:
         """Number of displaced arrivals, the exact one included, that the cost is averaged over."""
         return len(self._displacements)
+
+    def at_exact_arrival(self) -> Stage:
+        """The same cost without displaced arrivals: an approximation with fewer model inputs, counted apart."""
+        stage = copy(self)
+        stage._displacements = self._displacements[:1]
+        stage.evaluations = 0
+        return stage
 
     def predict(self, samples: Array) -> Prediction:
         """Predictions for samples of the free parameters, shape (n, len(columns))."""

@@ -1,7 +1,8 @@
 """Chain solver: dynamic programming over candidates of each subgoal.
 
 One check draws a few candidates for every subgoal, near the best so far and far from it, and finds the best combination
-of all of them: m values at each of s subgoals are m**s chains for s * m**2 model inputs.
+of all of them: m values at each of s subgoals are m**s chains for s * m**2 model inputs. The next two checks move every
+second subgoal, and then the others. Their neighbours stay, so many more candidates cost as much.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.solvers.chain_structure import (
     ChainObjective,
+    Link,
     best_chain,
     blocks_of,
     forward_costs,
@@ -25,6 +27,9 @@ from tailor.executive.refinement.solvers.solver import Limits, Solver
 FAR_SHARE = 0.125  # of the candidates are drawn from the whole range, so that every basin is sampled eventually
 DECADES = 3.5  # near candidates step by 10**-3.5 to all of the range
 N_ELITE = 4  # candidates of a subgoal that survive a check
+MIN_DISTANCE = 0.03  # share of a range between two of them
+TURNS = 3  # checks: all subgoals, every second one, the others
+COARSE_FACTOR = 2  # of the candidates in the first check: its models have a sixth of the inputs
 
 
 class ChainSolver(Solver):
@@ -55,40 +60,74 @@ class ChainSolver(Solver):
             raise ValueError("a parameter occurs in actions that are not neighbours: not a chain")
         self._blocks = blocks
         self._links = links_of(objective.stages, blocks)
-        paired = any(len(a) and len(b) for a, b in pairwise(blocks))
-        self._n_candidates = max(N_ELITE + 2, int(np.sqrt(batch)) if paired else batch // 2)
+        self._coarse_links = links_of(objective.coarse_stages, blocks)
+        self._paired = any(len(a) and len(b) for a, b in pairwise(blocks))
+        self._n_single = batch // 2  # candidates of a subgoal if its neighbours stay
+        self._n_candidates = max(N_ELITE + 2, int(np.sqrt(batch))) if self._paired else self._n_single
         self._elite = [self._seeds[:, block] for block in blocks]
 
     def _check(self) -> None:
-        drawn = [self._candidates(index) for index in range(len(self._blocks))]
+        first_look = self.checks == 1 and self._paired
+        values = self._values(COARSE_FACTOR * self._n_candidates) if first_look else self._values_to_combine()
+        candidate, cost, through = self._best_combination(self._coarse_links if first_look else self._links, values)
+        if first_look:
+            choices = np.vstack([candidate, self._seeds])
+            self._consider_all(choices, self._objective(choices))
+        else:
+            self._consider(candidate, cost)
+        for index, (drawn, costs) in enumerate(zip(values, through, strict=True)):
+            if len(drawn) > 1:
+                self._update_elite(index, drawn, costs)
+
+    def _values_to_combine(self) -> list[Array]:
+        """Values of every subgoal in this check, in turns: few of all subgoals, many of every second, of the others."""
+        turn = self.checks % TURNS
+        if self.best is None or not self._paired or turn == TURNS - 1:
+            return self._values(self._n_candidates)
+        best = self.best
+        return [
+            self._candidates(index, self._n_single, best[None, block]) if index % 2 == turn else best[None, block]
+            for index, block in enumerate(self._blocks)
+        ]
+
+    def _values(self, count: int) -> list[Array]:
+        return [self._candidates(index, count, elite) for index, elite in enumerate(self._elite)]
+
+    def _best_combination(self, links: tuple[Link, ...], values: list[Array]) -> tuple[Array, float, list[Array]]:
+        """Best candidate and its cost, and the least cost of a chain through each value."""
         costs = [
             pairwise_costs(link, before, own)
-            for link, before, own in zip(self._links, [np.empty((1, 0)), *drawn], drawn, strict=False)
+            for link, before, own in zip(links, [np.empty((1, 0)), *values], values, strict=False)
         ]
         forward = forward_costs(costs)
         candidate = np.empty(self._objective.ranges.count)
-        for block, candidates, chosen in zip(self._blocks, drawn, best_chain(costs, forward), strict=True):
-            candidate[block] = candidates[chosen]
-        self._consider(candidate, float(forward[-1].min()))
-        for index, through in enumerate(through_costs(costs, forward)):
-            self._update_elite(index, drawn[index], through)
+        for block, own, chosen in zip(self._blocks, values, best_chain(costs, forward), strict=True):
+            candidate[block] = own[chosen]
+        return candidate, float(forward[-1].min()), through_costs(costs, forward)
 
     def _update_elite(self, index: int, drawn: Array, through: Array) -> None:
-        """Keep the overall best value of a subgoal and the values on the best chains of this check."""
-        order = np.argsort(through, kind="stable")[:N_ELITE]
-        valid = order[np.isfinite(through[order])]
-        best = [] if self.best is None else [self.best[self._blocks[index]]]
-        if best or len(valid):
-            self._elite[index] = np.vstack([*best, drawn[valid]])
+        """Keep the overall best value of a subgoal, and the values on the best chains of this check that lie apart."""
+        block = self._blocks[index]
+        order = np.argsort(through, kind="stable")
+        order = order[np.isfinite(through[order])]
+        apart = MIN_DISTANCE * self._objective.ranges.width[block]
+        elite = [] if self.best is None else [self.best[block]]
+        for value in drawn[order]:
+            if len(elite) > N_ELITE:
+                break
+            if all((np.abs(value - other) > apart).any() for other in elite):
+                elite.append(value)
+        if elite:
+            self._elite[index] = np.array(elite)
 
-    def _candidates(self, index: int) -> Array:
-        """Values of one subgoal, shape (m, len(block)): the elite, steps from it, and far ones."""
-        block, elite = self._blocks[index], self._elite[index]
+    def _candidates(self, index: int, count: int, elite: Array) -> Array:
+        """Values of one subgoal, shape (count, len(block)): the elite, steps from it, and far ones."""
+        block = self._blocks[index]
         if not len(block):
             return np.empty((1, 0))
         ranges = self._objective.ranges.part(block)
-        elite = elite[: self._n_candidates // 2]
-        n_new = self._n_candidates - len(elite)
+        elite = elite[: count // 2]
+        n_new = count - len(elite)
         n_far = n_new if not len(elite) else max(1, round(FAR_SHARE * n_new))
         n_near = n_new - n_far
         far = ranges.draw(n_far, self._rng)

@@ -36,6 +36,11 @@ class ChainObjective(Objective, Protocol):
         """The terms, in order of execution."""
         ...
 
+    @property
+    def coarse_stages(self) -> Sequence[StageCost]:
+        """Approximations of the terms that need fewer model inputs, for a first look."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Link:

@@ -33,6 +33,8 @@ class Function:
     def stages(self):
         return (self,)
 
+    coarse_stages = stages
+
     @property
     def columns(self):
         return np.arange(self.ranges.count)
