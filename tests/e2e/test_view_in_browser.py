@@ -14,11 +14,13 @@ from tailor.tools.viewer import timeline as timeline_module
 from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
+from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser
+from tests.support.bus_system import ROOT
 from tests.support.synthetic_models import LIBRARY, MODELS
 
 pytestmark = [
@@ -191,6 +193,23 @@ def test_a_robot_that_is_no_point_on_the_plane_gets_plots_over_time(browser: Bro
     assert text(browser, "#scene h2 span") == "State"
     assert count(browser, "#scene .trace") == 4
     assert count(browser, "#timeline .bar.actual") == 4
+    assert browser.errors == []
+
+
+def test_an_arm_is_drawn_from_behind_above_its_values_over_time(browser: Browser, tmp_path: Path) -> None:
+    rows = recorded_events(ROOT / "tests" / "data" / "golden" / "arm-word-I.mcap", RunTimeline())
+    opened(browser, written(tmp_path / "letter.html", rows), 3.0)
+    assert count(browser, "#scene path.robot.pale") == 13, "six modules, five links, column and tip"
+    assert count(browser, "#scene .layers .trace") >= 4, "the pen's line, one for each stroke"
+    assert count(browser, "#scene .plots svg") >= 4
+    assert browser.errors == []
+
+
+def test_opponents_of_the_robots_scene_are_drawn_where_they_stand(browser: Browser, tmp_path: Path) -> None:
+    rows = recorded_events(ROOT / "tests" / "data" / "golden" / "soccer-opponents.mcap", RunTimeline())
+    opened(browser, written(tmp_path / "opponents.html", rows), 5.0)
+    assert count(browser, "#scene .above path.object") >= 2
+    assert count(browser, "#scene .above path.robot") >= 5, "chassis, wheels, rail and the mark ahead"
     assert browser.errors == []
 
 
