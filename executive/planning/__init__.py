@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from tailor.executive.planning.pddl.problem import Problem
     from tailor.executive.planning.pddl.problem_reader import parse_problem
     from tailor.executive.planning.pddl.problem_text import format_problem
+    from tailor.executive.planning.plan_quality import quality
     from tailor.executive.planning.plans.action_effects import apply_action
     from tailor.executive.planning.plans.completion import completed, completion
     from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
     from tailor.executive.planning.plans.portions import PacedWork, Work
-    from tailor.executive.planning.plans.quality import quality
     from tailor.executive.planning.plans.state import Objects
     from tailor.executive.planning.plans.suffix import relink, shortest_suffix, suffix
     from tailor.executive.planning.plans.validator import validate, validation
@@ -78,7 +78,7 @@ __all__ = [
 
 _MODULES = {
     "AnytimeSearch": "anytime",
-    "quality": "plans.quality",
+    "quality": "plan_quality",
     "apply_action": "plans.action_effects",
     "completed": "plans.completion",
     "completion": "plans.completion",

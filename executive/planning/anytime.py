@@ -11,8 +11,8 @@ from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plan_quality import Measure, measure_of, quality
 from tailor.executive.planning.plans.plan import Result
-from tailor.executive.planning.plans.quality import Measure, measure_of, quality
 from tailor.executive.planning.search import GroundCache, Search, plan_space
 from tailor.executive.planning.settings import DEFAULT, DEFAULT_RANKINGS, MAKESPAN_RANKINGS, Settings
 from tailor.executive.planning.structures.orderings import GOAL
