@@ -10,7 +10,7 @@ from tailor.executive.planning import AnytimeSearch, Domain, Problem, Result, Se
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
 
-DURATIVE_HEAD_START = 500  # plans refined by the built-in search, about 0.1 s: short problems keep its plans
+DURATIVE_HEAD_START = 250  # plans refined by the built-in search, 0.05 to 0.1 s: short problems keep its plans
 _POLL_S = 0.002  # period of polling an external planner
 
 

@@ -32,7 +32,7 @@ TEST = declared(PROJECT["optional-dependencies"]["test"])
 PLANNERS = declared(PROJECT["optional-dependencies"]["kairos"] + PROJECT["optional-dependencies"]["up"])
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
 OF_EXAMPLES = {"rerun"}  # for those who have it; Tailor needs no viewer
-OPTIONAL = {"cma", "pytest", *PLANNERS}  # benchmarks leave out what is not installed; pytest's plug-in
+OPTIONAL = {"cma", "pyperplan", "pytest", *PLANNERS}  # benchmarks leave out what is not installed; pytest's plug-in
 
 
 def imported_distributions(paths: list[str]) -> dict[str, str]:
@@ -40,7 +40,7 @@ def imported_distributions(paths: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for path in paths:
         for name in {name.split(".")[0] for name in imported_names(path)} - OURS - set(sys.stdlib_module_names):
-            known = {canonical(name)} & (RUN | TEST | PLANNERS)  # a meta-package declares what another distribution contains
+            known = {canonical(name)} & (RUN | TEST | PLANNERS)  # of a meta-package
             found[known.pop() if known else canonical(DISTRIBUTIONS.get(name, [name])[0])] = path
     return found
 

@@ -24,7 +24,7 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
-SCALE = ("planning_scale", "execution.long_plans")
+SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH = "soak", "growth"
 ON_REQUEST = {
     SOAK: "whole systems under one random fault a minute: invariants, memory; only if named",
