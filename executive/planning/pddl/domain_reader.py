@@ -52,7 +52,7 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     for part in parts:
         domain = _declare(part, domain)
     actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
-    _reject_duplicates(form, [action.name for action in actions])
+    _reject_duplicates([part for part in parts if part.head in _ACTIONS])
     return replace(domain, actions=actions)
 
 
@@ -75,6 +75,7 @@ def _declare(form: Form, domain: Domain) -> Domain:
             return domain
         case ":types":
             types = _types(form)
+            _reject_cycles(form, types)
             return replace(domain, types=types, ancestors=_ancestors(types))
         case ":constants":
             return replace(domain, constants=read_typed(rest, domain.types))
@@ -112,7 +113,7 @@ def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
 
 
 def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[str]]:
-    """By type, itself and all types above it; types in a cycle are equivalent."""
+    """By type, itself and all types above it."""
     ancestors = {}
     for kind in types:
         reached, pending = {kind, "object"}, [kind]
@@ -122,6 +123,21 @@ def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[s
             pending += more
         ancestors[kind] = frozenset(reached)
     return ancestors
+
+
+def _reject_cycles(form: Form, types: Mapping[str, tuple[str, ...]]) -> None:
+    """Raises at the first type that is above itself."""
+    for word in form.items[1:]:
+        if isinstance(word, Word) and word.text in types and word.text != "object":
+            reached: set[str] = set()
+            pending = list(types[word.text])
+            while pending:
+                kind = pending.pop()
+                if kind == word.text:
+                    raise word.place.error(f"the type '{kind}' is above itself")
+                if kind not in reached:
+                    reached.add(kind)
+                    pending += types[kind]
 
 
 def _signatures(nodes: list[Node], domain: Domain) -> Mapping[str, tuple[Typed, ...]]:
@@ -149,9 +165,10 @@ def _without_types(nodes: list[Node]) -> list[Node]:
     return kept
 
 
-def _reject_duplicates(form: Form, names: list[str]) -> None:
+def _reject_duplicates(actions: list[Form]) -> None:
     seen: set[str] = set()
-    for name in names:
+    for action in actions:
+        name = word_of(action.items[1], "the action's name")
         if name in seen:
-            raise form.place.error(f"the action '{name}' is declared twice")
+            raise action.items[1].place.error(f"the action '{name}' is declared twice")
         seen.add(name)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from tailor.schemas.errors import UsageError
 
 
@@ -16,7 +18,15 @@ class Unsupported(PddlError):
 MAX_CHARACTERS = 400  # of an error message: a word of a file may be a megabyte long
 
 
+MAX_TOKEN = 60  # characters of one word in a message
+
+
+def shortened(text: str) -> str:
+    """A message with its long words cut."""
+    text = re.sub(rf"\S{{{MAX_TOKEN + 1},}}", lambda word: f"{word[0][: MAX_TOKEN - 3]}...", text)
+    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 3]}..."
+
+
 def error_at(source: str, line: int, column: int, what: str) -> PddlError:
     """An error at one place of a text; line and column count from 1."""
-    shortened = what if len(what) <= MAX_CHARACTERS else f"{what[: MAX_CHARACTERS - 3]}..."
-    return PddlError(f"{source}:{line}:{column}: {shortened}")
+    return PddlError(f"{source}:{line}:{column}: {shortened(what)}")

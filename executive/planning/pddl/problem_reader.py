@@ -102,9 +102,10 @@ def _check_domain(form: Form, domain: Domain) -> None:
 
 def _reject_constants(form: Form, objects: tuple[Typed, ...], domain: Domain) -> None:
     constants = {constant.name for constant in domain.constants}
-    for item in objects:
-        if item.name in constants:
-            raise form.place.error(f"'{item.name}' is already a constant of the domain")
+    declared = {item.name for item in objects}
+    for node in form.items[1:]:
+        if isinstance(node, Word) and node.text in constants & declared:
+            raise node.place.error(f"'{node.text}' is already a constant of the domain")
 
 
 # --- initial state -------------------------------------------------------------------------------

@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tailor.executive.planning.pddl.errors import PddlError, Unsupported, error_at
+from tailor.executive.planning.pddl.errors import PddlError, Unsupported, error_at, shortened
 
 MAX_CHARACTERS = 250_000  # read in a quarter of a second; the problems at hand have 10 000 at most
 MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20
 
 _new = tuple.__new__  # makes a named tuple in half the time of its constructor
+_LINE_END = re.compile(r"\r\n|\r|\n")
 _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
 
 
@@ -32,7 +33,7 @@ class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of 
 
     def unsupported(self, feature: str) -> Unsupported:
         """An error for a PDDL feature outside the planner's language."""
-        return Unsupported(f"{self.source}:{self.line}:{self.column}: {feature} is not supported")
+        return Unsupported(f"{self.source}:{self.line}:{self.column}: {shortened(feature)} is not supported")
 
 
 class Word(NamedTuple):
@@ -82,7 +83,7 @@ def read_form(text: str, source: str) -> Form:
 
 
 def _words(text: str, source: str) -> Iterator[Word]:
-    for row, line in enumerate(text.split("\n"), 1):
+    for row, line in enumerate(_LINE_END.split(text), 1):
         for match in _TOKEN.finditer(line):
             token = match.group()
             if token[0] != ";":

@@ -2,7 +2,17 @@
 
 import pytest
 
-from tailor.executive.planning import GOAL, MATCHING, Literal, PddlError, Settings, Unsupported, parse_domain, validate
+from tailor.executive.planning import (
+    GOAL,
+    MATCHING,
+    Literal,
+    PddlError,
+    Settings,
+    Unsupported,
+    parse_domain,
+    parse_problem,
+    validate,
+)
 from tests.support.planning_problems import read, solve
 
 
@@ -302,7 +312,7 @@ def test_what_is_not_supported_is_refused_by_name_with_its_place(part, place, fe
         ("(:action a :effect (p)))", "my.pddl:4:26: this parenthesis was never opened"),
         ("(:durative-action a :duration (= ?duration x) :effect (at end (p)))", "my.pddl:4:45: expected a number, fo"),
         ("(:durative-action a :duration (= ?duration 1) :effect (p))", "my.pddl:4:56: expected (at start ...)"),
-        ("(:action a :effect (p)) (:action a :effect (p))", "my.pddl:1:1: the action 'a' is declared twice"),
+        ("(:action a :effect (p)) (:action a :effect (p))", "my.pddl:4:35: the action 'a' is declared twice"),
         ("(:rules)", "my.pddl:4:2: unknown part ':rules' of a domain"),
         ("(:predicates (r))", "my.pddl:4:2: ':predicates' is given twice"),
         ("(:derived (p) (q)) (:derived (q) (p))", "my.pddl:4:2: a derived predicate is not supported"),
@@ -312,6 +322,33 @@ def test_errors_point_at_line_and_column(part, message):
     with pytest.raises(PddlError) as caught:
         parse_domain(domain_with(part), "my.pddl")
     assert str(caught.value).startswith(message)
+
+
+def test_types_above_themselves_are_refused_at_their_place():
+    text = "(define (domain d) (:types a - b\n b - (either c object)\n c - a) (:predicates (p)))"
+    with pytest.raises(PddlError, match=r"d.pddl:1:28: the type 'a' is above itself"):
+        parse_domain(text, "d.pddl")
+
+
+def test_an_object_that_is_a_constant_is_refused_at_its_own_place():
+    domain = parse_domain("(define (domain d) (:constants k) (:predicates (p)))")
+    with pytest.raises(PddlError, match=r"t.pddl:2:13: 'k' is already a constant"):
+        parse_problem("(define (problem x) (:domain d)\n (:objects a k) (:goal (p)))", domain, "t.pddl")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_end_as_on_any_system(end):
+    text = end.join(["(define (domain d) ; comment", "  (:predicates (p))", "  (:rules))"])
+    with pytest.raises(PddlError, match=r"d.pddl:3:3: unknown part ':rules'"):
+        parse_domain(text, "d.pddl")
+
+
+def test_long_words_are_cut_in_errors():
+    for text in (f"(define (domain d) ({'x' * 1000}))", f"(define (domain d) (:requirements :{'x' * 1000}))"):
+        with pytest.raises(PddlError) as caught:
+            parse_domain(text, "d.pddl")
+        assert "xxx..." in str(caught.value)
+        assert len(str(caught.value)) < 150
 
 
 PROBLEM = "(define (problem p) (:domain d)\n (:objects a)\n {part})"
