@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.interval_boxes import interval_boxes
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
 from tailor.models.bounds.network_bounds import NetworkBounds, network_bounds
 from tailor.models.bounds.onnx_reader import read_graph
+from tailor.models.bounds.possible_boxes import select_possible
 from tailor.models.bounds.tree_boxes import trees_of_graph
 from tailor.models.features.feature_intervals import FEATURE_SPANS
 from tailor.models.features.intervals import Array, Span
@@ -25,8 +24,6 @@ MARGIN = 1e-4  # m or rad: far more than rounding moves the bounds of a part bey
 
 ANY_STD = Span(np.zeros((1, 1, 1)), np.full((1, 1, 1), np.inf))  # the bound holds whatever the trees' std is
 OFFSET_ROUNDING = np.float32(1e-5)  # of the difference of two predictions in single precision
-
-MIN_SELECTION = 200  # pairs of boxes, by case; below, selecting the possible ones costs more than it saves
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +87,7 @@ class ModelBounds:
             possible = np.broadcast_to(True if case.possible is None else case.possible, shape)
             if not possible.any():
                 continue
-            features, at = _selected(case.features, possible)
+            features, at = select_possible(case.features, possible)
             overlap = None if self.trees is None else self.trees.overlap(features)
             if overlap is None or not overlap.empty:
                 with np.errstate(invalid="ignore"):
@@ -152,21 +149,3 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
     spread = interval_boxes(graph, features)
     trees, widths = (None if part is None else LeafBounds(part) for part in (boxes, spread))
     return ModelBounds(space, trees, widths, networks, share)
-
-
-def _selected(features: Spans, possible: NDArray[np.bool_]) -> tuple[Spans, Any]:
-    """The features of those cases and boxes that are possible at all, and their indices.
-
-    All of them if there are fewer than MIN_SELECTION; arrays that do not vary along an axis stay as they are.
-    """
-    if possible.size < MIN_SELECTION or possible.all():
-        return features, ...
-    place = tuple(np.flatnonzero(possible.any(axis=other)) for other in ((1, 2), (0, 2), (0, 1)))
-    return tuple(Span(_taken(span.lower, place), _taken(span.upper, place)) for span in features), np.ix_(*place)
-
-
-def _taken(values: Array, place: tuple[NDArray[np.intp], ...]) -> Array:
-    for axis, chosen in enumerate(place):
-        if values.shape[axis] > 1:
-            values = values.take(chosen, axis)
-    return values
