@@ -332,7 +332,7 @@ def test_types_above_themselves_are_refused_at_their_place():
 
 def test_an_object_that_is_a_constant_is_refused_at_its_own_place():
     domain = parse_domain("(define (domain d) (:constants k) (:predicates (p)))")
-    with pytest.raises(PddlError, match=r"t.pddl:2:13: 'k' is already a constant"):
+    with pytest.raises(PddlError, match=r"t.pddl:2:14: 'k' is already a constant"):
         parse_problem("(define (problem x) (:domain d)\n (:objects a k) (:goal (p)))", domain, "t.pddl")
 
 
