@@ -24,7 +24,7 @@ def plan_graph(message: PlanReport) -> Fields:
         plan = planning.parse_plan(message.plan)
     except planning.PlanTextError as error:
         return fields | {"reason": str(error)}
-    return fields | _graph(plan)
+    return fields | _graph(plan) | {"whole": planning.number_of_steps(message.plan)}
 
 
 def _graph(plan: planning.Plan) -> Fields:

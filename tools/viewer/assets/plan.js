@@ -44,7 +44,7 @@ class PlanGraph {
       improved: "better than the suffix of the last plan",
       external: "by the external planner",
     };
-    const way = words[now.way] ?? now.way;
+    const way = (words[now.way] ?? now.way) + (now.whole ? `, the next ${now.steps.length} of ${now.whole} steps` : "");
     const orderings = base.orderings?.length ? [["c1", "ordering"]] : [];
     this.panel.note.replaceChildren(
       html("span", { text: `${now.status}, ${way}${counted}${now.reason ? `: ${now.reason}` : ""}  ` }),
