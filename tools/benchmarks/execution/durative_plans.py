@@ -6,7 +6,6 @@ causal links is included.
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from rich.table import Table
 
 from tailor.executive.planning import Problem, Result, Settings
 from tailor.tools.benchmarks.planning import read, texts
+from tailor.tools.cli.plan_limits import Limits
 from tailor.tools.cli.plan_search import built_in, external, with_kairos
 
 CUPS = (2, 3, 4, 8, 16)
@@ -53,8 +53,8 @@ def cells(cups: int) -> list[Cell]:
     pair = (domain_text, durative_problem_text(cups))
     problem = read(*pair)
     return [
-        _timed(lambda: built_in(problem.domain, problem, Settings(node_limit=SEARCH_LIMIT), math.inf)),
-        _timed(lambda: with_kairos(pair, problem.domain, problem, Settings(), math.inf)[0]),
+        _timed(lambda: built_in(problem.domain, problem, Settings(node_limit=SEARCH_LIMIT), Limits())),
+        _timed(lambda: with_kairos(pair, problem.domain, problem, Settings(), Limits())[0]),
         _timed(lambda: _external("kairos", pair, problem)),
         _timed(lambda: _external(f"kairos:{IMPROVE_S}", pair, problem)),
     ]
