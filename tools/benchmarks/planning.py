@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import csv
 import gc
+import resource
+import subprocess
+import sys
 import time
 import tracemalloc
 from dataclasses import replace
@@ -17,7 +20,16 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
+from tailor.executive.planning import (
+    DEFAULT,
+    MATCHING,
+    AnytimeSearch,
+    Problem,
+    Result,
+    Search,
+    parse_domain,
+    parse_problem,
+)
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "pddl"
@@ -100,6 +112,31 @@ def bytes_per_plan(name: str = "kitchen-s3", limit: int = 20_000) -> float:
     return memory / search.counts[0]
 
 
+def start_up_s(name: str = "soccer-p1", runs: int = 5) -> float:
+    """CPU time of the whole command `tailor plan` on one problem: the best of several runs."""
+    files = [str(DATA / "own" / f"{stem}.pddl") for stem in (f"{name.rsplit('-', 1)[0]}-domain", name)]
+    used_s = []
+    for _ in range(runs):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [sys.executable, "-P", "-m", "tailor.tools.main", "plan", *files], capture_output=True, check=True
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used_s.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return min(used_s)
+
+
+def improvements(name: str = "kitchen-durative-s3", limit: int = 5000) -> list[tuple[float, int]]:
+    """Makespan of each plan of an anytime search, with the number of plans generated before it."""
+    problem = read(*texts(name))
+    search = AnytimeSearch(problem.domain, problem, replace(DEFAULT, node_limit=limit))
+    found = []
+    while not search.ended:
+        result = search.advance(CheckBudget(UNLIMITED))
+        found += [(round(search.value, 2), search.counts[0])] if result is not None and result.plan is not None else []
+    return found
+
+
 def run(console: Console, quick: bool) -> None:
     """Print the table.
 
@@ -119,3 +156,6 @@ def run(console: Console, quick: bool) -> None:
         table.add_row(*(str(row[key]) for key in keys))
     console.print(table)
     console.print(f"memory: {bytes_per_plan():.0f} bytes per generated plan")
+    console.print(f"tailor plan on soccer-p1, from start to end: {start_up_s(runs=1 if quick else 5):.2f} s of CPU")
+    makespans = ", ".join(f"{value:g} after {generated} plans" for value, generated in improvements())
+    console.print(f"anytime makespan of kitchen-durative-s3: {makespans}")
