@@ -26,7 +26,7 @@ from tailor.executive.refinement.solvers.solver import Limits, Solver
 
 FAR_SHARE = 0.125  # of the candidates are drawn from the whole range, so that every basin is sampled eventually
 DECADES = 3.5  # near candidates step by 10**-3.5 to all of the range
-N_ELITE = 4  # candidates of a subgoal that survive a check
+N_ELITE = 6  # candidates of a subgoal that survive a check
 MIN_DISTANCE = 0.03  # share of a range between two of them
 TURNS = 3  # checks: all subgoals, every second one, the others
 COARSE_FACTOR = 2  # of the candidates in the first check: its models have a sixth of the inputs
