@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from tailor.schemas.messages.scenes import ARROW, BOX, CYLINDER, LINE, SPHERE, TEXT, FrameTransform, Shape
 from tailor.schemas.packages.pose3 import Pose3, Vector
@@ -13,6 +14,7 @@ from tailor.schemas.packages.scene import MAP, Scene, on_map, pose_of
 Point = tuple[float, float]
 
 RING = 24  # corners of a circle
+DIGITS = 9  # of metres and of quaternions
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +63,14 @@ def flat(scene: Scene, seen_from: str) -> FlatScene | None:
             continue
         world = frames[shape.frame].then(pose_of(shape))
         if shape.frame in carried:
-            outlines[shape.name] = _outline(shape, tracer.inverse().then(world), seen_from, on_robot=True)
+            outlines[shape.name] = _outline(shape, _rounded(tracer.inverse().then(world)), seen_from, on_robot=True)
             continue
         x, y = projected((world.x, world.y, world.z), seen_from)
         yaw = world.yaw if above else 0.0
         back = Pose3(0.0, 0.0, 0.0, 0.0, 0.0, -math.sin(yaw / 2), math.cos(yaw / 2))
         turn = back.then(Pose3(0.0, 0.0, 0.0, world.qx, world.qy, world.qz, world.qw))
         places[shape.name] = (x, y, yaw)
-        outlines[shape.name] = _outline(shape, turn, seen_from)
+        outlines[shape.name] = _outline(shape, _rounded(turn), seen_from)
     x, y = projected((tracer.x, tracer.y, tracer.z), seen_from)
     return FlatScene(x, y, tracer.yaw if above else None, scene.speed_mps, places, outlines)
 
@@ -86,6 +88,13 @@ def _descendants(frames: Iterable[FrameTransform], root: str) -> Iterator[str]:
             yield each.child
 
 
+def _rounded(pose: Pose3) -> Pose3:
+    """Without the noise of rounding, by which a shape at rest would differ from sample to sample."""
+    values = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
+    return Pose3(*(round(value, DIGITS) for value in values))
+
+
+@lru_cache(maxsize=1024)  # the same few shapes in each of an hour's samples
 def _outline(shape: Shape, pose: Pose3, seen_from: str, on_robot: bool = False) -> Outline:
     points = [projected(pose.moved(point), seen_from) for point in _corners(shape)]
     if shape.kind == SPHERE:  # round from every side

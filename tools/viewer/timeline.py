@@ -75,10 +75,9 @@ class RunTimeline:
                 return self._provenance(message)
             case m.ExecStatus():
                 return self._status(at_s, message)
-            case m.Odometry():
-                return self._path(at_s, "odom", planar_pose(message))
-            case m.PoseEstimate():
-                return self._path(at_s, "seen", planar_pose(message))
+            case m.Odometry() | m.PoseEstimate():
+                source = "odom" if isinstance(message, m.Odometry) else "seen"
+                return self._path(at_s, source, planar_pose(message)) if self._due(at_s, source) else []
             case m.TickReport():
                 return [("tick", event_fields.tick(message))]
             case m.ActionFinished():
@@ -143,7 +142,7 @@ class RunTimeline:
 
     def _path(self, at_s: float, source: str, scene: Scene | None) -> Rows:
         """Scene of a source, with the action in execution: outlines on change, places at a limited rate."""
-        shown = None if scene is None else flat(scene, self._scenes.seen_from)
+        shown = flat(scene, self._scenes.seen_from) if scene is not None and self._due(at_s, source) else None
         if shown is None:
             return []
         rows = self._sampled(at_s, source, {**event_fields.scene(shown), "index": self._action[0]})
@@ -173,8 +172,11 @@ class RunTimeline:
         self._last[kind] = fields
         return [(kind, fields)]
 
+    def _due(self, at_s: float, kind: str) -> bool:
+        return at_s - self._sampled_s.get(kind, -1.0) >= STATE_GAP_S
+
     def _sampled(self, at_s: float, kind: str, fields: Fields) -> Rows:
-        if not fields or at_s - self._sampled_s.get(kind, -1.0) < STATE_GAP_S:
+        if not fields or not self._due(at_s, kind):
             return []
         self._sampled_s[kind] = at_s
         return [(kind, fields)]

@@ -18,7 +18,7 @@ from tailor.tools.benchmarks.growth.curve import Curve
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
-LETTERS = (1, 2, 4, 8, 16)
+LETTERS = (1, 2, 4, 8, 12)
 OPPONENTS = (1, 2, 4, 8)
 SECONDS, QUICK_SECONDS = 20.0, 5.0
 CHECKS = 3  # of a tick's deliberation: so few that growth is that of the rest
