@@ -32,7 +32,7 @@ from tailor.executive.planning.structures.connectives import (
 )
 
 GroundCondition = int | Conjunction[int] | Disjunction[int]
-MAX_STEPS = 300_000  # of grounding: two seconds of CPU, counted so that results do not depend on the machine
+MAX_STEPS = 60_000  # of grounding: no file blocks a robot; counted, so that all machines do the same
 MAX_QUANTIFIED = 60_000  # of these below quantifiers: small files can hold bombs; a third of a second
 
 

@@ -41,6 +41,7 @@ from tailor.tools.cli.plan_search import anytime, built_in, external, with_kairo
 
 MAX_BYTES = 4 * MAX_CHARACTERS
 MAX_PLANS = 1_000_000  # about 1 GB of memory
+GROUND_LIMIT = 300_000  # steps: two seconds of CPU, more than a robot may take
 KAIROS_GRACE_S = 5.0  # beyond its own time limit
 
 
@@ -262,6 +263,7 @@ def settings_of(args: argparse.Namespace) -> Settings:
         weight=args.weight,
         action_cost=args.action_cost.lower(),
         node_limit=args.node_limit,
+        ground_limit=GROUND_LIMIT,
         tolerance_s=args.tolerance,
         seed=args.seed,
         random_open_conditions=args.random_open_conditions,
