@@ -46,7 +46,9 @@ def situations_of(
             both = np.array([_parameters(action, sequence) for sequence in (chosen, greedy)])
             seen = space(action.action.arguments(both))
             rule = (
-                "" if bounds is None else applied_rule(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
+                ""
+                if bounds is None or bounds.trees is None
+                else applied_rule(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
             )
             chose, alone = (tuple(row.astype(float)) for row in seen)
             found.append(Situation(action.action.name, space.features, chose, alone, rule))
