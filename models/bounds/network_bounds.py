@@ -135,3 +135,7 @@ def network_bounds(graph: Contents) -> NetworkBounds | None:
     low, high = (float(graph.constants[name].ravel()[0]) for name in (tree_names.NETWORK_LOW, tree_names.NETWORK_HIGH))
     share = graph.constants.get(tree_names.MEMBER_WEIGHT.format(0))
     return NetworkBounds(weights, bias, low, high, 0.0 if share is None else float(share.ravel()[0]))
+
+
+# BLAS maps a buffer of 32 MB at its first product of some size: here, before memory is locked, it stays unused
+_ = np.ones((CHUNK, CHUNK), np.float32) @ np.ones((CHUNK, CHUNK), np.float32)
