@@ -48,7 +48,7 @@ def refused(*arguments):
         (("status", "--connect", "7447"), "expected PROTOCOL/HOST:PORT"),
         (("frobnicate",), "unknown command 'frobnicate'"),
         (("verify", "nowhere.mcap"), "nowhere.mcap"),
-        (("plan", "domain.pddl"), "required: PROBLEM (see tailor plan --help)"),
+        (("plan", "domain.pddl"), "domain.pddl: cannot be read: No such file or directory"),
         (
             ("plan", "domain.pddl", "problem.pddl", "-T", "nan"),
             "--time-limit: expected a number of minutes of at least 0, found 'nan'",

@@ -149,7 +149,7 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
         truth = session.inbox(("truth",), "agilo")
         wait_until(lambda: any(s.message.v > 0.2 for s in truth.drain()), "robot moves")
     processes = children_of(up.pid)
-    assert len(processes) == 5  # gateway, recorder, simulator, executive, and the one that kills orphans
+    assert len(processes) == 6  # gateway, recorder, simulator, executive, scene, and the one that kills orphans
     up.send_signal(sent)
     sent_s = time.monotonic()
     assert up.wait(PATIENCE_S) == 0

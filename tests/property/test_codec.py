@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import is_dataclass, replace
+from functools import cache
 from typing import get_args
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
+from tailor.schemas.messages.scenes import FrameTransforms, LogLine, SceneShapes
 from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.msg_definitions import field_types
 from tailor.schemas.numbers import MAX_NUMBER
@@ -42,12 +44,15 @@ def values(name, hint):
     return st.lists(PLAIN[item] if item in PLAIN else messages(item), max_size=4).map(tuple)
 
 
+@cache
 def messages(kind):
     return st.builds(kind, **{name: values(name, hint) for name, hint in field_types(kind).items()})
 
 
 any_own = st.sampled_from(OWN).flatmap(messages)
-any_message = st.sampled_from(MESSAGES).flatmap(messages)
+# Of ROS' own types with narrower numbers than ours; other readers check them in tests/contract/test_scene_readers.py.
+NARROW = (LogLine, SceneShapes, FrameTransforms)
+any_message = st.sampled_from([kind for kind in MESSAGES if kind not in NARROW]).flatmap(messages)
 
 
 @given(any_own)
@@ -106,6 +111,9 @@ def test_up_to_seven_trailing_bytes_are_padding(message, count):
     assert (decoded == Rejected("trailing bytes")) == (count > 7)
 
 
+COLOURS = ("red", "green", "blue", "alpha")
+
+
 def put_float(name, value):
     return lambda message, bad: replace(message, **{name: value(bad)})
 
@@ -117,7 +125,7 @@ def float_paths(kind):
         if hint is float:
             yield name, put_float(name, lambda bad: bad)
         elif item is float:
-            yield name, put_float(name, lambda bad: (0.0, bad))
+            yield name, put_float(name, lambda bad: (0.0, 0.0, bad))  # a whole point, where they are points
         elif is_dataclass(item):
             for path, put in float_paths(item):
                 yield f"{name}.{path}", put_float(name, lambda bad, i=item, p=put: (p(example(i), bad),))
@@ -134,6 +142,8 @@ FLOAT_FIELDS = [
 def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
     if path == "phi" and kind.ROS_TYPE and math.isinf(bad):
         pytest.skip("an infinite angle has no quaternion to write")
+    if path.endswith("lifetime_s"):
+        pytest.skip("a duration in whole nanoseconds is always finite")
     decoded = decode(kind, encode(put(example(kind), bad)))
     assert decoded == Rejected("not finite")
 
@@ -144,6 +154,10 @@ def test_a_float_that_is_not_finite_is_refused(kind, path, put, bad):
 def test_a_number_so_large_that_its_square_might_overflow_is_refused(kind, path, put, huge):
     if path == "phi" and kind.ROS_TYPE:
         pytest.skip("an angle goes as a quaternion")
+    if path.endswith("lifetime_s"):
+        pytest.skip("a duration has 32 bits of seconds")
+    if path.endswith(COLOURS) and huge > 1e38:
+        pytest.skip("a colour has 32 bits")
     assert decode(kind, encode(put(example(kind), huge))) == Rejected("number too large")
 
 

@@ -22,9 +22,8 @@ from tests.support.random_trees import Trees
 WIDTHS = {"x": 7, "y": 5, "phi": 8, "v": 0.75}
 SHAPE = (1, 1, 1)
 SHIPPED = sorted(path for kind in ("duration", "success", "energy") for path in ZOO.glob(f"*/*/{kind}.onnx"))
-LEARNED = [
-    path for path in SHIPPED if "network" not in json.loads(card_path(path).read_text())["learner"].get("weights", {})
-]
+LEARNERS = {path: json.loads(card_path(path).read_text())["learner"] for path in SHIPPED}
+LEARNED = [path for path, it in LEARNERS.items() if "network" not in (it["name"], *it.get("weights", {}))]
 spaces = st.sampled_from(
     [
         "direct",

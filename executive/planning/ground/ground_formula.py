@@ -41,7 +41,7 @@ class TooMuchToGround(Exception):
 
 
 class GroundingLimit:
-    """Counts the steps of grounding (converted formulas) down.
+    """Counts the steps of grounding down: converted formulas, and what making an action costs besides.
 
     `subject` is what is being grounded, for the error; `depth` the number of quantifiers that are being expanded.
     """
@@ -56,13 +56,13 @@ class GroundingLimit:
         self.depth = 0
         self.subject = subject
 
-    def spend(self) -> None:
-        """Counts one more step.
+    def spend(self, steps: int = 1) -> None:
+        """Counts as many more steps.
 
         Raises:
           TooMuchToGround: A limit is exceeded.
         """
-        self._left -= 1
+        self._left -= steps
         if self._left < 0:
             raise TooMuchToGround(
                 f"grounding takes more than its limit of {self._steps} steps, spent at {self.subject}"

@@ -30,6 +30,7 @@ from tailor.executive.planning.structures.random_source import RandomSource
 
 MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try some hundreds
 MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
+INSTANCE_STEPS = 3  # what an action takes as long as, besides its formulas
 MAX_BYTES = 250_000_000  # of the ground actions; half of what a planner may take
 BYTES_PER_ACTION, BYTES_PER_PART = 600, 150  # roughly; a part is a condition or an effect
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
@@ -173,6 +174,7 @@ class _Maker:
 
     def add(self, schema: Action, binding: Binding) -> None:
         """Makes one more action unless it is never applicable or achieves nothing."""
+        self._limit.spend(INSTANCE_STEPS)
         action = instance(len(self._actions), schema, binding, self._world, self._facts)
         if action is None:
             return

@@ -17,6 +17,7 @@ from tailor.executive.planning.ground.rules import Rule, rules_of
 
 Arguments = tuple[str, ...]
 JOINS_PER_STEP = 4  # candidates of a join per step of the limit: a formula takes about four times as long
+STEPS_PER_PLAN = 12  # a plan of a join takes as long as so many formulas
 CHECK_EVERY = 256  # candidates of a join per unit of budget: about a tenth of a millisecond
 
 
@@ -48,6 +49,7 @@ class Reachability:
 
     def _add(self, rule: Rule) -> None:
         fluent = [atom for atom in rule.body if atom.predicate not in self._world.static]
+        self._limit.spend(STEPS_PER_PLAN * max(1, len(fluent)))
         if not fluent:
             self._static_rules.append((rule, join_plan(rule, None, self._index, self._world)))
         for atom in fluent:

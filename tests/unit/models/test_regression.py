@@ -12,7 +12,7 @@ from tailor.models.regression.network import NetworkRegressor
 
 @pytest.fixture(autouse=True)
 def brief(monkeypatch) -> None:
-    monkeypatch.setattr(network_training, "STEPS", 500)
+    monkeypatch.setattr(network_training, "STEPS", 1500)
 
 
 def smooth(count: int, seed: int):

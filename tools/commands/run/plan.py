@@ -76,8 +76,8 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add("--anytime", action="store_true",
         help="after the first plan search for better ones by the metric, within the limits")  # fmt: skip
     add("--engine", choices=(*get_args(EngineName), "kairos"), default="auto",
-        help="partial-order search, search through states, both by turns (auto, default), or kairos-planner; auto also "
-        "asks that for durative problems, if it is installed")  # fmt: skip
+        help="partial-order search, search through states, both by turns (auto, default), or kairos-planner; auto "
+        "also uses that for durative problems, if it is installed")  # fmt: skip
     add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
         help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,

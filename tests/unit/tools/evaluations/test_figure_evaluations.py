@@ -19,7 +19,7 @@ from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps,
 from tailor.tools.evaluations.refinement.sweep import sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
 from tailor.tools.evaluations.traced_runs import trace_run
-from tailor.tools.figures.track import Point, Track
+from tailor.tools.figures.track import Track, TrackPoint
 from tests.unit.tools.evaluations.test_refinement_evaluations import DONE
 
 TRAINING_SEED = 700_000  # evaluation seeds begin at a million
@@ -27,7 +27,7 @@ FORESEEN = (("goToPose", True, 2.0), ("approachBall", False, 3.0), ("dribbleBall
 
 
 def point(time_s, v, name):
-    return Point(time_s, 0.0, 0.0, 0.0, v, {}, 0, name)
+    return TrackPoint(time_s, 0.0, 0.0, 0.0, v, {}, 0, name)
 
 
 def test_time_spent_hardly_moving_and_the_speed_at_the_ball_are_read_off_the_track():
