@@ -35,7 +35,7 @@ def test_an_unknown_command_is_reported_in_one_line(capsys):
 @pytest.mark.parametrize(
     ("words", "meant"),
     [
-        (["evalute"], "evaluate"),
+        (["evaluat"], "evaluate"),
         (["up", "--sceanrio", "aligned"], "--scenario"),
         (["plan", "a", "b", "--jsn"], "--json"),
     ],
