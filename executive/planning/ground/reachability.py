@@ -16,7 +16,7 @@ from tailor.executive.planning.ground.join_plans import FactIndex, JoinPlan, joi
 from tailor.executive.planning.ground.rules import Rule, rules_of
 
 Arguments = tuple[str, ...]
-JOINS_PER_STEP = 4  # candidates of a join per step of the limit: a formula takes about four times as long
+JOINS_PER_STEP = 3  # candidates of a join per step of the limit: a formula takes about three times as long
 STEPS_PER_PLAN = 12  # a plan of a join takes as long as so many formulas
 CHECK_EVERY = 256  # candidates of a join per unit of budget: about a tenth of a millisecond
 
