@@ -43,10 +43,10 @@ def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
     limit_ms = MOMENTS_MS[-1]
     progress = {name: run(task.objective(models), task.starts, seed, limit_ms) for name, run in runners()}
     references = [ours(name)(task.objective(models), task.starts, 100, LONG_MS) for name in REFERENCES]
-    best = min(_at(one, LONG_MS) for one in [*references, *progress.values()])
+    best = min(best_at(one, LONG_MS) for one in [*references, *progress.values()])
     if not np.isfinite(best):
         raise NoMeasurement(f"no solver has found a valid choice for {task.name}")
-    return {name: [100 * (_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in progress.items()}
+    return {name: [100 * (best_at(one, moment) / best - 1) for moment in MOMENTS_MS] for name, one in progress.items()}
 
 
 def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
@@ -64,7 +64,7 @@ def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
     }
 
 
-def _at(progress: Progress, moment_ms: float) -> float:
+def best_at(progress: Progress, moment_ms: float) -> float:
     """Best value up to a moment; inf if there is none."""
     return min((value for at, value in progress if at <= moment_ms), default=float("inf"))
 
