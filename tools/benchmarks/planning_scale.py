@@ -59,21 +59,21 @@ def _row(cups: int, domain_text: str) -> dict[str, Any]:
     problem = read(domain_text, text)
     row: dict[str, Any] = {"cups": cups}
     for engine in ENGINES:
-        row[engine] = _measured(partial(_steps, problem, engine))
-    row["kairos"] = _measured(partial(_steps_of_kairos, domain_text, text))
-    row["pyperplan"] = _measured(partial(_steps_of_pyperplan, domain_text, text))
+        row[engine] = measured(partial(steps_by, problem, engine))
+    row["kairos"] = measured(partial(_steps_of_kairos, domain_text, text))
+    row["pyperplan"] = measured(partial(_steps_of_pyperplan, domain_text, text))
     row["vhpop"] = VHPOP.get(cups)
     return row
 
 
-def _measured(steps_of: Callable[[], int | None]) -> tuple[int, float] | None:
+def measured(steps_of: Callable[[], int | None]) -> tuple[int, float] | None:
     """Steps and CPU seconds; None without a plan."""
     started = time.process_time()
     steps = steps_of()
     return None if steps is None else (steps, time.process_time() - started)
 
 
-def _steps(problem: Problem, engine: EngineName) -> int | None:
+def steps_by(problem: Problem, engine: EngineName) -> int | None:
     settings = Settings(engine=engine, node_limit=POCL_LIMIT if engine == "pocl" else Settings().node_limit)
     result = Search(problem.domain, problem, settings).advance(CheckBudget(UNLIMITED))
     return len(result.plan.steps) if result is not None and result.plan is not None else None

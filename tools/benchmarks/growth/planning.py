@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
+from functools import partial
 
-from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import Search, Settings
 from tailor.tools.benchmarks.growth.curve import Curve
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
-from tailor.tools.benchmarks.planning import UNLIMITED, read, texts
-from tailor.tools.benchmarks.planning_scale import CUPS, problem_text
+from tailor.tools.benchmarks.planning import read, texts
+from tailor.tools.benchmarks.planning_scale import CUPS, measured, problem_text, steps_by
 
 
 def curves(quick: bool) -> Iterator[Curve]:
@@ -21,8 +19,7 @@ def curves(quick: bool) -> Iterator[Curve]:
 
 def _point(cups: int) -> tuple[float, float]:
     problem = read(texts("kitchen-s1")[0], problem_text(cups))
-    began = time.process_time()
-    result = Search(problem.domain, problem, Settings()).advance(CheckBudget(UNLIMITED))
-    if result is None or result.plan is None:
+    found = measured(partial(steps_by, problem, "auto"))
+    if found is None:
         raise NoMeasurement(f"no plan for {cups} cups")
-    return len(result.plan.steps), time.process_time() - began
+    return found
