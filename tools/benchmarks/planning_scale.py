@@ -74,6 +74,7 @@ def measured(steps_of: Callable[[], int | None]) -> tuple[int, float] | None:
 
 
 def steps_by(problem: Problem, engine: EngineName) -> int | None:
+    """Steps of the first plan that an engine finds; None without one."""
     settings = Settings(engine=engine, node_limit=POCL_LIMIT if engine == "pocl" else Settings().node_limit)
     result = Search(problem.domain, problem, settings).advance(CheckBudget(UNLIMITED))
     return len(result.plan.steps) if result is not None and result.plan is not None else None
