@@ -7,17 +7,19 @@ facts arrives. Delete effects are ignored. Source: Helmert, Artificial Intellige
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
-from tailor.executive.planning.ground.join_plans import FactIndex, JoinPlan, join_plan
+from tailor.executive.planning.ground.join_plans import FactIndex, JoinPlan, JoinStep, join_plan
 from tailor.executive.planning.ground.rules import Rule, rules_of
+from tailor.executive.planning.pddl.language import Atom
 
 Arguments = tuple[str, ...]
 JOINS_PER_STEP = 3  # candidates of a join per step of the limit: a formula takes about three times as long
-STEPS_PER_PLAN = 12  # a plan of a join takes as long as so many formulas
+STEPS_PER_PLAN = 12  # a plan of a join takes as long as so many formulas,
+STEPS_PER_JOIN = 2  # and each of its joins as long as so many more
 CHECK_EVERY = 256  # candidates of a join per unit of budget: about a tenth of a millisecond
 
 
@@ -49,12 +51,15 @@ class Reachability:
 
     def _add(self, rule: Rule) -> None:
         fluent = [atom for atom in rule.body if atom.predicate not in self._world.static]
-        self._limit.spend(STEPS_PER_PLAN * max(1, len(fluent)))
         if not fluent:
-            self._static_rules.append((rule, join_plan(rule, None, self._index, self._world)))
+            self._static_rules.append((rule, self._plan(rule, None)))
         for atom in fluent:
-            entry = (rule, join_plan(rule, atom, self._index, self._world))
-            self._triggers.setdefault(atom.predicate, []).append(entry)
+            self._triggers.setdefault(atom.predicate, []).append((rule, self._plan(rule, atom)))
+
+    def _plan(self, rule: Rule, trigger: Atom | None) -> JoinPlan:
+        plan = join_plan(rule, trigger, self._index, self._world)
+        self._limit.spend(STEPS_PER_PLAN + STEPS_PER_JOIN * len(plan.steps))
+        return plan
 
     def run(self) -> Iterator[Reached | None]:
         """Yields None every CHECK_EVERY candidates and after every fact, and the result at the end.
@@ -81,7 +86,7 @@ class Reachability:
             return
         arguments = self._arguments[rule.action]
         self._limit.depth = 0 if rule.is_action else 1  # the others are quantified effects, most of them
-        for found in self._joined(plan, 0, binding):
+        for found in self._joined(plan.steps, binding):
             if found is None:
                 yield None
                 continue
@@ -95,20 +100,28 @@ class Reachability:
                     self._known[reached] = None
                     self._pending.append(reached)
 
-    def _joined(self, plan: JoinPlan, depth: int, binding: list[str]) -> Iterator[Arguments | None]:
-        """All extensions of a binding by the facts of the plan's further steps; None every CHECK_EVERY candidates."""
-        if depth == len(plan.steps):
+    def _joined(self, steps: Sequence[JoinStep], binding: list[str]) -> Iterator[Arguments | None]:
+        """All extensions of a binding by the facts of the steps; None every CHECK_EVERY candidates."""
+        if not steps:
             yield tuple(binding)
             return
-        step = plan.steps[depth]
-        for fact in step.candidates(binding):
-            self._joins += 1
-            if self._joins % JOINS_PER_STEP == 0:
-                self._limit.spend()
-            if self._joins % CHECK_EVERY == 0:
-                yield None
-            if step.bind(fact, binding):
-                yield from self._joined(plan, depth + 1, binding)
+        levels = [iter(steps[0].candidates(binding))]  # a stack, not a recursion: each binding passes one generator
+        while levels:
+            step = steps[len(levels) - 1]
+            for fact in levels[-1]:
+                self._joins += 1
+                if self._joins % JOINS_PER_STEP == 0:
+                    self._limit.spend()
+                if self._joins % CHECK_EVERY == 0:
+                    yield None
+                if not step.bind(fact, binding):
+                    continue
+                if len(levels) < len(steps):
+                    levels.append(iter(steps[len(levels)].candidates(binding)))
+                    break
+                yield tuple(binding)
+            else:
+                levels.pop()
 
     def _result(self) -> Reached:
         rank = {name: n for n, name in enumerate(self._world.objects["object"])}
