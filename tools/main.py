@@ -76,6 +76,28 @@ def main(argv: Sequence[str] | None = None) -> int:
       Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    name = " ".join(["tailor", *arguments[:1]])
+    try:
+        try:
+            return _run(arguments)
+        finally:
+            if sys.stdout:
+                sys.stdout.flush()  # here, where a closed pipe is handled
+    except UsageError as error:
+        print(f"{plain(name)}: {plain(str(error))}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        sys.stdout = None  # the interpreter would flush it again at exit, and fail
+        return 1
+    except OSError as error:  # of a named path, or of standard output, which has no name
+        path = "" if error.filename is None else f"{error.filename}: "
+        print(f"{plain(name)}: {plain(f'{path}{error.strerror or error}')}", file=sys.stderr)
+        return 1 if error.filename is None else 2
+
+
+def _run(arguments: list[str]) -> int:
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_overview())
         return 0
@@ -86,23 +108,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"tailor: unknown command '{plain(name)}'{_nearest(name, COMMANDS)} (see tailor --help)", file=sys.stderr)
         return 2
-    try:
-        code = _call(name, rest)
-        if sys.stdout:
-            sys.stdout.flush()  # here, where a closed pipe is handled
-        return code
-    except UsageError as error:
-        print(f"tailor {name}: {plain(str(error))}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    except BrokenPipeError:
-        sys.stdout = None  # the interpreter would flush it again at exit, and fail
-        return 1
-    except OSError as error:  # of a named path, or of standard output, which has no name
-        path = "" if error.filename is None else f"{error.filename}: "
-        print(f"tailor {name}: {plain(f'{path}{error.strerror or error}')}", file=sys.stderr)
-        return 1 if error.filename is None else 2
+    return _call(name, rest)
 
 
 def _call(name: str, rest: Sequence[str]) -> int:
