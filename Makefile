@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models ros2 lint types bench clean
 
 setup: .venv/.installed
 
@@ -40,6 +40,9 @@ goldens: setup  # renews the golden recordings and prints the differences
 
 models: setup  # makes every model that ships anew from seeds, by the recipes beside them
 	$(BIN)/tailor make-models
+
+ros2: setup  # writes the interface package for ROS 2 workspaces, ros2/tailor_msgs
+	$(BIN)/python -m tailor.schemas.ros2.interface_package
 
 lint: setup
 	$(BIN)/ruff check .

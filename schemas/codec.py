@@ -34,8 +34,8 @@ def _limit(kind: type) -> int:
 
 
 @cache
-def _damage() -> tuple[type[Exception], ...]:
-    """Errors of rosbags on bad bytes."""
+def damage() -> tuple[type[Exception], ...]:
+    """Errors of rosbags on bad bytes; for an `except`."""
     from rosbags.serde import SerdeError
 
     return (SerdeError, struct.error, ValueError, IndexError, OverflowError)
@@ -74,7 +74,7 @@ def decode(what: Topic | type[Message], data: bytes) -> Message | Rejected:
         message: Message = read(value)
     except RefusedValueError as error:
         return Rejected(error.reason.value)
-    except _damage():
+    except damage():
         return Rejected(DecodeRefusal.MALFORMED.value)
     return message
 
@@ -83,6 +83,6 @@ def prime() -> None:
     """Use every codec once, before the first tick: the first use of a type compiles it and takes up to 0.3 s."""
     from tailor.schemas.own import example
 
-    _damage()
+    damage()
     for kind in message_types():
         decode(kind, encode(example(kind)))

@@ -15,8 +15,10 @@ from tailor.schemas.packages.ros_names import ros_type
 from tailor.schemas.topics import TOPICS
 
 __all__ = [
+    "add_service",
     "definition",
     "from_bytes",
+    "hash_of",
     "message_types",
     "own_types",
     "ros_class",
@@ -26,6 +28,8 @@ __all__ = [
     "type_of",
     "typestore",
 ]
+# As ROS 2 Kilted has it. Jazzy writes `char` for uint8; rosbags gives that another hash than ROS 2 does.
+_EVENT_INFO = "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number"
 MAX_ELEMENTS = 65536  # in one sequence; the longest legal message has fewer
 
 
@@ -48,7 +52,8 @@ def typestore() -> Any:
 
     store = get_typestore(Stores.ROS2_JAZZY)
     store.max_sequence_length = MAX_ELEMENTS
-    own: dict[str, Any] = {}
+    del store.fielddefs["service_msgs/msg/ServiceEventInfo"], store.types["service_msgs/msg/ServiceEventInfo"]
+    own: dict[str, Any] = get_types_from_msg(_EVENT_INFO, "service_msgs/msg/ServiceEventInfo")
     for kind in own_types():
         own.update(get_types_from_msg("\n".join(declarations(kind).values()), ros_type(kind)))
     store.register(own)
@@ -71,8 +76,45 @@ def definition(kind: type) -> str:
 @cache
 def type_hash(kind: type) -> str:
     """The type's RIHS01 hash (REP-2016), equal to that of ROS 2 Iron and later."""
-    digest: str = typestore().hash_rihs01(ros_type(kind))
+    return hash_of(ros_type(kind))
+
+
+@cache
+def hash_of(name: str) -> str:
+    """The RIHS01 hash of a ROS type of ours or of ROS 2's common interfaces, by its name.
+
+    Raises:
+      KeyError: The type is unknown.
+    """
+    digest: str = typestore().hash_rihs01(name)
     return digest
+
+
+def add_service(name: str, request: str, response: str) -> None:
+    """Register a service, so that `hash_of(name)` and the bytes of `NAME_Request` and `NAME_Response` are known.
+
+    Args:
+      name: ROS name of the service, e.g. "std_srvs/srv/SetBool".
+      request: ROS 2 definition of the request, the part of the .srv file above the dashes.
+      response: The part below them.
+    """
+    from rosbags.interfaces import Nodetype
+    from rosbags.typesys import get_types_from_msg
+
+    def one(part: str) -> Any:
+        return Nodetype.NAME, part
+
+    def at_most_one(part: str) -> Any:
+        return Nodetype.SEQUENCE, (one(part), 1)
+
+    info, asked, answered = "service_msgs/msg/ServiceEventInfo", f"{name}_Request", f"{name}_Response"
+    parts = {part: get_types_from_msg(text, part) for part, text in ((asked, request), (answered, response))}
+    types: dict[str, Any] = {part: next(iter(read.values())) for part, read in parts.items()}
+    event = [("info", one(info)), ("request", at_most_one(asked)), ("response", at_most_one(answered))]
+    types[f"{name}_Event"] = ([], event)
+    messages = [("request_message", asked), ("response_message", answered), ("event_message", f"{name}_Event")]
+    types[name] = ([], [(field, one(part)) for field, part in messages])  # so do ROS 2's type descriptions
+    typestore().register(types)
 
 
 def ros_class(name: str) -> Any:

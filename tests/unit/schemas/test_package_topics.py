@@ -32,7 +32,7 @@ rules = {rule["id"]: rule["key_exprs"] for rule in access_control([])["rules"]}
 assert [name for name, keys in rules.items() if "*/gripper" in keys] == ["driver publish", "player publish"]
 assert [name for name, keys in rules.items() if "*/grip" in keys] == ["executive publish"]
 assert [row["size_limit"] for row in size_limits() if "*/grip" in row["key_exprs"]] == [100]
-from tailor.schemas.msg_files import msg_files
+from tailor.schemas.ros2.interface_package import msg_files
 assert "Gripper.msg" not in msg_files()
 print(definition(Gripper).split("=" * 80)[0])
 """

@@ -1,0 +1,98 @@
+"""The ROS 2 interface package `tailor_msgs`: a workspace builds it, and then knows our messages and the service.
+
+`python -m tailor.schemas.ros2.interface_package [FOLDER]` writes it; nothing of ours reads it. Comments come from the
+dataclasses: the first line of the docstring, and the comment behind each field.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from pathlib import Path
+
+from tailor import __version__
+from tailor.schemas.msg_definitions import declarations
+from tailor.schemas.packages.ros_names import PACKAGE, ros_type
+from tailor.schemas.ros2 import service
+from tailor.schemas.typesystem import own_types
+
+FOLDER = Path(__file__).resolve().parents[2] / "ros2" / PACKAGE  # in the repository
+FIELD = re.compile(r"^    (\w+): .*?  # (.+)$", re.MULTILINE)
+MANIFEST = """\
+<?xml version="1.0"?>
+<package format="3">
+  <name>{package}</name>
+  <version>{version}</version>
+  <description>Messages and services of the robot executive Tailor.</description>
+  <maintainer email="tailor@example.org">The Tailor developers</maintainer>
+  <license>Apache-2.0</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <depend>std_msgs</depend>
+  <exec_depend>rosidl_default_runtime</exec_depend>
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+"""
+BUILD = """\
+cmake_minimum_required(VERSION 3.20)
+project({package})
+
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+find_package(std_msgs REQUIRED)
+
+rosidl_generate_interfaces(${{PROJECT_NAME}}
+{files}
+  DEPENDENCIES std_msgs
+)
+
+ament_export_dependencies(rosidl_default_runtime)
+ament_package()
+"""
+
+
+def msg_text(kind: type) -> str:
+    """Content of the `.msg` file of a message type; reads the source of its dataclass."""
+    comments = dict(FIELD.findall(inspect.getsource(kind)))
+    lines = declarations(kind)
+    width = max(map(len, lines.values()))
+    first = (inspect.getdoc(kind) or "").partition("\n")[0]
+    rows = [f"{line:<{width}}  # {comments[name]}" if name in comments else line for name, line in lines.items()]
+    return "\n".join([f"# {first}", *rows, ""])
+
+
+def msg_files() -> dict[str, str]:
+    """Content of every `.msg` file by its name."""
+    return {f"{k.__name__}.msg": msg_text(k) for k in own_types() if ros_type(k).startswith(f"{PACKAGE}/")}
+
+
+def files() -> dict[str, str]:
+    """Content of every file of the package, by its path in it."""
+    interfaces = {f"msg/{name}": text for name, text in msg_files().items()}
+    interfaces[f"srv/{service.SET_GOAL.rpartition('/')[2]}.srv"] = service.text()
+    listed = "\n".join(f'  "{path}"' for path in sorted(interfaces))
+    return {
+        "package.xml": MANIFEST.format(package=PACKAGE, version=__version__),
+        "CMakeLists.txt": BUILD.format(package=PACKAGE, files=listed),
+        **interfaces,
+    }
+
+
+def write(folder: Path = FOLDER) -> None:
+    """Write all files and remove those whose type no longer exists."""
+    content = files()
+    for path in (*folder.glob("msg/*.msg"), *folder.glob("srv/*.srv")):
+        if path.relative_to(folder).as_posix() not in content:
+            path.unlink()
+    for name, text in content.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write(*map(Path, sys.argv[1:2]))

@@ -1,0 +1,42 @@
+"""The interface package in the repository is the one that the command writes, and ROS 2's own tools accept it."""
+
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+from tailor import __version__
+from tailor.schemas.ros2 import service
+from tailor.schemas.ros2.interface_package import FOLDER, files, write
+
+
+def content(folder):
+    return {path.relative_to(folder).as_posix(): path.read_text() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_the_files_in_the_repository_are_those_that_the_command_writes():
+    assert content(FOLDER) == files(), "run: make ros2"
+
+
+def test_the_command_writes_into_any_workspace_and_removes_what_is_no_longer_a_type(tmp_path):
+    (tmp_path / "msg").mkdir()
+    (tmp_path / "msg" / "Gone.msg").write_text("bool gone\n")
+    command = [sys.executable, "-m", "tailor.schemas.ros2.interface_package", tmp_path]
+    subprocess.run(command, check=True)
+    assert content(tmp_path) == files()
+
+
+def test_all_is_plain_ascii_for_the_generators_of_ros():
+    assert all(text.isascii() for text in files().values())
+
+
+def test_the_manifest_and_the_build_name_the_package_and_every_interface(tmp_path):
+    write(tmp_path)
+    manifest = ElementTree.parse(tmp_path / "package.xml").getroot()
+    assert (manifest.findtext("name"), manifest.findtext("version")) == ("tailor_msgs", __version__)
+    build = (tmp_path / "CMakeLists.txt").read_text()
+    assert all(f'"{name}"' in build for name in files() if name.endswith((".msg", ".srv")))
+
+
+def test_the_service_file_has_the_two_parts_of_the_definition():
+    request, response = service.text().split("---\n")
+    assert (service.REQUEST in request, service.RESPONSE in response) == (True, True)
