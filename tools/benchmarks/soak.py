@@ -22,7 +22,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.soak import report
-from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS
+from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS, SETTLING
 from tailor.tools.soak.judging.slopes import growth
 from tailor.tools.soak.party import Party
 from tailor.tools.soak.recordings import recording_rows
@@ -71,7 +71,9 @@ def _planned(options: Options, robots: list[str]) -> list[Planned]:
     harmless, deadly = ([name for name in faults if options.only in name] for faults in (HARMLESS, DEADLY))
     if not harmless and not deadly:
         raise UsageError(f"--only {options.only}: no such fault, expected some of: {', '.join(FAULTS)}")
-    return schedule(options.seed, options.minutes, options.every_s, robots, harmless or deadly, deadly or harmless)
+    settling = [name for name in SETTLING if name in harmless]
+    hands = (harmless or deadly, deadly or harmless, settling)
+    return schedule(options.seed, options.minutes, options.every_s, robots, *hands)
 
 
 def check_measured(content: dict[str, Any]) -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import product
 
 import pytest
 
-from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS
+from tailor.tools.soak.faults.kinds import DEADLY, FAULTS, HARMLESS, SETTLING
+from tailor.tools.soak.judging.slopes import SETTLING_S
 from tailor.tools.soak.schedule import BEGIN_MIN, END_MIN, schedule
 
 ROBOTS = ("agilo", "powercube")
 
 
 def planned(seed=0, minutes=60.0, every_s=60.0):
-    return schedule(seed, minutes, every_s, ROBOTS, list(HARMLESS), list(DEADLY))
+    return schedule(seed, minutes, every_s, ROBOTS, list(HARMLESS), list(DEADLY), SETTLING)
 
 
 def test_a_seed_gives_one_schedule():
@@ -44,3 +46,9 @@ def test_an_hour_sees_every_fault_and_both_robots_alike(seed):
 def test_a_short_soak_draws_any_fault():
     short = planned(minutes=10, every_s=10)
     assert {each.fault for each in short} == FAULTS.keys()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_robot_settles_before_memory_is_measured(seed):
+    begin = [each for each in planned(seed) if BEGIN_MIN * 60 <= each.at_s < BEGIN_MIN * 60 + SETTLING_S]
+    assert {(each.fault, each.robot) for each in begin} >= set(product(SETTLING, ROBOTS))
