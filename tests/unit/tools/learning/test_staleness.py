@@ -116,7 +116,6 @@ def test_the_command_reports_stale_models(tmp_path: Path, monkeypatch, capsys) -
     assert "powercube/reach/duration: stale: reach is" in capsys.readouterr().out
 
 
-@pytest.mark.xfail(reason="goToPose/clearance is older than the frozen body; `tailor make-models agilo` mends it")
 def test_no_model_that_ships_is_stale() -> None:
     cards = [json.loads(path.read_text()) for path in sorted(ZOO.glob("*/*/*.card.json"))]
     stale = {f"{card['robot']}/{card['action']}/{card['kind']}": staleness_of(card) for card in cards}
