@@ -21,6 +21,7 @@ SELF_ARM = "self_arm"  # requests of the executive; those of people come on anot
 TOPICS = ("arm_request", SELF_ARM, "estop")  # inputs of every driver besides its command
 SHOWN_DIGITS = 8  # of a sender id
 HELD_BY = "held by "  # in the detail of a driver's state: the dead man's switches that it hears
+NOT_READY = "not ready: "  # in the detail, before the reason why the hardware cannot be driven
 ARM_REFUSED = "arm: "  # before the reason of a refused arming request, in a driver's state
 
 
@@ -30,6 +31,7 @@ class Driver:
     Attributes:
       guard: The guard; `guard.output(now_ns)` gives the set-points for the motors.
       held: The dead man's switches; when one falls silent, the driver stops and latches.
+      unready: Why the hardware cannot be driven now, so that arming is refused; empty: it can.
     """
 
     def __init__(self, spec: DriverSpec, epoch: int, leave: str = "") -> None:
@@ -42,6 +44,7 @@ class Driver:
         """
         self.guard = Guard(spec.limits, epoch, spec.timeout_ns, leave)
         self.held = HeldSwitches()
+        self.unready = ""
         self._arm_refused: Counter[ArmRefusal] = Counter()
         self._outlets = tuple((_suffix(TOPIC_TABLE[o.topic].key), o.axes) for o in spec.all_outlets())
         self._numbers = {suffix: number for number, (suffix, _) in enumerate(self._outlets)}
@@ -114,7 +117,8 @@ class Driver:
 
     def _detail(self) -> str:
         held = ", ".join(shown(sender) for sender in self.held.senders)
-        return "; ".join(text for text in (self.guard.detail, f"{HELD_BY}{held}" if held else "") if text)
+        unready = f"{NOT_READY}{self.unready}" if self.unready not in ("", self.guard.detail) else ""
+        return "; ".join(text for text in (self.guard.detail, unready, f"{HELD_BY}{held}" if held else "") if text)
 
     def _refused(self) -> dict[str, int]:
         """Number of refused messages since start, by reason; arming requests and switches with a prefix."""
@@ -146,6 +150,8 @@ class Driver:
             return None
         if stopped:
             return ArmRefusal.ESTOP_LATCHED
+        if self.unready:
+            return ArmRefusal.NOT_READY
         by_people = not sample.key.endswith(f"/{SELF_ARM}")
         sender = (request.sender if by_people else "") or sample.sender
         latched = self.guard.mode is Mode.ESTOPPED

@@ -24,6 +24,15 @@ class OutletSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class SensorSpec:
+    """One sensor of a driver."""
+
+    topic: str  # name in tailor.schemas.topics
+    rate_hz: float  # 0: on change, or of the topic's rate
+    frame: str = ""  # in the header of its messages; empty: not declared
+
+
+@dataclass(frozen=True, slots=True)
 class DriverSpec:
     """A driver's command: its topic, and its axes with their limits, in one order.
 
@@ -36,6 +45,7 @@ class DriverSpec:
     limits: tuple[Limit, ...]
     timeout_ns: int = 300_000_000
     outlets: tuple[OutletSpec, ...] = ()
+    sensors: tuple[SensorSpec, ...] = ()
 
     def all_outlets(self) -> tuple[OutletSpec, ...]:
         """Every outlet: those listed, or the only one."""
@@ -83,7 +93,12 @@ def read_driver_spec(text: str) -> DriverSpec:
         limits=tuple(_limit(axis) for each in commands for axis in each["axes"]),
         timeout_ns=min(_timeout_ns(each) for each in commands),
         outlets=outlets if len(outlets) > 1 else (),
+        sensors=tuple(_sensor(name, each) for name, each in table.get("sensors", {}).items()),
     )
+
+
+def _sensor(name: str, table: Mapping[str, Any]) -> SensorSpec:
+    return SensorSpec(name, _number(table, "rate_hz") if "rate_hz" in table else 0.0, str(table.get("frame", "")))
 
 
 def _timeout_ns(command: Mapping[str, Any]) -> int:

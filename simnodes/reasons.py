@@ -50,6 +50,7 @@ class ArmRefusal(StrEnum):
     ESTOP_LATCHED = "e-stop is latched"
     PEOPLE_ONLY = "only people may arm"
     OTHER_SENDER_ARMED = "another sender is armed"
+    NOT_READY = "the hardware is not ready"  # detail of the driver's state: why
 
 
 class HoldRefusal(StrEnum):

@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "estop": ("tailor.tools.commands.run.estop", "emergency stop of all drivers"),
     "status": ("tailor.tools.commands.look.status", "state and health of a running system, with an e-stop key"),
     "units": ("tailor.tools.commands.run.units", "write systemd units for a robot"),
+    "driver": ("tailor.tools.commands.drivers.driver", "drive a real robot: guard, arming and watchdogs around it"),
     "record": ("tailor.tools.commands.run.record", "record the bus into an MCAP file"),
     "replay": ("tailor.tools.commands.look.replay", "play a recording on the bus"),
     "info": ("tailor.tools.commands.look.info", "summarise a recording"),
@@ -59,6 +60,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 # by the folder of a command's module
 GROUPS = {
     "run": "robots and plans",
+    "drivers": "real robots",
     "look": "runs, live and recorded",
     "learn": "action models",
     "measure": "evaluations and benchmarks",

@@ -38,6 +38,7 @@ def refused(*arguments):
             "planner command ''vhpop': cannot be started: No closing quot",
         ),
         (("sim", "hal"), "no robot 'hal', expected one of: powercube, agilo"),
+        (("driver", "nowhere:Rover"), "nowhere:Rover: No module named 'nowhere', expected package.module:Class"),
         (("arm", ""), "robot '': expected a name, e.g. agilo"),
         (("arm", "agilo#"), "robot 'agilo#': expected a name"),
         (("arm", "*"), "robot '*': expected a name"),

@@ -1,5 +1,7 @@
 """The driver without a bus."""
 
+from dataclasses import replace
+
 import pytest
 
 from tailor.schemas.messages import ArmRequest, EStop, JointCommand, Sample, VelocityCommand
@@ -178,7 +180,10 @@ def test_joint_commands_are_matched_by_name():
 
 
 def test_agilo_declares_its_limits_and_the_time_out():
-    assert shipped_driver_spec("agilo") == DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
+    declared = shipped_driver_spec("agilo")
+    command = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
+    assert replace(declared, sensors=()) == command
+    assert [sensor.topic for sensor in declared.sensors] == ["odom", "pose", "ball", "opponents"]
 
 
 def test_a_paused_simulator_takes_no_command_for_one_from_the_future():

@@ -1,0 +1,1 @@
+"""Drivers of real robots: the base class `Hardware`, and what runs it behind the guard."""

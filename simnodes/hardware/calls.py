@@ -1,0 +1,37 @@
+"""Calls into hardware, in several threads: what they raise, and how long they take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from tailor.runtime.clock import Clock
+
+MAX_TEXT = 160  # characters of a fault
+
+
+class Calls:
+    """The calls that are being made, by name; at most one of each name at a time."""
+
+    def __init__(self, clock: Clock, limits_s: Mapping[str, float]) -> None:
+        self._clock, self._limits_s = clock, dict(limits_s)
+        self._begun_ns: dict[str, int] = {}
+
+    def made(self, name: str, call: Callable[[], None]) -> str:
+        """Make a call; what it raised as one line, or empty."""
+        self._begun_ns[name] = self._clock.now_ns()
+        try:
+            call()
+        except Exception as error:
+            text = " ".join(f"{name}: {type(error).__name__}: {error}".split())
+            return text[:MAX_TEXT]
+        finally:
+            self._begun_ns.pop(name, None)
+        return ""
+
+    def stalled(self, now_ns: int) -> str:
+        """A call that has taken longer than its limit; empty if there is none."""
+        for name, limit_s in self._limits_s.items():
+            begun_ns = self._begun_ns.get(name)
+            if begun_ns is not None and now_ns - begun_ns > limit_s * 1e9:
+                return f"{name}: stalled for {limit_s:g} s"
+        return ""

@@ -1,0 +1,176 @@
+"""Runs a Hardware in threads of its own, so that no call of it delays the guard.
+
+One thread opens and closes, one reads, one writes. The driver's loop looks at them once a period and never waits: a
+call that stalls is a fault like one that raises. After a fault standstill is written once more, if `write` still
+answers; then the hardware is closed, and opened again by the retry policy.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from enum import Enum
+
+from tailor.runtime.clock import Clock
+from tailor.schemas.messages import Message
+from tailor.simnodes.guard import Limit
+from tailor.simnodes.hardware.calls import Calls
+from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.watchdogs import RetryPolicy
+
+SILENT_LOOP_NS = 300_000_000  # without a set-point for so long, the loop hangs: standstill is written
+CLOSE_S = 5.0  # a call of `close` that takes longer is reported
+IDLE_S = 0.002  # after a read without a measurement
+MAX_READINGS = 256  # that wait for the loop
+
+
+class Phase(Enum):
+    """What the hardware is doing."""
+
+    OPENING = "opening"
+    RUNNING = "running"
+    CLOSING = "closing"
+    WAITING = "waiting"  # to be opened again
+    ENDED = "ended"
+
+
+class Device:
+    """Hardware that is opened, read, written and closed in the background.
+
+    Attributes:
+      phase: What it is doing.
+      fault: Newest fault, one line; empty before the first and since the hardware runs again.
+    """
+
+    def __init__(self, hardware: Hardware, limits: Sequence[Limit], retry: RetryPolicy, clock: Clock) -> None:
+        """Nothing is called before `start`; the limits name the axes that keep their set-points at standstill."""
+        self.phase, self.fault = Phase.OPENING, ""
+        self._hardware, self._retry, self._clock = hardware, retry, clock
+        limits_s = {"open": hardware.open_s, "read": hardware.read_s, "write": hardware.write_s, "close": CLOSE_S}
+        self._calls = Calls(clock, limits_s)
+        self._readings: deque[tuple[int, Mapping[str, Message]]] = deque(maxlen=MAX_READINGS)
+        self._keeps = tuple(limit.kept is not None for limit in limits)
+        self._values, self._handed_ns = tuple(limit.kept or 0.0 for limit in limits), clock.now_ns()
+        self._ended, self._broken = threading.Event(), threading.Event()
+        self._faults, self._opened_ns, self._closed = 0, 0, False
+        self._main = threading.Thread(target=self._live, name="hardware", daemon=True)
+
+    def start(self) -> None:
+        """Begin to open the hardware."""
+        self._main.start()
+
+    def end(self, timeout_s: float = 2.0) -> bool:
+        """Write the set-points for standstill, close, and wait for that; whether it was done in time."""
+        self._ended.set()
+        self._broken.set()
+        self._main.join(timeout_s)
+        return not self._main.is_alive()
+
+    def readings(self) -> list[tuple[int, Mapping[str, Message]]]:
+        """Measurements since the last call, oldest first, with the monotonic time of their arrival."""
+        waiting = []
+        while self._readings:
+            waiting.append(self._readings.popleft())
+        return waiting
+
+    def hand(self, values: tuple[float, ...], now_ns: int) -> None:
+        """Set the set-points that are written from now on."""
+        self._values, self._handed_ns = values, now_ns
+
+    def fail(self, fault: str) -> None:
+        """A watchdog of the loop found a fault."""
+        if not self.fault:
+            self.fault = fault
+        self._broken.set()
+
+    def stalled(self, now_ns: int) -> str:
+        """A call that has taken longer than its limit, as text; empty if there is none."""
+        return self._calls.stalled(now_ns)
+
+    def _live(self) -> None:
+        while not self._ended.is_set():
+            self._run_once()
+            if self._ended.is_set():
+                break
+            if self._clock.now_ns() - self._opened_ns > self._retry.most_s * 1e9:
+                self._faults = 0
+            self._faults += 1
+            pause_s = self._retry.pause_s(self._faults)
+            if pause_s is None:
+                break
+            self.phase = Phase.WAITING
+            self._ended.wait(pause_s)
+        self.phase = Phase.ENDED
+
+    def _run_once(self) -> None:
+        """Open, work until a fault, close."""
+        self.phase, self._closed = Phase.OPENING, False
+        self._broken.clear()
+        if self._ended.is_set():  # since a moment ago: its own `set` may have been cleared
+            return
+        fault = self._calls.made("open", self._hardware.open)
+        self._opened_ns = self._clock.now_ns()
+        if fault:
+            self.fail(fault)
+        elif not self._broken.is_set():  # it may have stalled for longer than a watchdog allows
+            self._work()
+        self.phase = Phase.CLOSING
+        self._close()
+
+    def _work(self) -> None:
+        self.fault, self._handed_ns = "", self._clock.now_ns()
+        self._readings.clear()
+        self.phase = Phase.RUNNING
+        threads = [threading.Thread(target=each, daemon=True) for each in (self._read, self._write)]
+        for thread in threads:
+            thread.start()
+        self._broken.wait()
+        self.phase = Phase.CLOSING
+        for thread, limit_s in zip(threads, (self._hardware.read_s, 2 * self._hardware.write_s), strict=True):
+            thread.join(limit_s)
+        if any(thread.is_alive() for thread in threads):
+            self._close()  # ends a call that waits
+        for thread in threads:
+            thread.join()  # a device is never opened while a thread is still inside it
+
+    def _close(self) -> None:
+        if not self._closed:
+            self._closed = True
+            self._calls.made("close", self._hardware.close)
+
+    def _read(self) -> None:
+        def take() -> None:
+            measured = self._hardware.read()
+            if measured:
+                self._readings.append((self._clock.now_ns(), measured))
+            else:
+                self._ended.wait(IDLE_S)
+
+        self._repeat("read", take)
+
+    def _write(self) -> None:
+        period_ns, due_ns = round(1e9 / self._hardware.write_hz), 0
+        last: tuple[float, ...] = ()
+
+        def give() -> None:
+            nonlocal due_ns, last
+            now_ns = self._clock.now_ns()
+            values = self._values if now_ns - self._handed_ns <= SILENT_LOOP_NS else self._standstill()
+            if values != last or now_ns >= due_ns:
+                due_ns, last = now_ns + period_ns, values
+                self._hardware.write(values)
+
+        self._repeat("write", give, pause_s=0.005)
+        self._calls.made("write", lambda: self._hardware.write(self._standstill()))
+
+    def _standstill(self) -> tuple[float, ...]:
+        return tuple(value if keeps else 0.0 for value, keeps in zip(self._values, self._keeps, strict=True))
+
+    def _repeat(self, name: str, call: Callable[[], None], pause_s: float = 0.0) -> None:
+        while not self._broken.is_set():
+            fault = self._calls.made(name, call)
+            if fault:
+                self.fail(fault)
+            elif pause_s:
+                self._broken.wait(pause_s)

@@ -1,0 +1,57 @@
+"""Base class of a robot's hardware: subclass it, and `tailor driver mypackage:MyRobot` makes a driver of it.
+
+The driver around it holds everything that does not differ between robots: guard, arming, e-stop, epochs, watchdogs,
+state and its reasons. A subclass opens a device, reads it, writes to it and closes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from tailor.schemas.messages import Message
+
+
+class Hardware:
+    """A robot's hardware.
+
+    Any exception in a method is a fault: the driver stops the robot, publishes the exception's text as the reason,
+    calls `close`, and later `open` again. A method that takes longer than its time limit is a fault as well.
+
+    Attributes:
+      robot: Name of the robot; its package declares command, axes, limits and sensors in `driver.toml`.
+      open_s, read_s, write_s: Time limits of the methods.
+      write_hz: Rate at which `write` is called; a new set-point is written at the next period of 10 ms.
+    """
+
+    robot: ClassVar[str] = ""
+    open_s: float = 10.0
+    read_s: float = 0.5
+    write_s: float = 0.2
+    write_hz: float = 50.0
+
+    def open(self) -> None:
+        """Connect to the device, at start-up and after each fault. The robot must not move."""
+
+    def read(self) -> Mapping[str, Message]:
+        """Wait for the next measurements, shorter than `read_s`.
+
+        Returns:
+          New measurements by topic, e.g. `{"odom": Odometry(...)}`; empty if there are none. A stamp of 0 becomes the
+          time at which `read` returned. Never return an old measurement again: it would look fresh.
+        """
+        raise NotImplementedError
+
+    def write(self, values: tuple[float, ...]) -> None:
+        """Send set-points that the guard has passed, while another thread waits in `read`.
+
+        Args:
+          values: In the order and the units of the axes in `driver.toml`; zero stops an axis.
+        """
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Release the device, after the set-points for standstill were written if that was possible.
+
+        Also called after `open` failed, and while a stalled `read` or `write` has not returned: it should end them.
+        """

@@ -1,0 +1,46 @@
+"""Loads a Hardware that a person names: `package.module:Class`, or `path/to/file.py:Class`."""
+
+from __future__ import annotations
+
+import inspect
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.hardware.interface import Hardware
+
+
+def load_hardware(named: str) -> Hardware:
+    """A new instance of the class that is named.
+
+    Raises:
+      UsageError: There is no such class, it is no Hardware, it names no robot, or it needs arguments.
+    """
+    where, _, name = named.rpartition(":")
+    try:
+        found = getattr(_module(where), name)
+    except (ImportError, AttributeError, OSError, SyntaxError, ValueError) as error:
+        raise UsageError(f"{named}: {error}, expected package.module:Class or FILE.py:Class") from error
+    if not (inspect.isclass(found) and issubclass(found, Hardware)):
+        raise UsageError(f"{named}: is no subclass of tailor.simnodes.hardware.interface.Hardware")
+    try:
+        hardware = found()
+    except TypeError as error:
+        raise UsageError(f"{named}: {error}, expected a class that is made without arguments") from error
+    if not hardware.robot:
+        raise UsageError(f"{named}: robot is empty, expected the name of the robot")
+    return hardware
+
+
+def _module(where: str) -> ModuleType:
+    if not where.endswith(".py"):
+        return import_module(where)
+    path = Path(where)
+    spec = spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise OSError(f"no file {path}")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

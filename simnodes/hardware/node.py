@@ -1,0 +1,160 @@
+"""A driver around a Hardware: bus and guard in a loop of 100 Hz, the hardware in threads of its own."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from tailor.runtime.bus.session import Session
+from tailor.runtime.clock import Clock, wall_ns
+from tailor.runtime.loop import Loop
+from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.schemas.messages import Message
+from tailor.schemas.topics import TOPICS as TOPIC_TABLE
+from tailor.simnodes.driver import TOPICS, Driver
+from tailor.simnodes.driver_spec import DriverSpec
+from tailor.simnodes.guard import Reason
+from tailor.simnodes.hardware.device import Device, Phase
+from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.watchdogs import FOREVER, RetryPolicy, SensorWatch, watched_sensors
+
+PERIOD_NS = 10_000_000
+
+
+class HardwareNode:
+    """One robot's driver on the bus.
+
+    Attributes:
+      driver: The driver; its guard filters the commands.
+      device: The hardware behind it.
+    """
+
+    def __init__(
+        self,
+        hardware: Hardware,
+        spec: DriverSpec,
+        session: Session,
+        clock: Clock,
+        epoch: int,
+        leave: str = "",
+        retry: RetryPolicy = FOREVER,
+        report: Callable[[str], None] = lambda line: None,
+    ) -> None:
+        """Subscribe and declare publishers; the hardware is opened by `run`.
+
+        Args:
+          hardware: The robot; only `Device` calls it.
+          spec: Commands, limits and sensors of the driver.
+          session: Bus session.
+          clock: Monotonic clock.
+          epoch: Identifies this start; different at every start, and not 0.
+          leave: Sender id of the executive that may arm the driver by itself, once; empty: only people may.
+          retry: When the hardware is opened again after a fault.
+          report: Receives lines for people: faults, and that the hardware is ready.
+        """
+        self.driver = Driver(spec, epoch, leave)
+        self.device = Device(hardware, spec.limits, retry, clock)
+        self._clock, self._loop, self._report = clock, Loop(PERIOD_NS, clock), report
+        self._inbox = session.inbox((*spec.command_topics, *TOPICS), hardware.robot)
+        names = [sensor.topic for sensor in spec.sensors]
+        self._publishers = {name: session.publisher(name, hardware.robot) for name in ("driver", *names)}
+        self._watch = SensorWatch(watched_sensors(names))
+        self._opened = False  # the watch has been restarted since the hardware runs
+        self._unready = ""
+        self.driver.unready = Phase.OPENING.value
+
+    def run(self, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> bool:
+        """Run period after period until `stopped()` is true; the robot is disarmed and the hardware closed at the end.
+
+        Args:
+          stopped: Called before every period.
+          notifier: Receives that the hardware is ready for the first time, and a report of every period.
+
+        Returns:
+          Whether it ended because of `stopped`: False if the retry policy gave up.
+        """
+        self.device.start()
+        announced = False
+        while not stopped() and self.device.phase is not Phase.ENDED:
+            self._run_period(self._loop.wait_for_next_period().now_ns)
+            if not announced and not self.driver.unready:
+                notifier.ready()
+                announced = True
+            notifier.alive()
+        notifier.stopping()
+        gave_up = self.device.phase is Phase.ENDED
+        if not gave_up:
+            self.driver.guard.disarm(Reason.SHUTDOWN)
+            self._hand(self._clock.now_ns())
+        self._publish_state(self._clock.now_ns())
+        if not self.device.end():
+            self._report("the hardware does not end: a call of it still waits")
+        return not gave_up
+
+    def _run_period(self, now_ns: int) -> None:
+        self._sense()
+        self._judge(now_ns)
+        self.driver.take(self._inbox.drain(now_ns), self._rejected(), now_ns)
+        self._hand(now_ns)
+        self._publish_state(now_ns)
+
+    def _sense(self) -> None:
+        """Publish what was measured since the last period."""
+        for at_ns, readings in self.device.readings():
+            wall = wall_ns() - (self._clock.now_ns() - at_ns)
+            for name, message in readings.items():
+                fault = self._fault_of(name, message)
+                if fault:
+                    self.device.fail(fault)
+                    return
+                stamped: Any = message
+                self._publishers[name].publish(stamped if stamped.stamp_ns else replace(stamped, stamp_ns=wall))
+                self._watch.heard(name, at_ns)
+
+    def _fault_of(self, name: str, message: Message) -> str:
+        if name not in self._publishers or name == "driver":
+            return f"read: '{name}' is no sensor of driver.toml"
+        expected = TOPIC_TABLE[name].type
+        return "" if type(message) is expected else f"read: {name} is no {expected.__name__}"
+
+    def _judge(self, now_ns: int) -> None:
+        """Find faults, stop the robot for them, and see whether it may be armed."""
+        device, running = self.device, self.device.phase is Phase.RUNNING
+        if running and not self._opened:
+            self._watch.restart(now_ns)
+        self._opened = running
+        found = device.stalled(now_ns) or (self._watch.fault(now_ns) if running else "")
+        if found:
+            device.fail(found)
+        if device.fault:
+            unready = device.fault
+        elif not running:
+            unready = device.phase.value
+        else:
+            missing = self._watch.missing()
+            unready = f"no {missing} yet" if missing else ""
+        self._note(unready, bool(device.fault))
+
+    def _note(self, unready: str, is_fault: bool) -> None:
+        if unready == self._unready:
+            return
+        self._unready = self.driver.unready = unready
+        if is_fault:
+            self.driver.guard.stop(unready)
+        self._report(f"not ready: {unready}" if unready else "ready")
+
+    def _hand(self, now_ns: int) -> None:
+        self.device.hand(self.driver.guard.output(now_ns), now_ns)
+
+    def _publish_state(self, now_ns: int) -> None:
+        state = self.driver.state(now_ns, wall_ns())
+        if state is not None:
+            self._publishers["driver"].publish(state)
+
+    def _rejected(self) -> Mapping[str, int]:
+        counts: Counter[str] = Counter()
+        for (_, reason), count in self._inbox.rejected.items():
+            counts[reason] += count
+        return counts

@@ -1,0 +1,66 @@
+"""Hardware that fails on request, and a bus that is a list."""
+
+import threading
+from collections import Counter
+
+from tailor.schemas.messages import Odometry
+from tailor.simnodes.hardware.interface import Hardware
+
+
+class Faulty(Hardware):
+    """Notes what is called; `raises` names the methods that raise, `stalls` those that wait for `released`."""
+
+    robot = "agilo"
+    open_s, read_s, write_s, write_hz = 0.15, 0.1, 0.1, 200.0
+
+    def __init__(self):
+        self.raises, self.stalls, self.calls, self.written = set(), set(), Counter(), []
+        self.released = threading.Event()
+        self.silent, self.odometry, self.order = False, {}, []
+
+    def _called(self, name):
+        self.calls[name] += 1
+        self.order.append(name)
+        if name in self.raises:
+            raise OSError(f"no {name}")
+        if name in self.stalls:
+            self.released.wait(5)
+
+    def open(self):
+        self._called("open")
+
+    def read(self):
+        threading.Event().wait(0.01)
+        self._called("read")
+        return {} if self.silent else self.odometry or {"odom": Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)}
+
+    def write(self, values):
+        self.written.append(values)
+        self._called("write")
+
+    def close(self):
+        self._called("close")
+        if "close frees" in self.stalls:
+            self.released.set()
+
+
+class Bus:
+    """Session, inbox and publishers in one."""
+
+    def __init__(self):
+        self.waiting, self.rejected, self.published = [], Counter(), {}
+
+    def inbox(self, names, robot):
+        return self
+
+    def drain(self, now_ns):
+        waiting, self.waiting = self.waiting, []
+        return tuple(waiting)
+
+    def publisher(self, name, robot):
+        return Published(self.published.setdefault(name, []))
+
+
+class Published(list):
+    def __init__(self, messages):
+        self.publish = messages.append

@@ -1,0 +1,204 @@
+"""Whatever a robot's hardware does, the robot is stopped, the reason is published, and it is tried again."""
+
+import itertools
+import threading
+
+import pytest
+
+from tailor.runtime.clock import MonotonicClock
+from tailor.schemas.messages import ArmRequest, EStop, PoseEstimate, Sample, VelocityCommand
+from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
+from tailor.simnodes.guard import ArmRefusal, Limit
+from tailor.simnodes.hardware.node import HardwareNode
+from tailor.simnodes.hardware.watchdogs import RetryPolicy
+from tests.support.patience import wait_until
+from tests.unit.simnodes.hardware.faulty import Bus, Faulty
+
+EXECUTIVE, PERSON = "a" * 32, "b" * 32
+SPEC = DriverSpec(
+    "cmd_vel",
+    ("v", "omega"),
+    (Limit(-1.0, 1.0), Limit(-2.0, 2.0)),
+    timeout_ns=3_000_000_000,  # no test waits for it
+    sensors=(SensorSpec("odom", 50.0),),
+)
+
+
+class Robot:
+    """A node in a thread of its own."""
+
+    def __init__(self, hardware, attempts=0):
+        self.hardware, self.bus, self.numbers = hardware, Bus(), itertools.count(1)
+        retry = RetryPolicy(first_s=0.05, most_s=0.05, attempts=attempts)
+        self.clock, self.reports = MonotonicClock(), []
+        self.node = HardwareNode(hardware, SPEC, self.bus, self.clock, epoch=7, retry=retry, report=self.reports.append)
+        self.ended, self.outcome = threading.Event(), []
+        self.thread = threading.Thread(target=lambda: self.outcome.append(self.node.run(self.ended.is_set)))
+        self.thread.start()
+
+    def send(self, message, topic, sender=EXECUTIVE):
+        sample = Sample(f"agilo/{topic}", message, self.clock.now_ns(), next(self.numbers), sender)
+        self.bus.waiting = [*self.bus.waiting, sample]
+
+    def state(self):
+        states = self.bus.published["driver"]
+        return states[-1] if states else None
+
+    def is_in(self, mode):
+        return lambda: self.state() is not None and self.state().mode == mode
+
+    def drive(self):
+        """Arms and moves it."""
+        wait_until(lambda: not self.node.driver.unready, "ready", 5)
+        self.send(ArmRequest(True, False, EXECUTIVE, 0), "arm_request", PERSON)
+        self.send(VelocityCommand(0, 0.5, 0.1), "cmd_vel")
+        wait_until(lambda: self.hardware.written[-1:] == [(0.5, 0.1)], "motion", 5)
+
+    def end(self):
+        self.ended.set()
+        self.hardware.released.set()
+        self.thread.join(5)
+        assert not self.thread.is_alive()
+
+
+@pytest.fixture
+def robot():
+    robots = []
+
+    def make(hardware=None, **options):
+        robots.append(Robot(hardware or Faulty(), **options))
+        return robots[-1]
+
+    yield make
+    for each in robots:
+        each.end()
+
+
+def stopped_for(robot, reason):
+    """Waits until the robot is stopped for that reason, at rest."""
+    state = wait_until(lambda: robot.is_in("stopped")() and robot.state(), "stop", 5)
+    assert (state.reason, reason in state.detail) == ("driver fault", True), state.detail
+    wait_until(lambda: robot.hardware.written[-1:] in ([], [(0.0, 0.0)]), "rest", 5)
+
+
+def test_commands_reach_the_hardware_and_measurements_the_bus(robot):
+    driven = robot()
+    driven.drive()
+    assert driven.is_in("armed")()
+    odometry = wait_until(lambda: driven.bus.published["odom"], "odometry", 5)
+    assert odometry[0].stamp_ns > 0
+    driven.end()
+    assert driven.outcome == [True]
+    assert driven.hardware.written[-1] == (0.0, 0.0)
+    assert driven.hardware.order[-1] == "close"
+    assert driven.state().reason == "the driver ends"
+
+
+def test_hardware_that_does_not_open_is_tried_again_and_cannot_be_armed(robot):
+    hardware = Faulty()
+    hardware.raises = {"open"}
+    driven = robot(hardware)
+    stopped_for(driven, "open: OSError: no open")
+    driven.send(ArmRequest(True, False, EXECUTIVE, 0), "arm_request", PERSON)
+    refused = wait_until(lambda: dict(driven.node.driver._arm_refused), "refusal", 5)
+    assert refused == {ArmRefusal.NOT_READY: 1}
+    wait_until(lambda: hardware.calls["open"] > 2, "further attempts", 5)
+    hardware.raises = set()
+    driven.drive()
+
+
+@pytest.mark.parametrize(
+    ("kind", "method", "reason"),
+    [
+        ("raises", "read", "read: OSError: no read"),
+        ("raises", "write", "write: OSError: no write"),
+        ("stalls", "read", "read: stalled for 0.1 s"),
+        ("stalls", "write", "write: stalled for 0.1 s"),
+    ],
+)
+def test_a_fault_stops_the_robot_until_a_person_arms_it_again(robot, kind, method, reason):
+    driven = robot()
+    driven.drive()
+    setattr(driven.hardware, kind, {method})
+    stopped_for(driven, reason)
+    setattr(driven.hardware, kind, set())
+    driven.hardware.released.set()
+    wait_until(lambda: driven.hardware.calls["open"] > 1 and not driven.node.driver.unready, "open again", 5)
+    assert driven.hardware.calls["close"] == 1
+    assert driven.is_in("stopped")(), "it is ready, and waits for a person"
+    driven.drive()
+
+
+def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.stalls = {"read", "close frees"}
+    stopped_for(driven, "read: stalled")
+    wait_until(lambda: driven.hardware.calls["open"] > 1, "open again", 5)
+    before_close = driven.hardware.order[: driven.hardware.order.index("close")]
+    assert "write" in before_close[len(before_close) - before_close[::-1].index("read") :]
+
+
+def test_hardware_is_not_opened_while_a_call_is_still_inside_it(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.stalls = {"read"}
+    stopped_for(driven, "read: stalled")
+    wait_until(lambda: driven.hardware.calls["close"], "close", 5)
+    threading.Event().wait(0.3)
+    assert driven.hardware.calls["open"] == 1
+
+
+def test_a_silent_sensor_stops_the_robot(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.silent = True
+    stopped_for(driven, "odom: silent for 0.5 s")
+
+
+def test_a_robot_without_odometry_cannot_be_armed(robot):
+    hardware = Faulty()
+    hardware.silent = True
+    driven = robot(hardware)
+    wait_until(lambda: driven.node.driver.unready == "no odom yet", "open", 5)
+    assert driven.node.driver.guard.mode == "disarmed"
+
+
+def test_a_measurement_that_is_not_declared_is_a_fault(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = {"pose": PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)}
+    stopped_for(driven, "'pose' is no sensor")
+
+
+def test_a_measurement_of_another_type_is_a_fault(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = {"odom": PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)}
+    stopped_for(driven, "odom is no Odometry")
+
+
+def test_an_estop_stops_the_hardware_and_stays_latched_through_a_fault(robot):
+    driven = robot()
+    driven.drive()
+    driven.send(EStop(True), "estop", PERSON)
+    wait_until(driven.is_in("estopped"), "e-stop", 5)
+    wait_until(lambda: driven.hardware.written[-1] == (0.0, 0.0), "rest", 5)
+    driven.hardware.raises = {"read"}
+    wait_until(lambda: driven.hardware.calls["close"], "fault", 5)
+    assert driven.is_in("estopped")()
+
+
+def test_the_policy_ends_the_driver_after_its_attempts(robot):
+    hardware = Faulty()
+    hardware.raises = {"open"}
+    driven = robot(hardware, attempts=3)
+    driven.thread.join(5)
+    assert driven.outcome == [False]
+    assert hardware.calls["open"] == 3
+    assert "not ready: open: OSError: no open" in driven.reports
+
+
+def test_pauses_between_attempts_grow_to_a_limit():
+    policy = RetryPolicy(1.0, 2.0, 10.0, attempts=7)
+    assert [policy.pause_s(faults) for faults in range(1, 8)] == [1.0, 2.0, 4.0, 8.0, 10.0, 10.0, None]

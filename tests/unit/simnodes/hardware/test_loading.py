@@ -1,0 +1,28 @@
+"""Hardware is found by module or file; whatever is none is one clear line."""
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.hardware.loading import load_hardware
+from tests.support.bus_system import ROOT
+
+WRONG = {
+    "no_such_module:Rover": "No module named",
+    "math:Rover": "has no attribute 'Rover'",
+    "missing.py:Rover": "no file missing.py",
+    "fractions:Fraction": "no subclass of",
+    "Rover": "expected package.module:Class",
+    "tailor.simnodes.hardware.interface:Hardware": "robot is empty",
+}
+
+
+def test_a_class_is_found_in_a_file_and_in_a_module():
+    assert load_hardware(f"{ROOT}/examples/rover_driver.py:Rover").robot == "agilo"
+    assert load_hardware("tests.unit.simnodes.hardware.faulty:Faulty").robot == "agilo"
+
+
+@pytest.mark.parametrize("named", WRONG)
+def test_what_is_no_hardware_is_refused_in_one_line(named):
+    with pytest.raises(UsageError, match=WRONG[named]) as refused:
+        load_hardware(named)
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,60 @@
+"""Drive a real robot: guard, arming, e-stop, watchdogs and state around its hardware, until stopped.
+
+FILE.toml describes a robot with plain topics (cmd_vel, odom), without code; MODULE:CLASS names a subclass of
+tailor.simnodes.hardware.interface.Hardware. See docs/hardware.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+import sys
+
+from tailor.runtime import realtime
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.stopping import stop_on_signals
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.simnodes.hardware.loading import load_hardware
+from tailor.simnodes.hardware.node import HardwareNode
+from tailor.simnodes.hardware.watchdogs import RetryPolicy
+from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.sender_flag import configure_sender, sender_of
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor driver`."""
+    parser.add_argument("hardware", metavar="FILE.toml|MODULE:CLASS", help="description or class of the hardware")
+    parser.add_argument("--leave", metavar="HEX", default="", help="sender id of the executive that may arm it once")
+    parser.add_argument(
+        "--attempts", type=int, default=0, metavar="N", help="end (1) after N faults in a row (default 0: never)"
+    )
+    configure_sender(parser)
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 when stopped; 1 when the hardware failed --attempts times."""
+    notifier = Notifier.from_environment()
+    if arguments.attempts < 0:
+        raise UsageError(f"--attempts is {arguments.attempts}, expected at least 0")
+    hardware = load_hardware(arguments.hardware)
+    spec = shipped_driver_spec(hardware.robot)
+    stop = stop_on_signals()
+    with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
+        codec.prime()
+        realtime.take_fifo(realtime.DRIVER_PRIORITY)
+        realtime.elevate_bus_threads()
+        node = HardwareNode(
+            hardware,
+            spec,
+            session,
+            MonotonicClock(),
+            epoch=1 + secrets.randbelow(2**62),
+            leave=arguments.leave,
+            retry=RetryPolicy(attempts=arguments.attempts),
+            report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
+        )
+        return 0 if node.run(lambda: stop.requested, notifier) else 1
