@@ -7,8 +7,8 @@ import pytest
 
 from tailor.schemas.messages import ArmRequest, VelocityCommand
 from tests.support.bus_system import ROOT, bus_system
-from tests.support.robots.driving import achieved, arm, executive_on, newest, ready
 from tests.support.patience import wait_until
+from tests.support.robots.driving import achieved, arm, executive_on, newest, ready
 
 EXAMPLE = ROOT / "examples" / "rover_driver.py"
 
