@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tailor.executive.planning.anytime import AnytimeSearch
+    from tailor.executive.planning.orders.every_order import UndecidedError, validate_every_order
     from tailor.executive.planning.pddl.domain_reader import parse_domain
     from tailor.executive.planning.pddl.errors import PddlError, Unsupported
     from tailor.executive.planning.pddl.language import Domain, Literal
@@ -55,6 +56,7 @@ __all__ = [
     "Search",
     "Settings",
     "Step",
+    "UndecidedError",
     "Unsupported",
     "Work",
     "apply_action",
@@ -73,6 +75,7 @@ __all__ = [
     "shortest_suffix",
     "suffix",
     "validate",
+    "validate_every_order",
     "validation",
 ]
 
@@ -113,8 +116,10 @@ _MODULES = {
     "shortest_suffix": "plans.suffix",
     "Step": "plans.plan",
     "suffix": "plans.suffix",
+    "UndecidedError": "orders.every_order",
     "Unsupported": "pddl.errors",
     "validate": "plans.validator",
+    "validate_every_order": "orders.every_order",
     "validation": "plans.validator",
     "Work": "plans.portions",
 }

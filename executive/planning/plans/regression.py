@@ -14,7 +14,7 @@ from tailor.executive.planning.plans.plan import Step
 from tailor.executive.planning.plans.state import Binding, Objects, fact_of
 
 
-class _NotClassical(Exception):
+class NotClassical(Exception):
     """A disjunction, a quantifier, a conditional effect or a duration."""
 
 
@@ -72,9 +72,9 @@ class Regression:
     def _attempt(self, formulas: Iterator[Formula], binding: Binding) -> None:
         try:
             for formula in formulas:
-                for literal in _literals(formula, binding):
+                for literal in conjunction(formula, binding):
                     self._need(literal)
-        except _NotClassical:
+        except NotClassical:
             self._applies = False
 
     def _need(self, literal: Literal | None) -> None:
@@ -93,18 +93,22 @@ class Regression:
         return (literal.fact in self._state) is literal.positive
 
 
-def _literals(formula: Formula, binding: Binding) -> Sequence[Literal | None]:
-    """The literals of a conjunction; None for one that is false."""
+def conjunction(formula: Formula, binding: Binding) -> Sequence[Literal | None]:
+    """The literals of a conjunction; None for one that is false.
+
+    Raises:
+      NotClassical: The formula is no conjunction of literals.
+    """
     match formula:
         case Atom():
             return [Literal(fact_of(formula, binding))]
         case Not(Atom() as atom):
             return [Literal(fact_of(atom, binding), positive=False)]
         case And(parts):
-            return [literal for part in parts for literal in _literals(part, binding)]
+            return [literal for part in parts for literal in conjunction(part, binding)]
         case Equal(left, right):
             return [] if binding.get(left, left) == binding.get(right, right) else [None]
         case Not(Equal(left, right)):
             return [None] if binding.get(left, left) == binding.get(right, right) else []
         case _:
-            raise _NotClassical
+            raise NotClassical

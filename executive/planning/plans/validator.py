@@ -20,7 +20,7 @@ SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
 SLACK_S = 1e-7  # of a float
 
 
-class _Unsound(Exception):
+class Unsound(Exception):
     """The reason why a plan is unsound."""
 
 
@@ -60,23 +60,27 @@ def validation(plan: Plan, domain: Domain, objects: Objects) -> Work[str]:
         state = yield from _simulate(plan, domain, objects, bound)
         if not holds(problem.goal, {}, state, objects):
             return f"the goal {problem.goal_text} does not hold at the end"
-    except _Unsound as reason:
+    except Unsound as reason:
         return str(reason)
     return (yield from faulty_link(plan, objects, bound))
 
 
 # --- the actions ---------------------------------------------------------------------------------
-def _bind(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding]:
-    """The action schema and binding of a step."""
+def bind_step(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding]:
+    """The action schema and binding of a step.
+
+    Raises:
+      Unsound: No such action, or other arguments than it takes.
+    """
     name, *arguments = step.action
     action = next((action for action in domain.actions if action.name == name), None)
     if action is None:
-        raise _Unsound(f"step {step.id}: the domain has no action '{name}'")
+        raise Unsound(f"step {step.id}: the domain has no action '{name}'")
     if len(arguments) != len(action.parameters):
-        raise _Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
+        raise Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
     for parameter, argument in zip(action.parameters, arguments, strict=True):
         if argument not in objects.of(parameter):
-            raise _Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
+            raise Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
     binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
     return action, binding
 
@@ -86,10 +90,10 @@ def _check_duration(step: Step, action: Action, binding: Binding, objects: Objec
         return
     allowed = allowed_durations(action.duration, binding, objects.problem.values)
     if allowed is None:
-        raise _Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
     slack_s = SLACK_TICKS * tick_s + SLACK_S
     if not allowed[0] - slack_s <= step.duration <= allowed[1] + slack_s:
-        raise _Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
 
 
 # --- the simulation ------------------------------------------------------------------------------
@@ -104,7 +108,7 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
     for events in _happenings(plan, objects):
         starting = [event.step for event in events if event.step and event.step.id not in bound]
         for step in starting:
-            bound[step.id] = _bind(step, domain, objects)
+            bound[step.id] = bind_step(step, domain, objects)
             _check_duration(step, *bound[step.id], objects, plan.tick_s)
         _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
@@ -163,7 +167,7 @@ def _check_conditions(events: list[_Event], state: State, objects: Objects, boun
     for event in events:
         when = _unmet(event, state, objects, bound)
         if when and event.step is not None:
-            raise _Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
+            raise Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
 
 
 def _unmet(event: _Event, state: State, objects: Objects, bound: Bound) -> str:
@@ -182,7 +186,7 @@ def _check_invariants(running: list[Step], state: State, objects: Objects, bound
     for step in running:
         action, binding = bound[step.id]
         if not holds(conditions_at(action.conditions, "over"), binding, state, objects):
-            raise _Unsound(f"step {step.id}: {format_atom(step.action)} loses a condition that it needs all the time")
+            raise Unsound(f"step {step.id}: {format_atom(step.action)} loses a condition that it needs all the time")
 
 
 def _changes(
@@ -228,8 +232,8 @@ def _check_interference(changes: list[_Change], state: State, objects: Objects, 
         others = [change for change in changes if change[0] is not other]
         for event, added, removed in others:
             if added & less or removed & more or _unmet(other, (state - removed) | added, objects, bound):
-                raise _Unsound(f"{event.label} disturbs {other.label} at the same time")
+                raise Unsound(f"{event.label} disturbs {other.label} at the same time")
         all_removed = frozenset[Fact]().union(*(removed for _, _, removed in others))
         all_added = frozenset[Fact]().union(*(added for _, added, _ in others))
         if _unmet(other, (state - all_removed) | all_added, objects, bound):
-            raise _Unsound(f"what happens at the same time disturbs {other.label}")
+            raise Unsound(f"what happens at the same time disturbs {other.label}")

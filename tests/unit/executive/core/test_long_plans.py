@@ -73,7 +73,7 @@ def work(monkeypatch):
 
         monkeypatch.setattr(module, name, spy)
 
-    counted(validator, "_bind")
+    counted(validator, "bind_step")
     counted(validator, "_check_interference")
     counted(simulation, "_effects")
     counted(regression.Regression, "add")

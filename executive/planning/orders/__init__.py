@@ -1,0 +1,1 @@
+"""Soundness of a partial-order plan in every order of its steps."""

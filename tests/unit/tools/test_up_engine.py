@@ -1,0 +1,164 @@
+"""The engine of unified-planning on that library's own test cases, judged by its own validators."""
+
+from __future__ import annotations
+
+import runpy
+from importlib.util import find_spec
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("unified_planning", reason="pip install 'tailor[up]' to test the engine")
+
+from unified_planning.engines import PlanGenerationResultStatus as Status
+from unified_planning.engines import ValidationResultStatus
+from unified_planning.plans import PartialOrderPlan, PlanKind
+from unified_planning.shortcuts import (
+    AnytimePlanner,
+    BoolType,
+    DurativeAction,
+    EndTiming,
+    Fluent,
+    InstantaneousAction,
+    MinimizeActionCosts,
+    OneshotPlanner,
+    PlanValidator,
+    Problem,
+    get_environment,
+)
+from unified_planning.test.examples import get_example_problems
+
+from tailor.tools.up_engine import register
+from tailor.tools.up_engine.supported import supported_kind
+from tailor.tools.up_engine.translation import reduced
+
+register()
+get_environment().credits_stream = None
+SLOW = "matchcellar_static_duration"  # three matches and fuses with durations: minutes of partial-order search
+THEIRS = Path(find_spec("up_test_cases").submodule_search_locations[0]) / "builtin" / "classical"
+ALL = get_example_problems()
+for module in ("basic_problems", "metric_problems"):  # read as files: their package imports from the current folder
+    given = runpy.run_path(str(THEIRS / f"{module}.py"))["get_test_cases"]()
+    ALL |= {f"{module}-{name}": case for name, case in given.items()}
+CASES = {name: case for name, case in ALL.items() if case.problem.kind <= supported_kind()}
+
+
+def their_verdicts(problem, plan):
+    """What unified-planning's validators find of a time-triggered plan, or of orders of a partial-order plan."""
+    ordered = plan.kind is PlanKind.PARTIAL_ORDER_PLAN
+    plans = islice(plan.all_sequential_plans(), 60) if ordered else [plan]
+    name = "sequential_plan_validator" if ordered else "up_time_triggered_validator"
+    with PlanValidator(name=name) as validator:
+        validator.skip_checks = True
+        return {validator.validate(problem, each).status for each in plans}
+
+
+def test_most_cases_without_changing_numbers_are_supported():
+    assert len(CASES) >= 31
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if name != SLOW])
+def test_plans_are_valid_and_statuses_right(name):
+    case = CASES[name]
+    with OneshotPlanner(name="tailor") as planner:
+        result = planner.solve(case.problem, timeout=20)
+    if not case.solvable:
+        assert result.status is Status.UNSOLVABLE_PROVEN
+        assert result.plan is None
+        return
+    assert result.status is Status.SOLVED_SATISFICING
+    assert their_verdicts(case.problem, result.plan) == {ValidationResultStatus.VALID}
+    with PlanValidator(name="tailor") as validator:
+        assert validator.validate(case.problem, result.plan).status is ValidationResultStatus.VALID
+
+
+@pytest.mark.parametrize(
+    ("name", "plan", "status"),
+    [(name, plan, ValidationResultStatus.VALID) for name, case in CASES.items() for plan in case.valid_plans]
+    + [(name, plan, ValidationResultStatus.INVALID) for name, case in CASES.items() for plan in case.invalid_plans],
+)
+def test_verdicts_on_given_plans(name, plan, status):
+    with PlanValidator(name="tailor") as validator:
+        assert validator.validate(CASES[name].problem, plan).status is status
+
+
+def test_ours_is_the_validator_of_partial_order_plans():
+    problem = CASES["robot_loader"].problem
+    with OneshotPlanner(name="tailor") as planner:
+        plan = planner.solve(problem).plan
+    with PlanValidator(problem_kind=problem.kind, plan_kind=PlanKind.PARTIAL_ORDER_PLAN) as validator:
+        assert validator.name == "tailor"
+        assert validator.validate(problem, plan).status is ValidationResultStatus.VALID
+        unordered = PartialOrderPlan({action: [] for action in plan.get_adjacency_list})
+        found = validator.validate(problem, unordered)
+    assert found.status is ValidationResultStatus.INVALID
+    assert "may" in found.log_messages[0].message
+
+
+def test_anytime_plans_become_cheaper_until_the_cheapest_is_proven():
+    problem = two_ways()
+    with AnytimePlanner(name="tailor") as planner:
+        results = list(planner.get_solutions(problem, timeout=20))
+    costs = problem.quality_metrics[0].costs
+    totals = [sum(costs[a.action].constant_value() for a in result.plan.get_adjacency_list) for result in results]
+    assert totals[-1] == 3
+    assert totals == sorted(totals, reverse=True)
+    assert [result.status for result in results[:-1]] == [Status.INTERMEDIATE] * (len(results) - 1)
+    assert results[-1].status is Status.SOLVED_OPTIMALLY
+
+
+def two_ways():
+    """One step of cost 10, or three of cost 1."""
+    problem = Problem("two ways")
+    facts = [Fluent(f"f{n}", BoolType()) for n in range(3)]
+    for fact in facts:
+        problem.add_fluent(fact, default_initial_value=False)
+    costs = {}
+    for n, fact in enumerate(facts):
+        action = InstantaneousAction(f"Walk {n}")  # renamed in PDDL
+        if n:
+            action.add_precondition(facts[n - 1])
+        action.add_effect(fact, True)
+        costs[action] = 1
+        problem.add_action(action)
+    jump = InstantaneousAction("jump")
+    jump.add_effect(facts[-1], True)
+    problem.add_action(jump)
+    problem.add_quality_metric(MinimizeActionCosts({**costs, jump: 10}))
+    problem.add_goal(facts[-1])
+    return problem
+
+
+def test_limits_are_timeouts_and_not_proofs():
+    with OneshotPlanner(name="tailor") as planner:
+        assert planner.solve(CASES[SLOW].problem, timeout=0.2).status is Status.TIMEOUT
+    with OneshotPlanner(name="tailor", params={"node_limit": 50, "engine": "pocl"}) as planner:
+        assert planner.solve(CASES[SLOW].problem).status is Status.UNSOLVABLE_INCOMPLETELY
+
+
+def test_no_schedule_in_whole_ticks_is_no_proof():
+    problem = Problem("never")
+    done, key = Fluent("done", BoolType()), Fluent("key", BoolType())
+    for fluent in (done, key):
+        problem.add_fluent(fluent, default_initial_value=False)
+    action = DurativeAction("act")
+    action.set_fixed_duration(2)
+    action.add_condition(EndTiming(), key)
+    action.add_effect(EndTiming(), done, True)
+    problem.add_action(action)
+    problem.add_goal(done)
+    with OneshotPlanner(name="tailor") as planner:
+        assert planner.solve(problem).status is Status.UNSOLVABLE_INCOMPLETELY
+
+
+def test_the_epsilon_of_the_problem_is_kept():
+    problem = CASES["matchcellar"].problem.clone()
+    problem.epsilon = 0.5
+    with OneshotPlanner(name="tailor") as planner:
+        plan = planner.solve(problem, timeout=20).plan
+    assert plan.extract_epsilon(problem) >= problem.epsilon
+
+
+def test_orderings_that_others_imply_are_left_out():
+    assert reduced([(1, 2), (2, 3), (1, 3), (1, 4)]) == [(1, 2), (1, 4), (2, 3)]

@@ -1,0 +1,177 @@
+"""The engine: plans once, ever better ones, and validation of plans."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+from warnings import warn
+
+from unified_planning.engines import Engine
+from unified_planning.engines.mixins import AnytimePlannerMixin, OneshotPlannerMixin, PlanValidatorMixin
+from unified_planning.engines.mixins.anytime_planner import AnytimeGuarantee
+from unified_planning.engines.results import (
+    LogLevel,
+    LogMessage,
+    PlanGenerationResult,
+    PlanGenerationResultStatus,
+    ValidationResult,
+    ValidationResultStatus,
+)
+from unified_planning.exceptions import UPException
+from unified_planning.model import ProblemKind
+from unified_planning.plans import PlanKind
+
+from tailor.executive.planning import (
+    AnytimeSearch,
+    Result,
+    Search,
+    Settings,
+    UndecidedError,
+    Unsupported,
+    validate,
+    validate_every_order,
+)
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.up_engine import NAME
+from tailor.tools.up_engine.supported import supported_kind
+from tailor.tools.up_engine.translation import Translation
+
+Status = PlanGenerationResultStatus
+GROUND_LIMIT = 300_000  # steps: two seconds of CPU, as on the command line
+PLANS = (PlanKind.PARTIAL_ORDER_PLAN, PlanKind.SEQUENTIAL_PLAN, PlanKind.TIME_TRIGGERED_PLAN)
+
+
+class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidatorMixin):  # type: ignore[misc]
+    """Partial-order plans, or time-triggered ones for problems with time.
+
+    Args:
+      memory_mb: Limit of the memory that a search takes.
+      **settings: Fields of `Settings`, e.g. engine="pocl", node_limit=10_000, flaw_orders=(FlawOrder("LCFR"),).
+    """
+
+    def __init__(self, memory_mb: float = 512.0, **settings: Any) -> None:
+        Engine.__init__(self)
+        OneshotPlannerMixin.__init__(self)
+        AnytimePlannerMixin.__init__(self)
+        self._memory_mb = memory_mb
+        self._settings = {"ground_limit": GROUND_LIMIT, "node_limit": 1_000_000, **settings}
+
+    @property
+    def name(self) -> str:
+        """See `Engine`."""
+        return NAME
+
+    @staticmethod
+    def supported_kind() -> ProblemKind:
+        """See `Engine`."""
+        return supported_kind()
+
+    @staticmethod
+    def supports(problem_kind: ProblemKind) -> bool:
+        """See `Engine`."""
+        return bool(problem_kind <= supported_kind())
+
+    @staticmethod
+    def ensures(anytime_guarantee: AnytimeGuarantee) -> bool:
+        """Each plan is better than the one before."""
+        return bool(anytime_guarantee is AnytimeGuarantee.INCREASING_QUALITY)
+
+    @staticmethod
+    def supports_plan(plan_kind: PlanKind) -> bool:
+        """See `PlanValidatorMixin`."""
+        return plan_kind in PLANS
+
+    # --- planning --------------------------------------------------------------------------------
+    def _solve(
+        self,
+        problem: Any,
+        heuristic: Callable[[Any], float | None] | None = None,
+        timeout: float | None = None,
+        output_stream: Any = None,
+    ) -> PlanGenerationResult:
+        _warn_of_unused(heuristic=heuristic, output_stream=output_stream)
+        try:
+            task = Translation.of(problem)
+        except UsageError as reason:
+            return self._refused(reason)
+        limits = self._limits(timeout)
+        search = Search(task.domain, task.problem, self._settings_of(task))
+        result = search.advance(limits) or Result("limit", None, limits.reason, *search.counts)
+        return self._result(task, result, _status(result, task, limits))
+
+    def _get_solutions(
+        self, problem: Any, timeout: float | None = None, output_stream: Any = None
+    ) -> Iterator[PlanGenerationResult]:
+        _warn_of_unused(output_stream=output_stream)
+        try:
+            task = Translation.of(problem)
+        except UsageError as reason:
+            yield self._refused(reason)
+            return
+        limits = self._limits(timeout)
+        search = AnytimeSearch(task.domain, task.problem, self._settings_of(task))
+        while not search.ended and not limits.reason:
+            result = search.advance(limits)
+            if result is not None and result.plan is not None:
+                yield self._result(task, result, Status.INTERMEDIATE)
+        best = search.best or Result("limit", None, limits.reason, *search.counts)
+        optimal = best.plan is not None and search.ended == "proven" and problem.quality_metrics and not task.timed
+        yield self._result(task, best, Status.SOLVED_OPTIMALLY if optimal else _status(best, task, limits))
+
+    def _settings_of(self, task: Translation) -> Settings:
+        return Settings(**{"tolerance_s": task.tick_s, **self._settings})
+
+    def _limits(self, timeout: float | None) -> Limits:
+        return Limits(math.inf if timeout is None else timeout, self._memory_mb)
+
+    def _result(self, task: Translation, result: Result, status: PlanGenerationResultStatus) -> PlanGenerationResult:
+        plan = None if result.plan is None else task.to_unified(result.plan)
+        metrics = {"plans_generated": str(result.generated), "plans_visited": str(result.visited)}
+        return PlanGenerationResult(status, plan, self.name, metrics, _log(result.reason))
+
+    def _refused(self, reason: UsageError) -> PlanGenerationResult:
+        """What cannot be translated: a feature that we lack, or a problem beyond the limits of the parser."""
+        status = Status.UNSUPPORTED_PROBLEM if isinstance(reason, Unsupported) else Status.UNSOLVABLE_INCOMPLETELY
+        return PlanGenerationResult(status, None, self.name, None, _log(str(reason)))
+
+    # --- validation ------------------------------------------------------------------------------
+    def _validate(self, problem: Any, plan: Any) -> ValidationResult:
+        try:
+            task = Translation.of(problem)
+            ours = task.from_unified(plan)
+            if task.timed and plan.kind is not PlanKind.TIME_TRIGGERED_PLAN:
+                raise UndecidedError("a problem with time is validated by its schedule: a time-triggered plan")
+            check = validate if task.timed else validate_every_order
+            fault = check(ours, task.domain, task.problem)
+        except (UndecidedError, UsageError) as reason:
+            return ValidationResult(ValidationResultStatus.UNKNOWN, self.name, _log(str(reason)))
+        except UPException as reason:
+            fault = str(reason)
+        status = ValidationResultStatus.INVALID if fault else ValidationResultStatus.VALID
+        return ValidationResult(status, self.name, _log(fault))
+
+
+def _status(result: Result, task: Translation, limits: Limits) -> PlanGenerationResultStatus:
+    """unified-planning's status of a search that has ended.
+
+    Times are whole ticks, so with an unspecified epsilon the absence of a plan is no proof.
+    """
+    if result.plan is not None:
+        return Status.SOLVED_SATISFICING
+    if result.status == "unsolvable":
+        return Status.UNSOLVABLE_INCOMPLETELY if task.timed else Status.UNSOLVABLE_PROVEN
+    if "memory" in limits.reason:
+        return Status.MEMOUT
+    return Status.TIMEOUT if limits.reason else Status.UNSOLVABLE_INCOMPLETELY
+
+
+def _log(reason: str) -> list[LogMessage]:
+    return [LogMessage(LogLevel.INFO, reason)] if reason else []
+
+
+def _warn_of_unused(**arguments: Any) -> None:
+    for name, value in arguments.items():
+        if value is not None:
+            warn(f"{NAME} ignores {name}", stacklevel=4)

@@ -1,0 +1,118 @@
+"""Problems and plans of unified-planning as ours, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from unified_planning.exceptions import UPException
+from unified_planning.io import PDDLWriter
+from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, TimeTriggeredPlan
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning import Domain, Plan, Problem, Step, Unsupported, parse_domain, parse_problem
+
+DEFAULT_TICK_S = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Translation:
+    """A problem of unified-planning, its PDDL read by our parser, and the writer that keeps both kinds of names."""
+
+    original: Any
+    writer: PDDLWriter
+    domain: Domain
+    problem: Problem
+
+    @classmethod
+    def of(cls, original: Any) -> Translation:
+        """The translation of a problem.
+
+        Raises:
+          Unsupported: It has a feature that we or PDDL do not have.
+          UsageError: It is larger than our parser allows.
+        """
+        writer = PDDLWriter(original)
+        try:
+            texts = writer.get_domain(), writer.get_problem()
+        except (UPException, NotImplementedError) as error:
+            raise Unsupported(f"not expressible in PDDL: {error}") from None
+        domain = parse_domain(texts[0], "domain")
+        return cls(original, writer, domain, parse_problem(texts[1], domain, "problem"))
+
+    @property
+    def timed(self) -> bool:
+        """Whether plans have durations or depend on times."""
+        return self.domain.durative or bool(self.problem.timed)
+
+    @property
+    def tick_s(self) -> float:
+        """The least time between dependent events: the problem's epsilon, or our default."""
+        return float(self.original.epsilon) if self.original.epsilon else DEFAULT_TICK_S
+
+    # --- plans -----------------------------------------------------------------------------------
+    def to_unified(self, plan: Plan) -> Any:
+        """A partial-order plan without the orderings that others imply, or a time-triggered plan."""
+        instances = {step.id: self._instance(step.action) for step in plan.steps}
+        if not self.timed:
+            after: dict[Any, list[Any]] = {instance: [] for instance in instances.values()}
+            for i, j in reduced(plan.orderings):
+                after[instances[i]].append(instances[j])
+            return PartialOrderPlan(after, self.original.environment)
+        timed = [
+            (_fraction(step.start), instances[step.id], _fraction(step.duration) if self._lasts(step) else None)
+            for step in plan.steps
+        ]
+        return TimeTriggeredPlan(timed, self.original.environment)
+
+    def from_unified(self, plan: Any) -> Plan:
+        """A partial-order, sequential or time-triggered plan as ours, without causal links.
+
+        Raises:
+          UPException: It has an action or object that is not of the problem.
+        """
+        if plan.kind is PlanKind.TIME_TRIGGERED_PLAN:
+            steps = [
+                Step(n, self._fact(action), float(start), float(duration or 0))
+                for n, (start, action, duration) in enumerate(plan.timed_actions, 1)
+            ]
+            return self._plan(sorted(steps, key=lambda step: step.start), ())
+        if plan.kind is PlanKind.PARTIAL_ORDER_PLAN:
+            after = plan.get_adjacency_list
+            ids = {action: n for n, action in enumerate(after, 1)}
+            orderings = [(ids[first], ids[then]) for first, others in after.items() for then in others]
+            return self._plan((Step(n, self._fact(action), float(n)) for action, n in ids.items()), orderings)
+        steps = [Step(n, self._fact(action), float(n)) for n, action in enumerate(plan.actions, 1)]
+        return self._plan(steps, [(n, n + 1) for n in range(1, len(steps))])
+
+    def _plan(self, steps: Iterable[Step], orderings: Iterable[tuple[int, int]]) -> Plan:
+        problem = self.problem
+        return Plan(problem.name, problem.initial, tuple(steps), (), tuple(orderings), self.timed, (), self.tick_s)
+
+    def _instance(self, action: Fact) -> ActionInstance:
+        name, *labels = (self.writer.get_item_named(label) for label in action)
+        return ActionInstance(name, tuple(self.original.environment.expression_manager.ObjectExp(x) for x in labels))
+
+    def _fact(self, instance: Any) -> Fact:
+        items = [instance.action, *(parameter.object() for parameter in instance.actual_parameters)]
+        return tuple(self.writer.get_pddl_name(item) for item in items)
+
+    def _lasts(self, step: Step) -> bool:
+        return any(action.name == step.action[0] and action.duration is not None for action in self.domain.actions)
+
+
+def reduced(orderings: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The orderings of a transitive closure that no two others imply."""
+    pairs = set(orderings)
+    after: dict[int, set[int]] = {}
+    for i, j in pairs:
+        after.setdefault(i, set()).add(j)
+    none: set[int] = set()
+    return sorted((i, j) for i, j in pairs if not any(j in after.get(k, none) for k in after[i]))
+
+
+def _fraction(seconds: float) -> Fraction:
+    """The decimal number that a plan prints."""
+    return Fraction(repr(float(seconds)))
