@@ -99,6 +99,21 @@ class Session:
         )
         return Publisher(key, _Wire(declared), self.sender)
 
+    def plain_publisher(self, key: str, encoding: str) -> Publisher:
+        """Publisher of commands on a topic of a robot that knows nothing of us; drops rather than wait."""
+        declared = self._zenoh.declare_publisher(
+            key,
+            encoding=encoding,
+            priority=zenoh.Priority.REAL_TIME,
+            congestion_control=zenoh.CongestionControl.DROP,
+            express=True,
+        )
+        return Publisher(key, _Wire(declared), self.sender)
+
+    def plain_source(self, key: str) -> Source:
+        """Raw messages of one topic of such a robot; the newest few between two looks."""
+        return self._ring(key)
+
     def inbox(self, names: Sequence[str], robot: str, newest_only: bool = True) -> Inbox:
         """Subscribe to topics; a loop drains the inbox.
 

@@ -1,0 +1,119 @@
+"""A robot with plain topics, as Hardware: Twist or TwistStamped out, Odometry and a localiser's poses in.
+
+The robot knows nothing of Tailor: no arming, no numbers, no attachments. The driver around this class has them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+from tailor.runtime.bus.credentials import identity_in
+from tailor.runtime.bus.inbox import Source
+from tailor.runtime.bus.opening import open_client
+from tailor.runtime.clock import wall_ns
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message, Odometry, PoseEstimate
+from tailor.schemas.ros2.plain import frame_in, twist_bytes
+from tailor.schemas.typesystem import ros_type
+from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.plain_keys import address
+from tailor.simnodes.hardware.plain_settings import PlainSettings
+from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker
+
+WAIT_S, POLL_S = 0.05, 0.002
+TYPES = {"twist": "geometry_msgs/msg/Twist", "twist_stamped": "geometry_msgs/msg/TwistStamped"}
+
+
+class PlainRobot(Hardware):
+    """One robot; `open` connects to its bus."""
+
+    read_s = 0.5
+
+    def __init__(self, settings: PlainSettings, endpoint: str) -> None:
+        """`endpoint`: the bus of Tailor, for a robot without one of its own."""
+        self.robot = settings.robot  # type: ignore[misc]  # one of the instance: the class drives any robot
+        self.write_hz = settings.rate_hz
+        self._settings, self._endpoint = settings, settings.bus.connect or endpoint
+        self._stack = ExitStack()
+        self._tracker = PoseTracker(None, Drift())
+        self._stamps: dict[str, int] = {}
+        self._pose_due_ns = 0
+
+    def open(self) -> None:
+        """Connect and subscribe."""
+        settings, names = self._settings, self._settings.topics
+        self._stack = ExitStack()
+        key = settings.bus.key
+        session = self._stack.enter_context(
+            open_client(self._endpoint, role="driver", identity=identity_in(key) if key else None)
+        )
+        drift = Drift(settings.pose.drift_per_m, settings.pose.drift_per_rad)
+        start = settings.pose.start
+        self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift)
+        self._stamps, self._pose_due_ns = {}, 0
+        self._command = session.plain_publisher(*address(settings.bus, names.cmd_vel, TYPES[settings.command]))
+        self._sources: list[tuple[Source, type[Message], str]] = []
+        for name, kind, frame in (
+            (names.odom, Odometry, settings.frames.odom),
+            (names.pose, PoseEstimate, settings.frames.pose),
+        ):
+            if name:
+                source = session.plain_source(address(settings.bus, name, ros_type(kind))[0])
+                self._sources.append((source, kind, frame))
+
+    def read(self) -> dict[str, Message]:
+        """The newest odometry, and at its rate the pose that follows from it."""
+        until_s = time.monotonic() + WAIT_S
+        while time.monotonic() < until_s:
+            moved = [message for message in self._received() if isinstance(message, Odometry)]
+            if moved:
+                return {"odom": moved[-1], **self._pose(time.monotonic_ns())}
+            time.sleep(POLL_S)
+        return {}
+
+    def write(self, values: tuple[float, ...]) -> None:
+        """Publish the velocity."""
+        stamped = self._settings.command == "twist_stamped"
+        frame = self._settings.frames.cmd_vel
+        self._command.publish_encoded(twist_bytes(values[0], values[1], (wall_ns(), frame) if stamped else None))
+
+    def close(self) -> None:
+        """Disconnect; the driver has published zero before."""
+        self._stack.close()
+
+    def _received(self) -> Iterator[Message]:
+        """New messages, taken into account for the pose; a message repeated with the same stamp is none."""
+        for source, kind, frame in self._sources:
+            while (raw := source.receive()) is not None:
+                if isinstance(raw, Rejected) or not raw.is_put:
+                    continue
+                message = decode(kind, raw.payload)
+                if isinstance(message, Rejected):
+                    raise ValueError(f"{raw.key}: {message.reason}")
+                found = frame_in(raw.payload)
+                if frame and found != frame:
+                    raise ValueError(f"{raw.key}: its frame is '{found}', expected '{frame}' (see [frames])")
+                if self._is_new(raw.key, message):
+                    yield message
+
+    def _is_new(self, key: str, message: Message) -> bool:
+        stamp_ns: int = getattr(message, "stamp_ns", 0)
+        if stamp_ns and self._stamps.get(key) == stamp_ns:
+            return False
+        self._stamps[key] = stamp_ns
+        if isinstance(message, Odometry):
+            self._tracker.move(message)
+        elif isinstance(message, PoseEstimate):
+            self._tracker.correct(message)
+        return True
+
+    def _pose(self, now_ns: int) -> dict[str, Message]:
+        pose = self._tracker.pose()
+        if pose is None or now_ns < self._pose_due_ns:
+            return {}
+        period_ns = round(1e9 / self._settings.pose.rate_hz)
+        self._pose_due_ns = max(self._pose_due_ns + period_ns, now_ns - period_ns)
+        return {"pose": pose}

@@ -1,0 +1,104 @@
+"""Description of a robot with plain topics, one TOML file: which topics, where, of which types. No code."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.settings import from_table
+
+MAX_RATE_HZ = 100.0  # of the driver's loop
+
+
+@dataclass(frozen=True, slots=True)
+class RobotBus:
+    """Where the robot's own topics are, and how their keys are made."""
+
+    connect: str = ""  # endpoint of the robot's router or bridge; empty: Tailor's own bus, which must be open
+    key: str = ""  # folder with a key for it, if its endpoint is tls/...
+    profile: Literal["plain", "rmw_zenoh"] = "plain"
+    domain_id: int = 0  # ROS_DOMAIN_ID, for rmw_zenoh
+
+
+@dataclass(frozen=True, slots=True)
+class TopicNames:
+    """Names of the robot's topics; an empty pose: there is no localiser."""
+
+    cmd_vel: str = "cmd_vel"
+    odom: str = "odom"
+    pose: str = "amcl_pose"
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Frames in the headers; those of received messages are checked, unless empty."""
+
+    cmd_vel: str = "base_link"
+    odom: str = "odom"
+    pose: str = "map"
+
+
+@dataclass(frozen=True, slots=True)
+class PoseSettings:
+    """How the pose in the map follows from localiser and odometry, see pose_tracking.py."""
+
+    start: tuple[float, ...] = ()  # x, y (m), phi (rad) when the driver opens; () waits for the localiser
+    rate_hz: float = 12.5
+    drift_per_m: float = 0.05
+    drift_per_rad: float = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class PlainSettings:
+    """Content of the file; its tables and keys are the fields."""
+
+    robot: str = ""
+    command: Literal["twist", "twist_stamped"] = "twist_stamped"
+    rate_hz: float = 20.0  # of the command
+    bus: RobotBus = field(default_factory=RobotBus)
+    topics: TopicNames = field(default_factory=TopicNames)
+    frames: Frames = field(default_factory=Frames)
+    pose: PoseSettings = field(default_factory=PoseSettings)
+
+
+def read_plain_settings(file: str) -> PlainSettings:
+    """The settings in a file.
+
+    Raises:
+      UsageError: The file is missing or no TOML, or has wrong keys or values; the message names file and key.
+    """
+    try:
+        table = tomllib.loads(Path(file).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{file}: {error.strerror}, expected the description of a robot") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{file}: not TOML: {error}") from error
+    settings = from_table(PlainSettings, table, file)
+    faults = list(_faults(settings))
+    if faults:
+        raise UsageError(f"{file}: {'; '.join(faults)}")
+    return settings
+
+
+def _faults(settings: PlainSettings) -> list[str]:
+    pose, topics = settings.pose, settings.topics
+    faults = [] if settings.robot else ["robot is missing, expected the name of the robot in its package"]
+    for name, value in (("rate_hz", settings.rate_hz), ("pose.rate_hz", pose.rate_hz)):
+        if not 0.0 < value <= MAX_RATE_HZ:
+            faults.append(f"{name} is {value:g}, expected more than 0 and at most {MAX_RATE_HZ:g}")
+    for name, value in (("pose.drift_per_m", pose.drift_per_m), ("pose.drift_per_rad", pose.drift_per_rad)):
+        if not 0.0 <= value <= 1.0:
+            faults.append(f"{name} is {value:g}, expected 0 to 1")
+    if pose.start and (len(pose.start) != 3 or not all(map(math.isfinite, pose.start))):
+        faults.append("pose.start: expected x, y and phi")
+    if not topics.pose and not pose.start:
+        faults.append("topics.pose is empty: expected a localiser, or pose.start")
+    if not topics.cmd_vel or not topics.odom:
+        faults.append("topics.cmd_vel and topics.odom: expected a name each")
+    if settings.bus.domain_id < 0:
+        faults.append(f"bus.domain_id is {settings.bus.domain_id}, expected at least 0")
+    return faults

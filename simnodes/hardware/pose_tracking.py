@@ -1,0 +1,90 @@
+"""The pose in the map from a localiser that speaks seldom, or not at all, carried on by odometry. Pure.
+
+A localiser such as AMCL publishes after each update only, thus never while the robot stands. Each of its poses gives
+the transform from the odometry's frame to the map; odometry says how far the robot has come since. Units: m, rad.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from tailor.schemas.messages import Odometry, PoseEstimate
+
+HISTORY = 256  # odometry that is kept for a late localiser: 5 s at 50 Hz
+Planar = tuple[float, float, float]
+
+
+def composed(first: Planar, second: Planar) -> Planar:
+    """The pose `second`, given relative to `first`, in the frame of `first`."""
+    (x, y, phi), (dx, dy, dphi) = first, second
+    cos, sin = math.cos(phi), math.sin(phi)
+    return x + cos * dx - sin * dy, y + sin * dx + cos * dy, math.remainder(phi + dphi, math.tau)
+
+
+def inverse(pose: Planar) -> Planar:
+    """The frame of a pose, seen from the pose."""
+    x, y, phi = pose
+    cos, sin = math.cos(phi), math.sin(phi)
+    return -cos * x - sin * y, sin * x - cos * y, -phi
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """Errors of the odometry that add up: standard deviations in m per m driven, and in rad per rad turned."""
+
+    per_m: float = 0.05
+    per_rad: float = 0.05
+
+
+class PoseTracker:
+    """Newest pose in the map.
+
+    Attributes:
+      known: Whether there is a pose: a start was given, or the localiser has spoken.
+    """
+
+    def __init__(self, start: Planar | None, drift: Drift) -> None:
+        """`start`: pose in the map when odometry begins, taken as exact; None: wait for the localiser."""
+        self.known = False
+        self._start, self._drift = start, drift
+        self._history: deque[tuple[int, Planar, float, float]] = deque(maxlen=HISTORY)
+        self._distance_m, self._turned_rad = 0.0, 0.0
+        self._to_map: Planar = (0.0, 0.0, 0.0)  # odometry's frame in the map
+        self._variances = (0.0, 0.0, 0.0)  # at the localiser's newest pose
+        self._since = (0.0, 0.0)  # distance and turn at that pose
+
+    def move(self, odometry: Odometry) -> None:
+        """Take odometry into account."""
+        pose = (odometry.x, odometry.y, odometry.phi)
+        if self._history:
+            last = self._history[-1][1]
+            self._distance_m += math.dist(last[:2], pose[:2])
+            self._turned_rad += abs(math.remainder(pose[2] - last[2], math.tau))
+        elif self._start is not None and not self.known:
+            self._to_map, self.known = composed(self._start, inverse(pose)), True
+        self._history.append((odometry.stamp_ns, pose, self._distance_m, self._turned_rad))
+
+    def correct(self, seen: PoseEstimate) -> None:
+        """Take a pose of the localiser, valid at its stamp; without odometry it is ignored."""
+        if not self._history:
+            return
+        near = (
+            min(self._history, key=lambda entry: abs(entry[0] - seen.stamp_ns)) if seen.stamp_ns else self._history[-1]
+        )
+        _, pose, distance_m, turned_rad = near
+        self._to_map = composed((seen.x, seen.y, seen.phi), inverse(pose))
+        self._variances, self._since = (seen.var_x, seen.var_y, seen.var_phi), (distance_m, turned_rad)
+        self.known = True
+
+    def pose(self) -> PoseEstimate | None:
+        """The pose at the newest odometry; None if it is not known."""
+        if not self.known or not self._history:
+            return None
+        stamp_ns, odometry, distance_m, turned_rad = self._history[-1]
+        x, y, phi = composed(self._to_map, odometry)
+        moved = ((distance_m - self._since[0]) * self._drift.per_m) ** 2
+        turned = ((turned_rad - self._since[1]) * self._drift.per_rad) ** 2
+        var_x, var_y, var_phi = self._variances
+        return PoseEstimate(stamp_ns, x, y, phi, var_x + moved, var_y + moved, var_phi + turned)

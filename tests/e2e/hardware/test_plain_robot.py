@@ -1,0 +1,101 @@
+"""A robot that knows nothing of Tailor is driven by a TOML file alone, and stops whoever dies."""
+
+import json
+import os
+import signal
+import time
+from contextlib import contextmanager
+
+import pytest
+
+from tailor.executive import domains
+from tests.support.bus_system import bus_system
+from tests.support.patience import wait_until
+from tests.support.robots.driving import achieved, arm, executive_on, newest, ready
+
+GUARD_S, BASE_S, RAMP_S = 0.3, 0.5, 0.9 / 0.65  # the guard's timeout, the base's own, and the time to come to rest
+BUSY_S = 1.0  # of a machine that runs other tests
+
+
+@contextmanager
+def driven(tmp_path, domain="soccer", scenario="waypoints", settings="", robot_name="agilo", **robot):
+    """A stand-in robot on a bus of its own behind `tailor driver`: yields (session, endpoint, start, trace)."""
+    start_pose = domains.seeded_scenario(domain, scenario, 0)[1]
+    pose = [start_pose[name] for name in ("x", "y", "phi")]
+    trace, file = tmp_path / "trace", tmp_path / "robot.toml"
+    with bus_system() as (session, endpoint, start), bus_system() as (_, robots, start_robot):
+        options = {"endpoint": robots, "trace": str(trace), "start": pose, **robot}
+        base = start_robot("tests.support.stand_ins.plain_robot", json.dumps(options))
+        command = options.get("command", "twist")
+        file.write_text(
+            f'robot = "{robot_name}"\ncommand = "{command}"\n{settings}\n[bus]\nconnect = "{robots}"\n'
+            f'[topics]\npose = "{options.get("pose", "amcl_pose")}"\n[pose]\nstart = {pose}\n'
+        )
+        driver = start("tailor.tools.main", "driver", file, "--connect", endpoint)
+        yield session, endpoint, start, trace, driver, base
+
+
+def rows(trace):
+    """[(monotonic s, v, omega, wanted v)]"""
+    lines = [line.split() for line in trace.read_text().splitlines()]
+    return [(int(row[0]) / 1e9, *map(float, row[1:])) for row in lines if len(row) == 4]
+
+
+def moving(trace):
+    return lambda: trace.exists() and rows(trace) and rows(trace)[-1][1] > 0.2
+
+
+def at_rest(trace):
+    return lambda: rows(trace)[-1][1:3] == (0.0, 0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("command", "pose"), [("twist", "amcl_pose"), ("twist_stamped", "")])
+def test_a_plain_robot_drives_through_its_waypoints(tmp_path, command, pose):
+    with driven(tmp_path, command=command, pose=pose) as (session, endpoint, start, trace, *_):
+        ready(session, "agilo")
+        executive = executive_on(start, endpoint, "soccer", "waypoints")
+        arm(session, "agilo")
+        assert achieved(executive)
+        wait_until(at_rest(trace), "rest")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("dies", "limit_s"), [("executive", GUARD_S), ("driver", BASE_S), ("both", BASE_S)])
+def test_a_plain_robot_stops_whoever_is_killed(tmp_path, dies, limit_s):
+    with driven(tmp_path) as (session, endpoint, start, trace, driver, _):
+        ready(session, "agilo")
+        executive = executive_on(start, endpoint, "soccer", "waypoints")
+        arm(session, "agilo")
+        wait_until(moving(trace), "motion")
+        for process in {"executive": [executive], "driver": [driver], "both": [executive, driver]}[dies]:
+            os.kill(process.pid, signal.SIGKILL)
+        killed_s = time.monotonic()
+        wait_until(at_rest(trace), "rest")
+        stopped_s = next(row[0] for row in rows(trace)[::-1] if row[3] != 0.0)  # last time that it was to move
+        assert stopped_s - killed_s < limit_s + BUSY_S
+        assert rows(trace)[-1][0] - killed_s < limit_s + RAMP_S + BUSY_S
+        if dies == "executive":
+            state = newest(session.inbox(["driver"], "agilo")) or ready(session, "agilo")
+            assert (state.mode, state.reason) == ("stopped", "no valid command in time")
+
+
+@pytest.mark.slow
+def test_a_robot_whose_odometry_repeats_itself_is_stopped(tmp_path):
+    with driven(tmp_path) as (session, endpoint, start, trace, _, base):
+        states = session.inbox(["driver"], "agilo")
+        ready(session, "agilo")
+        executive_on(start, endpoint, "soccer", "waypoints")
+        arm(session, "agilo")
+        wait_until(moving(trace), "motion")
+        os.kill(base.pid, signal.SIGUSR1)
+        state = wait_until(lambda: newest(states, lambda m: m.mode == "stopped"), "stop")
+        assert (state.reason, state.detail.startswith("odom: silent for 0.5 s")) == ("driver fault", True)
+        wait_until(at_rest(trace), "rest")
+
+
+def test_a_wrong_frame_is_published_as_a_fault(tmp_path):
+    with driven(tmp_path, odom_frame="world") as (session, *_):
+        states = session.inbox(["driver"], "agilo")
+        state = wait_until(lambda: newest(states, lambda m: m.reason == "driver fault"), "fault")
+        assert "its frame is 'world', expected 'odom'" in state.detail

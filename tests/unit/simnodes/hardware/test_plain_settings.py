@@ -1,0 +1,66 @@
+"""The description of a robot with plain topics: what is wrong in it is one line, and what its keys become."""
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.plain import frame_in, twist_bytes
+from tailor.schemas.typesystem import from_bytes
+from tailor.simnodes.hardware.plain_keys import address
+from tailor.simnodes.hardware.plain_settings import RobotBus, read_plain_settings
+
+WRONG = {
+    "": "robot is missing",
+    'robot = "r"\nrate_hz = 500': "rate_hz is 500, expected more than 0 and at most 100",
+    'robot = "r"\ncommand = "joy"': "'command' is 'joy', expected one of: twist, twist_stamped",
+    'robot = "r"\n[topic]\nodom = "o"': "unknown key 'topic'",
+    'robot = "r"\n[topics]\npose = ""': "expected a localiser, or pose.start",
+    'robot = "r"\n[topics]\nodom = ""': "expected a name each",
+    'robot = "r"\n[pose]\nstart = [1.0]': "expected x, y and phi",
+    'robot = "r"\n[pose]\ndrift_per_m = -1.0': "pose.drift_per_m is -1, expected 0 to 1",
+    'robot = "r"\n[bus]\nprofile = "dds"': "expected one of: plain, rmw_zenoh",
+    "robot = ": "not TOML",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_description_is_refused_in_one_line_that_names_file_and_key(tmp_path, text):
+    file = tmp_path / "robot.toml"
+    file.write_text(text)
+    with pytest.raises(UsageError) as refused:
+        read_plain_settings(str(file))
+    assert str(refused.value).startswith(f"{file}: ")
+    assert WRONG[text] in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_turtlebot_needs_three_lines(tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text('robot = "courier"\n[bus]\nconnect = "tcp/192.168.0.7:7447"\n')
+    settings = read_plain_settings(str(file))
+    assert (settings.command, settings.topics.cmd_vel, settings.topics.pose) == (
+        "twist_stamped",
+        "cmd_vel",
+        "amcl_pose",
+    )
+
+
+def test_keys_of_both_profiles():
+    assert address(RobotBus(), "/base/cmd_vel", "geometry_msgs/msg/Twist") == (
+        "base/cmd_vel",
+        "application/cdr;geometry_msgs/msg/Twist",
+    )
+    key, encoding = address(RobotBus(profile="rmw_zenoh", domain_id=3), "/odom", "nav_msgs/msg/Odometry")
+    assert key.startswith("3/odom/nav_msgs::msg::dds_::Odometry_/RIHS01_3cc97dc7")
+    assert encoding == "application/cdr"
+
+
+def test_bytes_of_a_twist_are_those_of_ros():
+    plain = twist_bytes(0.5, -0.25)
+    assert len(plain) == 4 + 48
+    value, left = from_bytes(plain, "geometry_msgs/msg/Twist")
+    assert (value.linear.x, value.angular.z, left) == (0.5, -0.25, 0)
+    stamped = twist_bytes(0.5, -0.25, (1_500_000_000, "base_link"))
+    value, left = from_bytes(stamped, "geometry_msgs/msg/TwistStamped")
+    assert (value.twist.linear.x, value.twist.angular.z, value.header.stamp.sec, left) == (0.5, -0.25, 1, 0)
+    assert frame_in(stamped) == "base_link"
+    assert frame_in(b"\0\1\0\0") == ""

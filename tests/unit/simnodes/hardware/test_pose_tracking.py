@@ -1,0 +1,68 @@
+"""A pose in the map from odometry and a localiser that speaks seldom."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker, composed, inverse
+
+POSES = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
+
+
+def odometry(stamp_s, x, y, phi):
+    return Odometry(round(stamp_s * 1e9), x, y, phi, 0.0, 0.0)
+
+
+def seen(stamp_s, x, y, phi):
+    return PoseEstimate(round(stamp_s * 1e9), x, y, phi, 0.01, 0.02, 0.03)
+
+
+def near(pose, expected):
+    assert (pose.x, pose.y, math.cos(pose.phi), math.sin(pose.phi)) == pytest.approx(
+        (*expected[:2], math.cos(expected[2]), math.sin(expected[2])), abs=1e-6
+    )
+
+
+@given(POSES, POSES)
+def test_inverse_undoes_a_pose(pose, other):
+    x, y, phi = composed(inverse(pose), composed(pose, other))
+    assert (x, y, math.cos(phi)) == pytest.approx((*other[:2], math.cos(other[2])), abs=1e-6)
+
+
+@given(POSES, POSES, POSES)
+def test_a_start_is_carried_on_by_odometry(start, first, step):
+    tracker = PoseTracker(start, Drift())
+    tracker.move(odometry(1, *first))
+    near(tracker.pose(), start)
+    tracker.move(odometry(2, *composed(first, step)))
+    near(tracker.pose(), composed(start, step))
+
+
+@given(POSES, POSES, POSES)
+def test_a_late_pose_of_the_localiser_holds_for_its_stamp(place, first, step):
+    tracker = PoseTracker(None, Drift())
+    tracker.move(odometry(1, *first))
+    tracker.move(odometry(2, *composed(first, step)))
+    assert tracker.pose() is None
+    tracker.correct(seen(1.1, *place))
+    near(tracker.pose(), composed(place, step))
+
+
+def test_doubt_grows_with_the_way_since_the_localiser_spoke_and_not_with_time():
+    tracker = PoseTracker(None, Drift(0.1, 0.2))
+    tracker.move(odometry(1, 0.0, 0.0, 0.0))
+    tracker.correct(seen(1, 5.0, 5.0, 0.0))
+    tracker.move(odometry(90, 0.0, 0.0, 0.0))
+    assert (tracker.pose().var_x, tracker.pose().var_y, tracker.pose().var_phi) == (0.01, 0.02, 0.03)
+    tracker.move(odometry(91, 2.0, 0.0, 0.5))
+    expected = (0.01 + 0.2**2, 0.02 + 0.2**2, 0.03 + 0.1**2)
+    assert (tracker.pose().var_x, tracker.pose().var_y, tracker.pose().var_phi) == pytest.approx(expected)
+
+
+def test_a_localiser_without_odometry_gives_no_pose():
+    tracker = PoseTracker(None, Drift())
+    tracker.correct(seen(1, 5.0, 5.0, 0.0))
+    assert tracker.pose() is None
