@@ -1,22 +1,33 @@
 # The project's commands. Each sets everything up first.
 PYTHON ?= python3
 BIN := .venv/bin
+OLD := import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")
 
 .PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models ros2 lint types bench clean
 
 setup: .venv/.installed
 
 .venv/.installed: pyproject.toml constraints.txt
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")'
+	@$(PYTHON) -c '$(OLD)'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
 	@$(BIN)/python -m compileall -q executive models robots runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
 	@touch $@
 
-demo: setup
+# A demonstration needs the simulator and plots only; where everything is set up, it takes that.
+DEMO := $(if $(wildcard .venv/.installed),.venv/.installed,.venv/.demo)
+
+.venv/.demo: pyproject.toml constraints.txt
+	@$(PYTHON) -c '$(OLD)'
+	@echo 'Installing Tailor with its simulator into .venv: about 450 MB, one to three minutes, only once.'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --disable-pip-version-check -c constraints.txt -e '.[sim,plots]'
+	@touch $@
+
+demo: $(DEMO)
 	$(BIN)/tailor demo
 
-demo-arm: setup
+demo-arm: $(DEMO)
 	$(BIN)/tailor letters
 
 test: setup

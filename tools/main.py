@@ -13,6 +13,7 @@ from typing import NoReturn
 from tailor import __version__
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.extras import NEEDS, advice, extra_of, require
 
 # command -> (module, one line of help); each module has configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -85,8 +86,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         finally:
             if sys.stdout:
                 sys.stdout.flush()  # here, where a closed pipe is handled
-    except UsageError as error:
-        print(f"{plain(name)}: {plain(str(error))}", file=sys.stderr)
+    except (UsageError, ModuleNotFoundError) as error:
+        extra = extra_of(error) or extra_of(error.__cause__)
+        if not extra and isinstance(error, ModuleNotFoundError):
+            raise
+        print(f"{plain(name)}: {plain(advice([extra]) if extra else str(error))}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
@@ -117,7 +121,9 @@ def _call(name: str, rest: Sequence[str]) -> int:
     module = importlib.import_module(COMMANDS[name][0])
     parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
-    return int(module.run(parser.parse_args(rest)))
+    parsed = parser.parse_args(rest)
+    require(*NEEDS.get(name, ()))
+    return int(module.run(parsed))
 
 
 class _Parser(argparse.ArgumentParser):

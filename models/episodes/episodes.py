@@ -12,16 +12,18 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
 from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
 
 Array = NDArray[np.float64]
 SHORT_EPISODES = 1000  # of a single tick, in one row group
@@ -65,6 +67,8 @@ def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) ->
       episodes: One row group each; those of a single tick share one.
       names: Names of the arguments, k.
     """
+    import pyarrow as pa  # here, so that commands start without it
+
     temporary = path.with_suffix(f".{os.getpid()}.tmp")
     writer, tables = None, []
     try:
@@ -85,10 +89,14 @@ def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) ->
 
 
 def _writer(path: Path, table: pa.Table) -> pq.ParquetWriter:
+    import pyarrow.parquet as pq
+
     return pq.ParquetWriter(path, table.schema, compression="zstd", write_page_checksum=True)
 
 
 def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
+    import pyarrow as pa
+
     count = len(episode.ticks)
     columns: dict[str, Any] = {
         "episode": np.full(count, episode.number, np.int32),
@@ -144,6 +152,9 @@ def _read_part(path: Path, names: Sequence[str]) -> pa.Table:
     Raises:
       UsageError: It cannot be read, is damaged, lacks a column, or holds a value that is not a finite number.
     """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
         table = pq.read_table(path, page_checksum_verification=True)
     except (pa.ArrowException, OSError) as error:

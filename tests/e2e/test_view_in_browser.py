@@ -16,6 +16,7 @@ from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
@@ -95,6 +96,30 @@ def written(path: Path, rows: list[Event]) -> str:
     return path.as_uri()
 
 
+FRAMES_AT = """[...document.querySelectorAll('iframe')]
+  .map((frame) => Number(frame.contentDocument.documentElement.dataset.at))"""
+
+
+def test_runs_side_by_side_move_in_step(browser, tmp_path):
+    """Time counts from each run's first action, wherever it starts in its recording."""
+    runs = {name: rows_of(synthetic_run.soccer_run(), RunTimeline()) for name in ("greedy", "refined")}
+    later_s = 2.0
+    runs["refined"] = [Event(row.at_s + later_s, row.kind, row.fields) for row in runs["refined"]]
+    (tmp_path / "runs.html").write_text(side_by_side("runs", "9 % less", runs))
+    browser.open((tmp_path / "runs.html").as_uri())
+    browser.wait(f"{AT} === 0")
+    browser.wait(f"{FRAMES_AT}.every((at) => at > 0)")
+    first, second = browser.value(FRAMES_AT)
+    assert second == pytest.approx(first + later_s)
+    browser.press("ArrowRight", shift=True)
+    browser.wait(f"{FRAMES_AT}[0] > {first} + 0.9")
+    assert browser.value(FRAMES_AT) == pytest.approx([first + 1, second + 1])
+    inside = "document.querySelectorAll('iframe')[1].contentDocument"
+    browser.value(f"{inside}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'Home'}}))")
+    browser.wait(f"{AT} < 0.01")
+    assert browser.errors == []
+
+
 def count(browser: Browser, selector: str) -> int:
     return browser.value(f"document.querySelectorAll({selector!r}).length")
 
@@ -164,7 +189,7 @@ def test_keys_move_play_and_jump(browser: Browser, soccer: str) -> None:
     browser.press("ArrowLeft")
     assert at(browser) == pytest.approx(5.0)
     browser.press("Home")
-    assert at(browser) == 0
+    browser.wait(f"{AT} === 0")
     browser.press("]")
     first = at(browser)
     assert first == pytest.approx(0.2), "the plan was found then"

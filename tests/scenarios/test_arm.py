@@ -13,7 +13,8 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.runtime import load_robot
 from tailor.tools.lockstep.samplers.arm import ArmSampler
 from tailor.tools.writing.measures import waypoint_errors_rad
-from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_mode import WritingMode
+from tailor.tools.writing.writing_run import RecordedBody, write
 
 MODELS = Models(*load_robot("powercube"))
 BODY = RecordedBody()

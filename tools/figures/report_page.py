@@ -7,8 +7,6 @@ import html
 from collections.abc import Sequence
 from pathlib import Path
 
-from tailor.tools.figures.track import Track
-
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
 figure { margin: 1rem 0 } figcaption { color: #555 } img { max-width: 100% }
@@ -37,31 +35,3 @@ def page(title: str, body: Sequence[str]) -> str:
     head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{STYLE}</style>'
     content = f"<h1>{html.escape(title)}</h1>{''.join(body)}"
     return f"<!doctype html><html lang=en><head>{head}</head><body>{content}</body></html>\n"
-
-
-def action_rows(track: Track) -> list[list[str]]:
-    """One row an action: name, how it ended, predicted and actual duration."""
-    return [
-        [
-            a.action,
-            a.outcome,
-            f"{a.predicted_s:.2f} s",
-            f"{a.actual_s:.2f} s",
-            f"{a.actual_s - a.predicted_s:+.2f} s" + (f", {a.detail}" if a.outcome == "done" and a.detail else ""),
-        ]
-        for a in track.finished
-    ]
-
-
-ACTION_HEAD = ["action", "outcome", "predicted", "actual", "difference"]
-
-
-def write_paths_page(tracks: Sequence[Track], picture: Path, path: Path) -> None:
-    """The page beside the demo's picture."""
-    body = [
-        "<p>Lines stand across the robot's heading, ten a second; their length is its speed. "
-        "A full disc is the ball at the start, a star the target, a cross a subgoal that was free to choose.</p>",
-        image(picture, "paths of the robot"),
-        *(table(f"{t.title}: {t.actual_s:.2f} s, {t.result}", ACTION_HEAD, action_rows(t)) for t in tracks),
-    ]
-    path.write_text(page("Tailor: the same plan, executed twice", body))

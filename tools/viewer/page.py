@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from importlib import resources
+from typing import Any
 
 from tailor.tools.viewer.timeline import Event
 
-STYLES = ("page.css", "controls.css", "drawing.css")
+STYLES = ("page.css", "controls.css", "drawing.css", "sidebyside.css")
 # In the order of their dependencies; together they form one module.
 SCRIPTS = (
     "elements.js",
@@ -29,11 +31,12 @@ SCRIPTS = (
     "heading.js",
     "stop.js",
     "player.js",
+    "framed.js",
     "main.js",
 )
 
 
-def page(title: str, events: Iterable[Event], live: bool = False, stop_token: str = "") -> str:
+def page(title: str, events: Iterable[Event], live: bool = False, stop_token: str = "", framed: bool = False) -> str:
     """The whole page.
 
     Args:
@@ -41,23 +44,35 @@ def page(title: str, events: Iterable[Event], live: bool = False, stop_token: st
       events: Events of the run; a live page receives its events from the server.
       live: Whether the page connects to the server.
       stop_token: Of the server's stop button; empty: the page has no button.
+      framed: Whether the page is a frame of another one, which has the player.
     """
-    embedded = json.dumps(
-        {"title": title, "live": live, "stop": stop_token, "rows": [event.json_value() for event in events]},
-        allow_nan=False,
-    )
+    rows = [event.json_value() for event in events]
+    data = {"title": title, "live": live, "stop": stop_token, "framed": framed, "rows": rows}
+    return assembled("page.html", STYLES, SCRIPTS, {"TITLE": html.escape(title)}, data)
+
+
+def assembled(
+    template: str, styles: Iterable[str], scripts: Iterable[str], texts: Mapping[str, str], data: Mapping[str, Any]
+) -> str:
+    """A template with everything that it needs in it.
+
+    Args:
+      template: Name of the asset with places @NAME@.
+      styles: Names of style sheets.
+      scripts: Names of scripts; together they form one module.
+      texts: Text, as HTML, for other places by name.
+      data: What the scripts read.
+    """
+    embedded = json.dumps(data, allow_nan=False)
     parts = {
-        "TITLE": html.escape(title),
-        "STYLE": "\n".join(_asset(name) for name in STYLES),
-        "SCRIPT": "\n".join(_asset(name) for name in SCRIPTS),
+        **texts,
+        "STYLE": "\n".join(map(_asset, styles)),
+        "SCRIPT": "\n".join(map(_asset, scripts)),
         # no string of a recording may end the script element
         "DATA": embedded.replace("<", "\\u003c"),
     }
-    text = _asset("page.html")
-    for name, part in parts.items():
-        before, _, after = text.partition(f"@{name}@")
-        text = before + part + after
-    return text
+    [first, *others] = re.split(r"@([A-Z]+)@", _asset(template))
+    return first + "".join(parts[name] + after for name, after in zip(others[::2], others[1::2], strict=True))
 
 
 def _asset(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,21 +11,12 @@ from tailor.executive import domains
 from tailor.executive.core.context import Settings, make_context
 from tailor.executive.domains.arm.letters import Point
 from tailor.executive.interfaces.models import Models
-from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
+from tailor.tools.writing.writing_mode import WritingMode
 from tailor.tools.writing.writing_track import WritingTrack, writing_track
-
-
-@dataclass(frozen=True, slots=True)
-class WritingMode:
-    """A mode of writing: with or without a stop at every waypoint, and settings of refinement."""
-
-    name: str
-    refinement: RefinementSettings
-    stops: bool = False
 
 
 class RecordedBody(PowerCubeBody):

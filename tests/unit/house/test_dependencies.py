@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tailor.tools.extras import EXTRAS, NEEDS
+from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import MODULES, ROOT, imported_names
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -27,9 +29,12 @@ def declared(requirements: list[str]) -> set[str]:
     return {canonical(re.split(r"[<>=!~ ;\[]", requirement)[0]) for requirement in requirements}
 
 
-RUN = declared(PROJECT["dependencies"])
-TEST = declared(PROJECT["optional-dependencies"]["test"])
-PLANNERS = declared(PROJECT["optional-dependencies"]["kairos"] + PROJECT["optional-dependencies"]["up"])
+EXTRA = PROJECT["optional-dependencies"]
+OF_USERS = sorted(EXTRA.keys() - {"all", "test"})  # extras that users install
+PLANNERS = declared(EXTRA["kairos"] + EXTRA["up"])
+RUN = declared(PROJECT["dependencies"] + [line for extra in OF_USERS for line in EXTRA[extra]]) - PLANNERS
+TEST = declared(EXTRA["test"]) - {"tailor"}
+UNBOUNDED = {"cryptography", "pyarrow", "rich"}  # major versions often, none broke us: docs/dependencies.md
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
 OF_EXAMPLES = {"rerun"}  # for those who have it; Tailor needs no viewer
 OPTIONAL = {"cma", "pyperplan", "pytest", *PLANNERS}  # benchmarks leave out what is not installed; pytest's plug-in
@@ -48,6 +53,24 @@ def imported_distributions(paths: list[str]) -> dict[str, str]:
 def test_every_package_that_the_code_imports_is_a_dependency() -> None:
     imported = imported_distributions(sorted(MODULES))
     assert {name: path for name, path in imported.items() if name not in RUN | OPTIONAL} == {}
+
+
+def test_every_dependency_has_an_upper_bound() -> None:
+    lines = [*PROJECT["dependencies"], *(line for extra in OF_USERS for line in EXTRA[extra])]
+    assert {canonical(re.split("[<>=]", line)[0]) for line in lines if "<" not in line} == UNBOUNDED
+
+
+def test_the_table_of_extras_names_what_they_bring() -> None:
+    for extra in OF_USERS:
+        brought = [{canonical(name) for name in DISTRIBUTIONS.get(m, [m])} for m in EXTRAS[extra]]
+        assert all(names & declared(EXTRA[extra]) for names in brought), extra
+        assert len(brought) == len(EXTRA[extra])
+    assert set(re.findall(r"[\w-]+", EXTRA["all"][0])) - {"tailor"} == set(OF_USERS)
+
+
+def test_commands_that_need_an_extra_exist() -> None:
+    assert NEEDS.keys() <= COMMANDS.keys()
+    assert {extra for extras in NEEDS.values() for extra in extras} <= EXTRAS.keys()
 
 
 def test_every_dependency_is_imported() -> None:

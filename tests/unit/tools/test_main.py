@@ -3,12 +3,15 @@
 import io
 import re
 import subprocess
+import sys
 from contextlib import redirect_stdout
 
 import pytest
 
 import tailor
+from tailor.tools.extras import EXTRAS
 from tailor.tools.main import COMMANDS, main
+from tests.support.bus_system import ROOT
 
 PERSONAL = re.compile(r"\b(said|told|asked|says|tells?|asks?)\b", re.IGNORECASE)
 
@@ -66,6 +69,45 @@ def completion_script(shell):
     with redirect_stdout(io.StringIO()) as printed:
         assert main(["completion", shell]) == 0
     return printed.getvalue()
+
+
+LACKING = """
+import sys
+sys.modules.update(dict.fromkeys(sys.argv[1].split(",")))  # an entry None makes the import fail
+from tailor.tools import main
+%s
+"""
+ONE_BY_ONE = "sys.exit(main.main(sys.argv[2:]))"
+ALL_HELP = "import tailor.tools.completion as c; c.whole_parser()"
+
+
+def called_without(modules, code, *arguments):
+    """A process in which modules cannot be imported."""
+    command = [sys.executable, "-c", LACKING % code, ",".join(modules), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+
+
+def test_every_command_has_its_help_without_any_extra():
+    everything = [module for modules in EXTRAS.values() for module in modules]
+    assert called_without(everything, ALL_HELP).stderr == ""
+
+
+GOLDEN = "tests/data/golden/soccer-approach.mcap"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (("train", "agilo"), "learn"),
+        (("sim", "agilo"), "sim"),
+        (("picture", GOLDEN), "plots"),
+        (("models", "plot", "agilo/goToPose"), "plots"),
+    ],
+)
+def test_a_missing_extra_is_named_in_one_line(arguments, extra):
+    done = called_without(EXTRAS[extra], ONE_BY_ONE, *arguments)
+    assert done.stderr == f"tailor {arguments[0]}: needs the extra {extra}: pip install 'tailor[{extra}]'\n"
+    assert (done.returncode, done.stdout) == (2, "")
 
 
 def test_a_shell_without_completion_is_a_usage_error(capsys):

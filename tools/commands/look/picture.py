@@ -5,9 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tailor.tools.figures.paths import draw_paths
-from tailor.tools.figures.recorded_track import recorded_track
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor picture`."""
@@ -17,6 +14,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the runs and print the path of the picture."""
+    from tailor.tools.figures.paths import draw_paths
+    from tailor.tools.figures.recorded_track import recorded_track
+
     draw_paths([recorded_track(path.stem, path) for path in arguments.recording], arguments.output)
     print(arguments.output)
     return 0

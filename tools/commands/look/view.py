@@ -23,8 +23,9 @@ from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.stop_endpoint import StopEndpoint
-from tailor.tools.viewer.timeline import RunTimeline
+from tailor.tools.viewer.timeline import Event, RunTimeline
 
 PORT = 7450
 NICENESS = 10  # the executive has priority over the viewer
@@ -32,8 +33,20 @@ NICENESS = 10  # the executive has priority over the viewer
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor view`."""
-    parser.add_argument("recording", type=Path, nargs="?", help="MCAP file; the page is one file and needs no server")
-    parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="the page (default: beside the recording)")
+    parser.add_argument(
+        "recordings",
+        type=Path,
+        nargs="*",
+        metavar="recording",
+        help="MCAP file; the page is one file and needs no server. Several are shown side by side, in step",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="HTML",
+        help="the page (default: beside the recording; of several: runs.html)",
+    )
     parser.add_argument("--live", action="store_true", help="serve the page of a running system on this machine")
     parser.add_argument(
         "--port", type=int, default=PORT, help="port of the live page; 0 finds a free one (default %(default)s)"
@@ -46,32 +59,42 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page of a recording, or serve the live page until interrupted."""
-    if arguments.live == (arguments.recording is not None):
-        raise UsageError("expected either a recording or --live")
+    if arguments.live == bool(arguments.recordings):
+        raise UsageError("expected either recordings or --live")
     if not 0 <= arguments.port < 65536:
         raise UsageError(f"--port is {arguments.port}, expected 0 to 65535")
-    explainer = None if arguments.no_models else Explainer()
-    return _live(arguments, explainer) if arguments.live else _write(arguments, explainer)
+    return _live(arguments) if arguments.live else _write(arguments)
 
 
-def _write(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
-    recording: Path = arguments.recording
-    output: Path = arguments.output or recording.with_suffix(".html")
-    console = Console(stderr=True)
-    with console.status(f"reading {recording}"):
-        events = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
-    if explainer is not None and explainer.missing:
-        console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
+def _explainer(arguments: argparse.Namespace) -> Explainer | None:
+    return None if arguments.no_models else Explainer()
+
+
+def _write(arguments: argparse.Namespace) -> int:
+    recordings: list[Path] = arguments.recordings
+    [first, *others] = recordings
+    output: Path = arguments.output or (first.with_name("runs.html") if others else first.with_suffix(".html"))
+    runs = {str(path) if others else path.name: _events(path, arguments) for path in recordings}
+    text = side_by_side(output.stem, "", runs) if others else page(first.name, runs[first.name])
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(page(recording.name, events), encoding="utf-8")
+        output.write_text(text, encoding="utf-8")
     except OSError as error:
         raise UsageError(f"{output}: {error.strerror}, expected a file that can be written") from error
     print(output)
     return 0
 
 
-def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
+def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
+    console, explainer = Console(stderr=True), _explainer(arguments)
+    with console.status(f"reading {recording}"):
+        events = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
+    if explainer is not None and explainer.missing:
+        console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
+    return events
+
+
+def _live(arguments: argparse.Namespace) -> int:
     endpoint = bus_settings(arguments).endpoint
     stop = stop_on_signals()
     broadcast = EventBroadcast()
@@ -84,7 +107,7 @@ def _live(arguments: argparse.Namespace, explainer: Explainer | None) -> int:
         session = stack.enter_context(open_bus(arguments, "observer"))
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
-        listener = BusListener(intake, RunTimeline(explainer, arguments.robot), broadcast, arguments.sender)
+        listener = BusListener(intake, RunTimeline(_explainer(arguments), arguments.robot), broadcast, arguments.sender)
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C stops it", flush=True)
         listener.run(MonotonicClock(), lambda: stop.requested)
         subscribe_all.undeclare()

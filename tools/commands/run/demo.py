@@ -1,8 +1,9 @@
-"""Execute the same plan twice from the same seed, greedy and refined; record, tabulate and draw both runs."""
+"""Execute the same plan twice from the same seed, greedy and refined, and show both runs in step on one page."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,13 +14,15 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
-from tailor.tools.figures.paths import draw_paths
 from tailor.tools.figures.recorded_track import recorded_track
-from tailor.tools.figures.report_page import write_paths_page
 from tailor.tools.figures.track import Track
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.side_by_side import side_by_side
+from tailor.tools.viewer.timeline import RunTimeline
 
 RUNS = (("greedy", 1), ("refined", 2))  # the paper's h
 
@@ -34,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run both and write recordings, picture and page; 0 if both runs reached the goal."""
+    """Run both and write recordings, page and picture; 0 if both runs reached the goal."""
     if arguments.seed < 0:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
     stop = stop_on_signals()
@@ -47,14 +50,38 @@ def run(arguments: argparse.Namespace) -> int:
         _run_once(arguments, name, horizon, recording, stop)
         if stop.requested:
             return 130
-        tracks.append(recorded_track(f"{name} (h={horizon})", recording))
-    picture = folder / "paths.png"
-    draw_paths(tracks, picture)
-    write_paths_page(tracks, picture, folder / "index.html")
-    console = Console()
+        tracks.append(recorded_track(f"{name} (h = {horizon})", recording))
+    console = Console(highlight=False, markup=False, soft_wrap=True)
     console.print(summary(tracks))
-    console.print(f"{folder}: greedy.mcap refined.mcap paths.png index.html", highlight=False)
+    _write(tracks, folder)
+    console.print("\n".join(next_lines(folder)))
     return 0 if all(track.result == "achieved" for track in tracks) else 1
+
+
+def _write(tracks: Sequence[Track], folder: Path) -> None:
+    """The page of both runs, and the paper's kind of picture."""
+    from tailor.tools.figures.paths import draw_paths
+
+    draw_paths(list(tracks), folder / "paths.png")
+    runs = {
+        track.title: recorded_events(folder / f"{name}.mcap", RunTimeline(Explainer()))
+        for track, (name, _) in zip(tracks, RUNS, strict=True)
+    }
+    page = side_by_side("The same plan, executed twice", gain(tracks), runs)
+    (folder / "index.html").write_text(page, encoding="utf-8")
+
+
+def next_lines(folder: Path) -> list[str]:
+    """What was written, and what to try next."""
+    refined = folder / "refined.mcap"
+    return [
+        f"both runs in step: {(folder / 'index.html').resolve().as_uri()}",
+        f"also written: {folder}/greedy.mcap, {refined}, {folder}/paths.png",
+        f"next: tailor why {refined}          # why each subgoal was chosen",
+        f"next: tailor verify {refined}       # the recording through the core again, compared bit for bit",
+        "next: tailor up soccer --seed 2      # a whole system; `tailor view --live` shows it in a browser",
+        "next: tailor letters                 # the same executive writes with an arm",
+    ]
 
 
 def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording: Path, stop: Stop) -> None:
@@ -68,7 +95,7 @@ def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording:
         shown.report(f"{name}: {result or 'stopped'}")
 
 
-def summary(tracks: list[Track]) -> Table:
+def summary(tracks: Sequence[Track]) -> Table:
     """Table of predicted and actual durations, with late and missed ticks."""
     table = Table(title="The same plan, executed twice")
     for column in ("", "action", "predicted", "actual"):
@@ -84,8 +111,13 @@ def summary(tracks: list[Track]) -> Table:
         table.add_row("", "sum", f"{track.predicted_s:.2f} s", f"{track.actual_s:.2f} s", style="bold")
         timing = f"{track.ticks} ticks, {track.late_ticks} late by over 50 ms, {track.missed_ticks} missed"
         table.add_row("", timing, "", "", end_section=True)
-    greedy_s, refined_s = tracks[0].actual_s, tracks[-1].actual_s
-    if greedy_s > 0:
-        change = f"{refined_s - greedy_s:+.2f} s, {100 * (1 - refined_s / greedy_s):.1f} % improvement"
-        table.caption = f"refined against greedy: {change}"
+    table.caption = gain(tracks)
     return table
+
+
+def gain(tracks: Sequence[Track]) -> str:
+    """The first run's duration against the last one's, in words; empty if the first did nothing."""
+    greedy_s, refined_s = tracks[0].actual_s, tracks[-1].actual_s
+    if greedy_s <= 0:
+        return ""
+    return f"greedy {greedy_s:.2f} s, refined {refined_s:.2f} s: {100 * (1 - refined_s / greedy_s):.1f} % less time"

@@ -18,12 +18,11 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import JointState
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
-from tailor.tools.figures.letters import draw_words
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
-from tailor.tools.writing.writing_run import RecordedBody, WritingMode, write
+from tailor.tools.writing.writing_mode import WritingMode
 from tailor.tools.writing.writing_track import PERIOD_S, WritingTrack, writing_track
 
 REFINED = RefinementSettings()
@@ -93,6 +92,7 @@ def summary(tracks: Sequence[WritingTrack]) -> Table:
 def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[WritingTrack]:
     from tailor.executive.interfaces.models import Models
     from tailor.models.runtime import load_robot
+    from tailor.tools.writing.writing_run import RecordedBody, write  # here: they load the simulator
 
     models, body = Models(*load_robot(RecordedBody.robot)), RecordedBody()
     return [write(text, mode, models, seed, body) for mode in modes]
@@ -132,6 +132,8 @@ def recorded_track(title: str, text: str, path: Path) -> WritingTrack:
 
 def _draw(tracks: Sequence[WritingTrack], folder: Path) -> list[str]:
     """Draw in joint space, as in the paper's Figure 13 (b), and at the scale of the page."""
+    from tailor.tools.figures.letters import draw_words
+
     joints, page = folder / f"{tracks[0].text}-joints.png", folder / f"{tracks[0].text}-page.png"
     draw_words(tracks, joints, in_joints=True)
     draw_words(tracks, page)

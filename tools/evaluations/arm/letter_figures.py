@@ -20,7 +20,8 @@ from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.lockstep.run import Run
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
-from tailor.tools.writing.writing_run import RecordedBody, WritingMode, run_writing
+from tailor.tools.writing.writing_mode import WritingMode
+from tailor.tools.writing.writing_run import RecordedBody, run_writing
 from tailor.tools.writing.writing_track import WritingTrack
 
 ALL_AHEAD = 9  # more actions than a letter has

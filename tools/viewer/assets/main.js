@@ -54,7 +54,8 @@ function listen() {
 }
 
 const hash = /^#t=([0-9.]+)$/.exec(location.hash);
-player.set(hash ? Number(hash[1]) : given.live ? Infinity : run.end);
+if (given.framed) framed(run, player);
+else player.set(hash ? Number(hash[1]) : given.live ? Infinity : run.end);
 if (given.live) listen();
 if (given.live && given.stop) document.getElementById("heading").append(stopButton(() => given.stop));
 root.dataset.ready = "yes";
