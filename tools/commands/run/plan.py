@@ -9,272 +9,80 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import math
 import sys
 import time
-from contextlib import nullcontext
-from pathlib import Path
-from typing import Any, get_args
 
-from tailor import __version__
 from tailor.executive.planning import (
     AnytimeSearch,
     Domain,
-    EngineName,
-    FlawOrder,
     Problem,
     Result,
-    Settings,
     Unsupported,
-    format_links,
-    format_plan,
     parse_domain,
     parse_problem,
     validate,
 )
-from tailor.executive.planning.flaws.flaw_orders import NAMED
-from tailor.executive.planning.flaws.ranking import NAMES
-from tailor.executive.planning.pddl.definitions import split_definitions
-from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
-from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
 from tailor.tools.cli.plan_search import anytime, built_in, external, with_kairos
+from tailor.tools.planning import options
+from tailor.tools.planning.options import MAX_PLANS, settings_of
+from tailor.tools.planning.output import as_json, print_result
+from tailor.tools.planning.pddl_files import read_texts
 
-MAX_BYTES = 4 * MAX_CHARACTERS
-MAX_PLANS = 1_000_000  # about 1 GB of memory
-GROUND_LIMIT = 300_000  # steps: two seconds of CPU, more than a robot may take
 KAIROS_GRACE_S = 5.0  # beyond its own time limit
+configure = options.configure
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
-    """Adds the arguments; -h is the ranking as in VHPOP, so help is --help only."""
-    parser.conflict_handler = "resolve"
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.epilog = f"flaw orders by name: {', '.join(NAMED)}"
-    parser.add_argument(
-        "files",
-        metavar="FILE",
-        nargs="*",
-        type=Path,
-        help="PDDL, first DOMAIN, then PROBLEM: two files, or both in one file or on standard input (-, or no file)",
-    )
-    parser.add_argument("-V", "--version", action="version", version=f"tailor {__version__}")
-    search = parser.add_argument_group("search, as in VHPOP")
-    _configure_search(search)
-    _configure_costs(search)
-    parser.set_defaults(node_limit=MAX_PLANS)
-    _configure_output(parser.add_argument_group("output"))
-
-
-def _configure_search(group: argparse._ArgumentGroup) -> None:
-    add = group.add_argument
-    add("-g", "--ground-actions", dest="ground", action="store_true", default=True, help="ground actions (default)")
-    add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
-    add("-h", "--heuristic", metavar="RANKING", default="",
-        help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
-    add("-d", "--domain-constraints", *(f"-d{level}" for level in range(10)), action="store_true",
-        help=argparse.SUPPRESS)  # as VHPOP's; lifted planning always keeps the domains of parameters  # fmt: skip
-    add("--anytime", action="store_true",
-        help="after the first plan search for better ones by the metric, within the limits")  # fmt: skip
-    add("--engine", choices=(*get_args(EngineName), "kairos"), default="auto",
-        help="partial-order search, search through states, both by turns (auto, default), or kairos-planner; auto "
-        "also uses that for durative problems, if it is installed")  # fmt: skip
-    add("-f", "--flaw-order", dest="orders", metavar="ORDER", action=_AppendOrder, default=[],
-        help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
-    add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
-        help="maximum number of plans of the preceding flaw order (of the search if none), or 'unlimited'")  # fmt: skip
-    add(
-        "-s",
-        "--search-algorithm",
-        dest="search",
-        choices=("A", "IDA"),
-        default="A",
-        type=lambda name: name.upper().removesuffix("*"),
-        help="A* (default) or IDA*",
-    )
-
-
-def _configure_costs(group: argparse._ArgumentGroup) -> None:
-    add = group.add_argument
-    add(
-        "-w",
-        "--weight",
-        type=float,
-        default=1.0,
-        help="weight of the heuristic against the cost of the steps (default 1)",
-    )
-    costs = ("UNIT", "DURATION", "RELATIVE", "METRIC")
-    add(
-        "-a",
-        "--action-cost",
-        choices=costs,
-        default="UNIT",
-        type=str.upper,
-        help="cost of a step: 1, its duration, that relative to the shortest, or its (total-cost) (default UNIT)",
-    )
-    add(
-        "-t",
-        "--tolerance",
-        type=_tolerance,
-        default=0.01,
-        metavar="S",
-        help="tick of a durative plan in seconds (default 0.01); 'unlimited', as VHPOP 2 has it, is no time limit",
-    )
-    add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
-    add("-S", "--seed", type=int, default=0, help="random seed (default 0)")
-    add(
-        "-T",
-        "--time-limit",
-        type=_minutes,
-        default=None,
-        metavar="MINUTES",
-        help="time limit of the search in minutes, fractions allowed, or 'unlimited' (default)",
-    )
-    add("--memory-limit", type=_megabytes, default=512, metavar="MB",
-        help="memory limit of the search, or 'unlimited' (default 512)")  # fmt: skip
-    add(
-        "--planner",
-        metavar="COMMAND",
-        help="plan with an external program in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc', "
-        "or with kairos, kairos:SECONDS, up:ENGINE (of unified-planning)",
-    )
-
-
-def _configure_output(group: argparse._ArgumentGroup) -> None:
-    forms = group.add_mutually_exclusive_group()
-    forms.add_argument("--links", action="store_true", help="print causal links and orderings (Figure 10 of the paper)")
-    forms.add_argument("--json", action="store_true", help="print one JSON object, also if there is no plan")
-    forms.add_argument("--dot", action="store_true", help="print the partial order as a Graphviz graph")
-    forms.add_argument("--svg", action="store_true", help="print the partial order as an SVG image")
-    group.add_argument(
-        "-v",
-        "--verbose",
-        action="store_true",
-        help="print the cost of the search on standard error (also -v1 ...)",
-    )
-    levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(100)]
-    group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)
-
-
-class _AppendOrder(argparse.Action):
-    """-f ORDER: appends a flaw order."""
-
-    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
-        namespace.orders = [*namespace.orders, FlawOrder(str(values))]
-
-
-class _LimitOrder(argparse.Action):
-    """-l N: limits the preceding flaw order, or the whole search if there is none."""
-
-    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
-        limit = None if values == "unlimited" else _positive(values)
-        if namespace.orders:
-            *before, last = namespace.orders
-            namespace.orders = [*before, dataclasses.replace(last, limit=limit)]
-        else:
-            namespace.node_limit = limit if limit is not None else sys.maxsize
-
-
-def _minutes(text: str) -> float:
-    """A time limit in minutes."""
-    if text == "unlimited":
-        return float("inf")
-    try:
-        minutes = float(text)
-    except ValueError:
-        minutes = -1.0
-    if not minutes >= 0:
-        raise UsageError(f"--time-limit: expected a number of minutes of at least 0, found '{text}'")
-    return minutes
-
-
-def _tolerance(text: str) -> float:
-    """A tick in seconds; VHPOP 2's time limit "unlimited" is the default, 0.01."""
-    return 0.01 if text == "unlimited" else float(text)
-
-
-def _megabytes(text: str) -> float:
-    """A limit of memory in MB."""
-    if text == "unlimited":
-        return float("inf")
-    if not text.isdecimal() or int(text) < 1:
-        raise UsageError(f"--memory-limit: expected a whole number of MB or 'unlimited', found '{text}'")
-    return float(text)
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise UsageError(f"--limit: expected a number of plans of at least 1 or 'unlimited', found '{text}'")
-    return int(text)
-
-
-# --- running -------------------------------------------------------------------------------------
 def run(args: argparse.Namespace) -> int:
     """Plans and prints; returns exit code 0 with a plan, 1 without."""
     started = time.process_time()
     try:
-        texts = _texts(args.files)  # read once: standard input cannot be read again
+        texts = read_texts(args.files)  # read once: standard input cannot be read again
         domain = parse_domain(texts[0], str(args.files[0]))
         problem = parse_problem(texts[1], domain, str(args.files[-1]))
     except Unsupported as feature:
         if args.json:
-            print(json.dumps(_as_json(Result("unsupported", None, str(feature), 0, 0), args.files[-1].stem, 0.0)))
+            print(json.dumps(as_json(Result("unsupported", None, str(feature), 0, 0), args.files[-1].stem, 0.0)))
         raise
-    result = _plan(args, texts, domain, problem)
+    if args.compare:
+        return _compare(args, texts, domain, problem)
+    result = _validated(_plan(args, texts, domain, problem), domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
-    if result.plan is not None:
-        fault = validate(result.plan, domain, problem)
-        if fault:
-            result = dataclasses.replace(result, status="limit", plan=None, reason=f"the plan is unsound: {fault}")
     if args.verbose:
         print(f"generated {result.generated}, visited {result.visited}, {cpu_ms:.1f} ms CPU", file=sys.stderr)
-    _print(args, result, problem, cpu_ms)
+    print_result(args, result, problem, cpu_ms)
     return 0 if result.plan is not None else 1
 
 
-def _texts(files: list[Path]) -> tuple[str, str]:
-    """The text of the domain and of the problem; an empty list becomes standard input."""
-    if len(files) > 2:
-        raise UsageError(f"expected at most two files, found {len(files)}")
-    if not files:
-        files.append(Path("-"))
-    if len(files) == 2:
-        return _read(files[0]), _read(files[1])
-    return split_definitions(_read(files[0]), str(files[0]))
+def _compare(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> int:
+    """Prints the figures of our plan and of the other planners'; exit code 0 if ours is sound."""
+    from tailor.tools.planning.comparison import compare
+
+    if args.time_limit is None:
+        args.time_limit = 1.0
+    rows = compare(lambda: _plan(args, texts, domain, problem), args.compare, texts, problem, 60.0 * args.time_limit)
+    if args.json:
+        print(json.dumps([dataclasses.asdict(row) for row in rows]))
+    else:
+        from tailor.tools.cli.terminal import table_console
+        from tailor.tools.planning.comparison import table
+
+        table_console().print(table(rows, problem.name))
+    return 0 if rows[0].valid else 1
 
 
-def _read(path: Path) -> str:
-    try:
-        with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size
-        if len(content) > MAX_BYTES:
-            raise UsageError(f"{path}: more than the {MAX_BYTES} bytes allowed in a PDDL file")
-        return content.decode("utf-8-sig")  # some editors begin a file with a byte order mark
-    except (OSError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'it is not UTF-8'}") from None
-
-
-def settings_of(args: argparse.Namespace) -> Settings:
-    """The search settings of the options."""
-    chosen: dict[str, Any] = {"flaw_orders": tuple(args.orders)} if args.orders else {}
-    return Settings(
-        rankings=tuple(args.heuristic.split("/")) if args.heuristic else (),
-        search=args.search,
-        ground=args.ground,
-        weight=args.weight,
-        action_cost=args.action_cost.lower(),
-        node_limit=args.node_limit,
-        ground_limit=GROUND_LIMIT,
-        tolerance_s=args.tolerance,
-        seed=args.seed,
-        random_open_conditions=args.random_open_conditions,
-        engine=args.engine,
-        **chosen,
-    )
+def _validated(result: Result, domain: Domain, problem: Problem) -> Result:
+    """The result, without the plan if that is unsound."""
+    fault = validate(result.plan, domain, problem) if result.plan is not None else ""
+    if not fault:
+        return result
+    return dataclasses.replace(result, status="limit", plan=None, reason=f"the plan is unsound: {fault}")
 
 
 def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> Result:
     """The result of the planner or engine that the options name."""
-    limit_s = 60.0 * args.time_limit if args.time_limit is not None else float("inf")
+    limit_s = 60.0 * args.time_limit if args.time_limit is not None else math.inf
     if args.planner:
         return external(args.planner, texts, domain, problem, limit_s)
     if args.engine == "kairos":
@@ -298,47 +106,3 @@ def _kairos_applies(domain: Domain) -> bool:
     from tailor.runtime.planners.named import kairos_installed
 
     return kairos_installed()
-
-
-# --- printing ------------------------------------------------------------------------------------
-def _print(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
-    plan = result.plan
-    if args.json:
-        print(json.dumps(_as_json(result, problem.name, cpu_ms)))
-    elif plan is None:
-        outcome = "no plan exists" if result.status == "unsolvable" else "no plan found"
-        print(f"{problem.name}: {outcome}: {result.reason}", file=sys.stderr)
-    elif args.links:
-        print(format_links(plan), end="")
-    elif args.dot:
-        from tailor.tools.figures.plan_drawing import to_dot
-
-        print(to_dot(plan), end="")
-    elif args.svg:
-        from tailor.tools.figures.plan_drawing import to_svg
-
-        print(to_svg(plan), end="")
-    else:
-        print(format_plan(plan), end="")
-
-
-def _as_json(result: Result, problem: str, cpu_ms: float) -> dict[str, Any]:
-    plan = result.plan
-    return {
-        "problem": problem,
-        "status": result.status,
-        "reason": result.reason,
-        "steps": [
-            {"id": s.id, "start": s.start, "action": list(s.action), "duration": s.duration}
-            for s in (plan.steps if plan else ())
-        ],
-        "links": [
-            {"producer": x.producer, "literal": str(x.literal), "consumer": "goal" if x.consumer < 0 else x.consumer}
-            for x in (plan.links if plan else ())
-        ],
-        "orderings": [list(pair) for pair in (plan.orderings if plan else ())],
-        "makespan": plan.makespan if plan else None,
-        "generated": result.generated,
-        "visited": result.visited,
-        "cpu_ms": round(cpu_ms, 3),
-    }

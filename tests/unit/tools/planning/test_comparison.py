@@ -1,0 +1,81 @@
+"""`tailor plan --compare`: figures of several planners side by side."""
+
+import json
+import shlex
+import sys
+
+import pytest
+
+from tailor.tools.main import main
+from tests.support.planning_problems import DATA, printed
+
+OWN = DATA / "own"
+KITCHEN = [str(OWN / "kitchen-domain.pddl"), str(OWN / "kitchen-s1.pddl")]
+DURATIVE = [str(OWN / "kitchen-durative-domain.pddl"), str(OWN / "kitchen-durative-s3.pddl")]
+
+
+def printing(text, before=""):
+    """The command of a planner that does something and prints a text."""
+    return shlex.join([sys.executable, "-c", f"{before}\nprint({text!r})"])
+
+
+def compared(capsys, files, *commands, options=()):
+    arguments = [word for command in commands for word in ("--compare", command)]
+    code = main(["plan", *files, *arguments, *options, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_sound_plan_an_unsound_one_and_none_are_told_apart(capsys):
+    sound = printed("kitchen-s1.ground.plain")
+    shorter = "".join(line for line in sound.splitlines(keepends=True) if "1:(" not in line)
+    commands = (printing(sound), printing(shorter), printing("no plan"))
+    code, rows = compared(capsys, KITCHEN, *commands)
+    assert code == 0
+    assert [row["planner"] for row in rows] == ["tailor", *commands]
+    assert [row["valid"] for row in rows] == [True, True, False, False]
+    assert [row["steps"] for row in rows] == [4, 4, None, None]
+    assert "unsound" in rows[2]["reason"]
+    assert all(row["makespan"] is None and row["cost"] is None for row in rows)
+
+
+def test_makespans_and_the_time_of_other_processes_are_measured(capsys):
+    busy = "import time\nwhile time.process_time() < 0.4: pass"
+    code, rows = compared(capsys, DURATIVE, printing(printed("kitchen-durative-s3.ground.plain"), busy))
+    assert code == 0
+    assert rows[0]["makespan"] == pytest.approx(28.04)
+    assert rows[1]["makespan"] == pytest.approx(56, abs=0.1)
+    assert 0.4 <= rows[1]["cpu_s"] < 2
+
+
+def test_every_planner_has_the_limit_of_time(capsys):
+    code, rows = compared(capsys, KITCHEN, printing("", "import time; time.sleep(60)"), options=("-T", "0.01"))
+    assert code == 0
+    assert "killed after 0.6 s" in rows[1]["reason"]
+    assert rows[1]["wall_s"] < 5
+
+
+def test_costs_are_those_of_the_metric(capsys, tmp_path):
+    text = """(define (domain d) (:predicates (p) (q)) (:functions (total-cost))
+      (:action dear :parameters () :effect (and (q) (increase (total-cost) 9)))
+      (:action cheap :parameters () :effect (and (p) (increase (total-cost) 2)))
+      (:action go :parameters () :precondition (p) :effect (and (q) (increase (total-cost) 3))))
+      (define (problem one) (:domain d) (:init) (:goal (q)) (:metric minimize (total-cost)))"""
+    (tmp_path / "both.pddl").write_text(text)
+    _, rows = compared(capsys, [str(tmp_path / "both.pddl")], printing("(dear)"), options=("--anytime",))
+    assert [row["cost"] for row in rows] == [5, 9]
+
+
+def test_without_a_plan_of_ours_the_code_is_1_and_a_missing_program_is_one_line(capsys):
+    code, rows = compared(capsys, KITCHEN, printing(printed("kitchen-s1.ground.plain")), options=("-l", "3"))
+    assert code == 1
+    assert [row["valid"] for row in rows] == [False, True]
+    assert main(["plan", *KITCHEN, "--compare", "no-such-planner"]) == 2
+    assert "there is no program 'no-such-planner'" in capsys.readouterr().err
+
+
+def test_the_table_names_planners_and_verdicts(capsys):
+    assert main(["plan", *KITCHEN, "--compare", printing("no plan")]) == 0
+    out = capsys.readouterr().out
+    assert "tailor" in out
+    assert "sound" in out
+    assert "ended with code 0" in out
