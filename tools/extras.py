@@ -12,6 +12,7 @@ from tailor.schemas.errors import UsageError
 # extra -> the modules that it brings and that the code imports
 EXTRAS: dict[str, tuple[str, ...]] = {
     "sim": ("mujoco",),
+    "bullet": ("pybullet",),
     "learn": ("joblib", "onnx", "pyarrow", "sklearn", "skl2onnx", "scipy", "threadpoolctl"),
     "plots": ("matplotlib",),
     "kairos": ("kairos",),

@@ -44,7 +44,7 @@ ARM = (
     Joint("lift", 0.0, LEFT_DOWN, -1.2, 2.2),
     Joint("elbow", UPPER_ARM_M, LEFT_DOWN, -2.7, 0.3),
     Joint("forearm", 0.2, (1.0, 0.0, 0.0), -2.8, 2.8),
-    Joint("wrist", FOREARM_M - 0.2, LEFT_DOWN, -2.2, 2.2),
+    Joint("wrist", FOREARM_M - 0.2, LEFT_DOWN, -2.6, 2.6),
     Joint("hand", 0.06, (1.0, 0.0, 0.0), -2.8, 2.8),
 )
 TOOL_M = HAND_M - 0.06  # from the last joint to the grasp point

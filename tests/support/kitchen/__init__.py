@@ -1,0 +1,1 @@
+"""Moves of the B21 for tests."""
