@@ -19,10 +19,11 @@ class Service:
     pattern: str
     server: Role
     callers: tuple[Role, ...] = ("people",)
+    ros_name: str = ""  # of the same service for ROS 2 nodes under rmw_zenoh; empty: none
 
 
 SERVICES: dict[str, Service] = {
-    "goal": Service("exec/goal", "executive"),
+    "goal": Service("exec/goal", "executive", ros_name="exec/set_goal"),
     "simulator": Service("*/sim/*", "driver"),  # reset, place, pause, step: simnodes/services.py
     "snapshot": Service("recorder/snapshot", "recorder"),
 }

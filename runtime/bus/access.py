@@ -1,15 +1,17 @@
 """Who may publish, call and serve what on a secured bus: zenoh's rules, from the tables of topics and services.
 
 Everything that is not allowed here is denied (an allow-list): a put on a pattern such as `agilo/*` matches no rule.
-Everybody on the bus may subscribe to everything. This module does not import zenoh.
+Everybody on the bus may subscribe to everything, and look at the graph of ROS 2. This module does not import zenoh.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from tailor.runtime.bus.ros_access import ALL_TOKENS, service_keys, tokens
 from tailor.schemas.messages import ArmRequest, EStop
+from tailor.schemas.ros2.profiles import ros_patterns
 from tailor.schemas.services import ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
 
@@ -77,31 +79,40 @@ def _common_rules() -> list[dict[str, Any]]:
     everything = ["**"]
     inward, both = ["ingress"], ["ingress", "egress"]
     heard = ["put", "delete", "reply", "query", "declare_queryable"]
-    whole = [*heard, "declare_subscriber", "liveliness_token", "liveliness_query", "declare_liveliness_subscriber"]
+    look = ["liveliness_query", "declare_liveliness_subscriber"]
     return [
         _rule("subscribe", ["declare_subscriber"], both, everything),
         _rule("hear", heard, ["egress"], everything),
-        _rule(GATEWAY, whole, inward, everything),
+        _rule("look", look, both, ALL_TOKENS),
+        _rule("be seen", ["liveliness_token"], ["egress"], ALL_TOKENS),
+        _rule(GATEWAY, [*heard, "declare_subscriber", "liveliness_token", *look], inward, [*everything, *ALL_TOKENS]),
     ]
 
 
 def _rules_of(role: Role) -> list[dict[str, Any]]:
-    published = _keys(topic for topic in TOPICS.values() if role in may_publish(topic))
-    called = [service.pattern for service in SERVICES.values() if role in service.callers]
-    served = [service.pattern for service in SERVICES.values() if role == service.server]
-    rows = [("publish", ["put"], published), ("call", ["query"], called)]
-    rows += [("serve", ["declare_queryable", "reply"], served)]
+    topics = [topic for topic in TOPICS.values() if role in may_publish(topic)]
+    called = [service for service in SERVICES.values() if role in service.callers]
+    served = [service for service in SERVICES.values() if role == service.server]
+    rows = [("publish", ["put"], _keys(topics)), ("call", ["query"], service_keys(called))]
+    rows += [("serve", ["declare_queryable", "reply"], service_keys(served))]
+    rows += [("announce", ["liveliness_token"], tokens(topics, called, served))]
     return [_rule(f"{role} {name}", kinds, ["ingress"], keys) for name, kinds, keys in rows if keys]
 
 
 def _rule_names(subject: str, rules: Sequence[Mapping[str, Any]]) -> list[str]:
     own = [rule["id"] for rule in rules if rule["id"] == subject or rule["id"].startswith(f"{subject} ")]
-    return ["subscribe", "hear", *own]
+    return ["subscribe", "hear", "look", "be seen", *own]
 
 
 def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> dict[str, Any]:
     return {"id": name, "messages": messages, "flows": flows, "permission": "allow", "key_exprs": keys}
 
 
-def _keys(topics: Any) -> list[str]:
+def _keys(topics: Iterable[Topic]) -> list[str]:
+    """Keys of topics under both key profiles."""
+    topics = list(topics)
+    return [*_plain_keys(topics), *ros_patterns(topics)]
+
+
+def _plain_keys(topics: Iterable[Topic]) -> list[str]:
     return sorted({topic.key.format(robot="*") for topic in topics})

@@ -61,17 +61,17 @@ class Inbox:
         self._subscriptions = [(topic, key, source, encodings(topic.type)) for topic, key, source in subscriptions]
         self._now, self._wall, self._newest_only = now, wall, newest_only
         self._previous = Instant(now(), wall())
-        self._last: dict[str, tuple[str, int]] = {}  # (sender, sequence) of the newest message, by key
+        self._last: dict[int, tuple[str, int]] = {}  # (sender, sequence) of the newest message, by subscription
 
     def drain(self, now_ns: int | None = None) -> tuple[Sample, ...]:
         """All new samples, ordered by arrival; no arrival is later than `now_ns` (default: now)."""
         now = Instant(self._now() if now_ns is None else now_ns, self._wall())
         samples = []
-        for topic, key, source, encoding in self._subscriptions:
+        for number, (topic, key, source, _) in enumerate(self._subscriptions):
             newest_only = self._newest_only and is_state(topic)
             waiting, complete = _received(source), set[str]()  # senders whose newest valid sample is known
             for raw in reversed(waiting) if newest_only else waiting:
-                sample = raw if isinstance(raw, Rejected) else self._read(topic, key, encoding, raw, now, complete)
+                sample = raw if isinstance(raw, Rejected) else self._read(number, raw, now, complete)
                 if sample is None:
                     continue
                 if isinstance(sample, Rejected):
@@ -83,22 +83,21 @@ class Inbox:
         self._previous = now
         return tuple(sorted(samples, key=lambda each: each.arrival_ns))
 
-    def _read(
-        self, topic: Topic, key: str, encoding: str, raw: Raw, now: Instant, complete: set[str]
-    ) -> Sample | Rejected | None:
+    def _read(self, number: int, raw: Raw, now: Instant, complete: set[str]) -> Sample | Rejected | None:
         """The sample; None if it comes from one of the `complete` senders."""
+        topic, key, _, encoding = self._subscriptions[number]
         origin = _origin(key, encoding, raw)
         if isinstance(origin, Rejected):
             return origin
         if origin.sender in complete:
             return None
-        repeated = origin.sequence and self._last.get(key) == (origin.sender, origin.sequence)
+        repeated = origin.sequence and self._last.get(number) == (origin.sender, origin.sequence)
         if repeated and topic.type is not EStop:  # a forged repetition must not take the place of an e-stop
             return Rejected("repeated")  # repeats of a frozen sender are ignored, so its topic becomes stale
         message = decode(topic, raw.payload)
         if isinstance(message, Rejected):
             return message
-        self._last[key] = (origin.sender, origin.sequence)
+        self._last[number] = (origin.sender, origin.sequence)
         arrived = arrival_ns(raw.received_wall_ns, self._previous, now)
         return Sample(key, message, arrived, origin.sequence, origin.sender)
 

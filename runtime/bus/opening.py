@@ -12,6 +12,7 @@ from tailor.runtime.bus.run_folder import SOCKET, RunFolder, hosted, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.profiles import PLAIN, KeyProfile
 from tailor.schemas.services import ROLES, Role
 
 SELF_CONNECT_MS = 500
@@ -19,30 +20,36 @@ PROBE_S = 0.5
 
 
 @contextmanager
-def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
+def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT, keys: KeyProfile = PLAIN) -> Iterator[Session]:
     """Router of an open bus at one endpoint, without local socket, passwords and rules; also a session like a client's.
 
     Raises:
       UsageError: The port is in use, or cannot be listened at.
     """
-    with _router(zenoh_config.router(listen), listen) as session:
+    with _router(zenoh_config.router(listen), listen, keys) as session:
         _start_threads(zenoh_config.client([listen], SELF_CONNECT_MS))
         yield session
 
 
 @contextmanager
-def open_local_router(endpoint: str, secured: bool = True) -> Iterator[tuple[Session, RunFolder]]:
+def open_local_router(
+    endpoint: str, secured: bool = True, keys: KeyProfile = PLAIN
+) -> Iterator[tuple[Session, RunFolder]]:
     """Router of this machine's processes; `open_gateway` listens at the endpoint itself, for all others.
 
     Args:
       endpoint: Names the bus; the local socket is in its run folder.
       secured: Demand the passwords of this run, and apply the access rules.
+      keys: Key profile of this session and of all that connect to the local socket.
 
     Raises:
       UsageError: The bus runs already, or its folder cannot be made.
     """
     users = (*ROLES, access.GATEWAY) if secured else ()
-    with hosted(endpoint, users) as folder, _router(zenoh_config.local_router(folder), endpoint) as session:
+    with (
+        hosted(endpoint, users, keys) as folder,
+        _router(zenoh_config.local_router(folder), endpoint, keys) as session,
+    ):
         (folder.path / SOCKET).chmod(0o660)  # the folder decides who reaches it
         _start_threads(_local_client(folder, "observer", SELF_CONNECT_MS))
         yield session, folder
@@ -72,6 +79,7 @@ def open_client(
     sender: str = "",
     role: Role = "observer",
     identity: Identity | None = None,
+    keys: KeyProfile = PLAIN,
 ) -> Iterator[Session]:
     """Session with the bus at the endpoint `connect`; through its local socket if it runs on this machine.
 
@@ -81,6 +89,7 @@ def open_client(
       sender: Id of the session on the bus, 32 hex digits; empty: random.
       role: Decides what the session may publish, call and serve on a secured bus.
       identity: Certificate for a TLS endpoint, whose name decides instead of `role`.
+      keys: Key profile of a bus on another machine; on this machine the bus decides.
 
     Raises:
       UsageError: No router responds within `timeout_s`, or it refuses this user.
@@ -88,10 +97,14 @@ def open_client(
     zenoh_config.check_endpoint(connect)
     folder, timeout_ms = run_folder(connect), int(timeout_s * 1000)
     if identity is None and folder.running():
-        config = _local_client(folder, role, timeout_ms)
+        config, keys = _local_client(folder, role, timeout_ms), folder.key_profile()
     else:
         config = zenoh_config.client([connect], timeout_ms, identity=identity)
-    with _opened(config, lambda _: f"bus endpoint {connect}: {_why_no_session(connect)}", sender) as session:
+
+    def explain(_: str) -> str:
+        return f"bus endpoint {connect}: {_why_no_session(connect)}"
+
+    with _opened(config, explain, sender, keys, role) as session:
         yield session
 
 
@@ -101,19 +114,19 @@ def _local_client(folder: RunFolder, role: Role, timeout_ms: int) -> str:
     return zenoh_config.client([folder.socket_endpoint], timeout_ms, credentials)
 
 
-def _router(config: str, listen: str) -> AbstractContextManager[Session]:
+def _router(config: str, listen: str, keys: KeyProfile = PLAIN) -> AbstractContextManager[Session]:
     def explain(cause: str) -> str:
         reason = "the port is in use" if "in use" in cause else "cannot listen there"
         return f"bus endpoint {listen}: {reason}; expected a free one, see --connect"
 
-    return _opened(config, explain)
+    return _opened(config, explain, "", keys, "launcher")
 
 
 @contextmanager
-def _opened(config: str, explain: Callable[[str], str], sender: str = "") -> Iterator[Session]:
+def _opened(config: str, explain: Callable[[str], str], sender: str, keys: KeyProfile, node: str) -> Iterator[Session]:
     with ExitStack() as stack:
         try:
-            session = stack.enter_context(opened(config, sender))
+            session = stack.enter_context(opened(config, sender, keys, node))
         except CannotOpenError as error:
             raise UsageError(explain(str(error))) from error
         yield session

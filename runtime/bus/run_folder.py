@@ -19,9 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.profiles import PLAIN, PROFILES, KeyProfile
 
 VARIABLE = "TAILOR_RUN_DIR"  # replaces the folder of all runs, e.g. with a service's /run/tailor
 SOCKET, USERS, LOCK, CERTIFICATE_USERS = "bus.sock", "users", "lock", "certificate-users"
+PROFILE = "key-profile"
 CERTIFICATE_USER = "certificate:none"
 MAX_SOCKET_BYTES = 107  # Linux: sun_path, without its final zero
 
@@ -65,6 +67,14 @@ class RunFolder:
                 return False
         return True
 
+    def key_profile(self) -> KeyProfile:
+        """Keys of this bus; the plain ones if its folder does not name any."""
+        try:
+            profile, domain = (self.path / PROFILE).read_text().split()
+        except (OSError, ValueError):
+            return PLAIN
+        return next((KeyProfile(each, int(domain)) for each in PROFILES if each == profile), PLAIN)
+
     def password(self, user: str) -> str | None:
         """Password of a role in this run; None on an open bus.
 
@@ -89,8 +99,13 @@ def run_folder(endpoint: str) -> RunFolder:
 
 
 @contextmanager
-def hosted(endpoint: str, users: Sequence[str]) -> Iterator[RunFolder]:
-    """Own the folder of a new bus, with a fresh password for each of `users` (none: an open bus); emptied at the end.
+def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Iterator[RunFolder]:
+    """Own the folder of a new bus; emptied at the end.
+
+    Args:
+      endpoint: Names the bus.
+      users: Each gets a fresh password; none: an open bus.
+      keys: Keys of the bus; sessions on this machine read them here.
 
     Raises:
       UsageError: The bus runs already, or the folder cannot be made or is not private.
@@ -102,6 +117,7 @@ def hosted(endpoint: str, users: Sequence[str]) -> Iterator[RunFolder]:
     with _locked(folder.path / LOCK, endpoint):
         try:
             _empty(folder.path)
+            _write_secret(folder.path / PROFILE, [f"{keys.profile} {keys.domain}"])
             if users:
                 _write_secret(folder.users_file, [f"{user}:{secrets.token_hex(16)}" for user in users])
                 _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])

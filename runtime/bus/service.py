@@ -31,11 +31,14 @@ class RequestSource(Protocol):
 
 
 class ServiceServer:
-    """Requests under one key, polled once a tick."""
+    """Requests of one service, polled once a tick."""
 
-    def __init__(self, source: RequestSource) -> None:
-        self._source = source
+    def __init__(self, *sources: RequestSource) -> None:
+        self._sources = sources
 
     def poll(self) -> ServiceRequest | None:
         """Next request, None if there is none."""
-        return self._source.receive()
+        for source in self._sources:
+            if (request := source.receive()) is not None:
+                return request
+        return None

@@ -16,10 +16,14 @@ from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.service import ServiceRequest, ServiceServer
+from tailor.runtime.bus.ros_wires import Announcer, as_plain, goal_request
+from tailor.runtime.bus.service import RequestSource, ServiceRequest, ServiceServer
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
-from tailor.schemas.topics import TOPICS, Topic, key_of
+from tailor.schemas.ros2.graph import Kind, parsed_key
+from tailor.schemas.ros2.profiles import BARE, COPY, PLAIN, KeyProfile, ros_topic, topic_at
+from tailor.schemas.services import SERVICES
+from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
 from tailor.schemas.typesystem import ros_type
 
 MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
@@ -40,12 +44,14 @@ class CannotOpenError(Exception):
 
 
 @contextmanager
-def opened(config: str, sender: str = "") -> Iterator[Session]:
+def opened(config: str, sender: str = "", keys: KeyProfile = PLAIN, node: str = "observer") -> Iterator[Session]:
     """Session with a configuration of zenoh_config.py.
 
     Args:
       config: zenoh's configuration in JSON.
       sender: Id of the session on the bus, 32 hex digits; empty: random.
+      keys: Key profile.
+      node: What ROS 2 knows it as, behind "tailor_".
 
     Raises:
       CannotOpenError: See its message.
@@ -55,16 +61,20 @@ def opened(config: str, sender: str = "") -> Iterator[Session]:
     except zenoh.ZError as error:
         raise CannotOpenError(str(error)) from error
     with session:
-        yield Session(session, sender)
+        yield Session(session, sender, keys, node)
 
 
 class Session:
     """One process on the bus; `sender` is its id: 32 hex digits."""
 
-    def __init__(self, opened: zenoh.Session, sender: str = "") -> None:
+    def __init__(
+        self, opened: zenoh.Session, sender: str = "", keys: KeyProfile = PLAIN, node: str = "observer"
+    ) -> None:
         self.sender = sender or secrets.token_hex(SENDER_BYTES)
+        self.keys = keys
         self._zenoh = opened
         self._latches: list[Any] = []  # subscriptions that live as long as the session
+        self._graph = Announcer(str(opened.info.zid()), f"tailor_{node}", opened.liveliness().declare_token)
 
     @property
     def connected(self) -> bool:
@@ -74,45 +84,64 @@ class Session:
     def publisher(self, name: str, robot: str) -> Publisher:
         """Publisher of a topic of tailor.schemas.topics; drops messages rather than wait."""
         topic, key = TOPICS[name], key_of(name, robot)
-        declared = self._zenoh.declare_publisher(
+        wires = [self._wire(each, encoding, topic.priority) for each, encoding in self._keys_of(topic, key)]
+        if self.keys.announces:
+            self._graph.announce(Kind.PUBLISHER, ros_topic(topic, robot), self.keys.domain)
+        return Publisher(key, _Wire(wires), self.sender)
+
+    def _keys_of(self, topic: Topic, key: str) -> list[tuple[str, str]]:
+        """Keys of a topic in this session's profile, each with the encoding of what is published there."""
+        keys = [(key, encoding_of(topic.type))] if self.keys.plain(topic) else []
+        if self.keys.ros(topic):
+            named = ros_topic(topic, key.partition("/")[0])
+            keys.append((named.key(self.keys.domain), COPY if keys else BARE))
+        return keys
+
+    def _wire(self, key: str, encoding: str, priority: Priority) -> zenoh.Publisher:
+        return self._zenoh.declare_publisher(
             key,
-            encoding=encoding_of(topic.type),
-            priority=_PRIORITIES[topic.priority],
+            encoding=encoding,
+            priority=_PRIORITIES[priority],
             congestion_control=zenoh.CongestionControl.DROP,  # a stalled reader must never stall a tick
-            express=topic.priority != "data",
+            express=priority != "data",
         )
-        return Publisher(key, _Wire(declared), self.sender)
 
     def player(self, key: str, ros_type: str) -> Publisher:
         """Publisher of recorded bytes under any key; waits rather than drop, so never use it in a tick.
+
+        A topic of the table is published under the keys of this session's profile.
 
         Raises:
           UsageError: The key is invalid, or a pattern.
         """
         if not _is_one_key(key):
             raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
-        declared = self._zenoh.declare_publisher(
-            key,
-            encoding=f"application/cdr;{ros_type}" if ros_type else None,
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            express=True,
-        )
+        topic, encoding = topic_at(key), f"application/cdr;{ros_type}" if ros_type else None
+        known = topic is not None and encoding == encoding_of(topic.type)
+        keys = self._keys_of(topic, key) if topic is not None and known else [(key, encoding)]
+        declared = [
+            self._zenoh.declare_publisher(
+                each, encoding=encoded, congestion_control=zenoh.CongestionControl.BLOCK, express=True
+            )
+            for each, encoded in keys
+        ]
         return Publisher(key, _Wire(declared), self.sender)
 
     def plain_publisher(self, key: str, encoding: str) -> Publisher:
         """Publisher of commands on a topic of a robot that knows nothing of us; drops rather than wait."""
-        declared = self._zenoh.declare_publisher(
-            key,
-            encoding=encoding,
-            priority=zenoh.Priority.REAL_TIME,
-            congestion_control=zenoh.CongestionControl.DROP,
-            express=True,
-        )
-        return Publisher(key, _Wire(declared), self.sender)
+        self._announce_key(Kind.PUBLISHER, key)
+        return Publisher(key, _Wire([self._wire(key, encoding, "real_time")]), self.sender)
 
     def plain_source(self, key: str) -> Source:
         """Raw messages of one topic of such a robot; the newest few between two looks."""
+        self._announce_key(Kind.SUBSCRIPTION, key)
         return self._ring(key)
+
+    def _announce_key(self, kind: Kind, key: str) -> None:
+        """Show ROS 2 what this session has at a key, if it is one of rmw_zenoh's."""
+        parsed = parsed_key(key)
+        if parsed is not None:
+            self._graph.announce(kind, parsed[1], parsed[0])
 
     def inbox(self, names: Sequence[str], robot: str, newest_only: bool = True) -> Inbox:
         """Subscribe to topics; a loop drains the inbox.
@@ -125,22 +154,41 @@ class Session:
         subscriptions = []
         for name in names:
             topic, key = TOPICS[name], key_of(name, robot)
-            source = self._latch(topic, key) if name == "estop" else self._ring(key)
-            subscriptions.append((topic, key, source))
+            for each, _ in self._keys_of(topic, key):
+                source = self._latch(topic, key, each) if name == "estop" else self._ring(each)
+                subscriptions.append((topic, key, source))
+            if self.keys.announces:
+                self._graph.announce(Kind.SUBSCRIPTION, ros_topic(topic, robot), self.keys.domain)
         return Inbox(subscriptions, encoding_of, time.monotonic_ns, newest_only=newest_only)
 
     def _ring(self, key: str) -> Source:
-        return _Source(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)))
+        return _Source(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)), self.keys)
 
-    def _latch(self, topic: Topic, key: str) -> Source:
+    def _latch(self, topic: Topic, key: str, at: str) -> Source:
         latch = EStopLatch(topic, key)
-        handler: Any = zenoh.handlers.Callback(lambda sample: latch.offer(_raw(sample)), indirect=False)
-        self._latches.append(self._zenoh.declare_subscriber(key, handler))
+
+        def offer(sample: zenoh.Sample) -> None:
+            raw = as_plain(_raw(sample), self.keys)
+            if raw is not None:
+                latch.offer(raw)
+
+        self._latches.append(self._zenoh.declare_subscriber(at, zenoh.handlers.Callback(offer, indirect=False)))
         return latch
 
     def service_server(self, key: str) -> ServiceServer:
-        """Server of the requests under `key`; a loop polls it."""
-        return ServiceServer(_RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16))))
+        """Server of the requests under `key`, and of ROS 2's if it knows the service; a loop polls it."""
+        sources: list[RequestSource] = [
+            _RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16)))
+        ]
+        if self.keys.announces and key == SERVICES["goal"].pattern:
+            from tailor.schemas.ros2 import service
+
+            service.prime()
+            named = service.set_goal()
+            queryable = self._zenoh.declare_queryable(named.key(self.keys.domain), zenoh.handlers.RingChannel(16))
+            sources.append(_RosRequestSource(queryable))
+            self._graph.announce(Kind.SERVICE, named, self.keys.domain)
+        return ServiceServer(*sources)
 
     def call(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
         """Send a request to the service `key` and wait for the response.
@@ -155,15 +203,35 @@ class Session:
             return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
         return False, f"no service at {key}"
 
-    def subscribe_all(self, pattern: str) -> tuple[IngestQueue, Any]:
-        """Subscribe to all keys that match a pattern; undeclare the returned subscription at the end."""
+    def subscribe_all(self, pattern: str) -> tuple[IngestQueue, Subscriptions]:
+        """Subscribe to all keys that match a pattern of plain keys; undeclare the returned subscriptions at the end.
+
+        What comes under a key for rmw_zenoh gets its plain key, if this session's profile hears it.
+        """
         queue = IngestQueue()
 
         def put(sample: zenoh.Sample) -> None:  # copied in zenoh's thread: a waiting sample pins its whole batch
-            queue.put(_received_raw(sample, wall_ns()))
+            raw = as_plain(_received_raw(sample, wall_ns()), self.keys)
+            if raw is not None:
+                queue.put(raw)
 
+        patterns = [pattern]
+        if self.keys.announces and pattern != "**":
+            patterns.append(f"{self.keys.domain}/{pattern}/*/*")  # any type and hash; `as_plain` compares them
         handler: Any = zenoh.handlers.Callback(put, indirect=False)
-        return queue, self._zenoh.declare_subscriber(pattern, handler)
+        return queue, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
+
+
+class Subscriptions:
+    """Subscriptions that end together."""
+
+    def __init__(self, declared: Sequence[Any]) -> None:
+        self._declared = declared
+
+    def undeclare(self) -> None:
+        """End them."""
+        for each in self._declared:
+            each.undeclare()
 
 
 def _is_one_key(key: str) -> bool:
@@ -176,16 +244,17 @@ def _is_one_key(key: str) -> bool:
 
 
 class _Wire:
-    def __init__(self, publisher: zenoh.Publisher) -> None:
-        self._publisher = publisher
+    def __init__(self, publishers: Sequence[zenoh.Publisher]) -> None:
+        self._publishers = publishers
         builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; used by arrival.py
         self._note_reception = builder.set_receive(True).build()
 
     def put(self, payload: bytes, attachment: bytes | None) -> None:
-        self._publisher.put(payload, attachment=attachment, timestamp_instrumentation=self._note_reception)
+        for publisher in self._publishers:
+            publisher.put(payload, attachment=attachment, timestamp_instrumentation=self._note_reception)
 
     def matched(self) -> bool:
-        return bool(_status(self._publisher).matching)
+        return any(_status(publisher).matching for publisher in self._publishers)
 
 
 def _status(publisher: Any) -> Any:
@@ -193,12 +262,15 @@ def _status(publisher: Any) -> Any:
 
 
 class _Source:
-    def __init__(self, subscriber: Any) -> None:
-        self._subscriber = subscriber
+    def __init__(self, subscriber: Any, keys: KeyProfile) -> None:
+        self._subscriber, self._keys = subscriber, keys
 
     def receive(self) -> Raw | None:
-        sample = self._subscriber.try_recv()
-        return None if sample is None else _raw(sample)
+        while (sample := self._subscriber.try_recv()) is not None:
+            raw = as_plain(_raw(sample), self._keys)
+            if raw is not None:
+                return raw
+        return None
 
 
 class _RequestSource:
@@ -220,6 +292,25 @@ class _RequestSource:
             query.drop()
 
         return ServiceRequest(text, respond)
+
+
+class _RosRequestSource:
+    """Requests of `tailor_msgs/srv/SetGoal`."""
+
+    def __init__(self, queryable: Any) -> None:
+        self._queryable = queryable
+
+    def receive(self) -> ServiceRequest | None:
+        query = self._queryable.try_recv()
+        if query is None:
+            return None
+        payload, attachment = (None if part is None else part.to_bytes() for part in (query.payload, query.attachment))
+
+        def respond(response: bytes, origin: bytes | None) -> None:
+            query.reply(query.key_expr, response, encoding=BARE, attachment=origin)
+            query.drop()
+
+        return goal_request(payload, attachment, respond)
 
 
 def _raw(sample: zenoh.Sample) -> Raw:

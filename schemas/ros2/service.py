@@ -8,6 +8,8 @@ from typing import Any
 from tailor.schemas.codec import MAX_TRAILING_BYTES, damage
 from tailor.schemas.errors import DecodeRefusal, Rejected
 from tailor.schemas.packages.ros_names import PACKAGE
+from tailor.schemas.ros2.graph import Named
+from tailor.schemas.services import SERVICES
 from tailor.schemas.typesystem import add_service, from_bytes, hash_of, ros_class, to_bytes
 
 SET_GOAL = f"{PACKAGE}/srv/SetGoal"
@@ -19,6 +21,17 @@ MAX_BYTES = 65_536  # of a request
 def text() -> str:
     """Content of the `.srv` file."""
     return f"# Sets the goal of the running executive.\n{REQUEST}\n---\n{RESPONSE}\n"
+
+
+def set_goal() -> Named:
+    """The service as ROS 2 names it."""
+    return Named(SERVICES["goal"].ros_name, SET_GOAL, set_goal_hash())
+
+
+def prime() -> None:
+    """Use both messages once, before the first tick: the first use compiles them."""
+    goal_of(request(""))
+    result_of(response(True, ""))
 
 
 @cache

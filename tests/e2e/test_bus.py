@@ -105,9 +105,9 @@ def test_a_stop_is_not_pushed_out_by_later_messages_of_its_key(pair):
 def test_no_publisher_of_a_loop_waits_for_a_slow_reader_and_stops_and_commands_go_first(pair):
     a, _ = pair
     for name, topic in TOPICS.items():
-        declared = a.publisher(name, "agilo")._wire._publisher
-        assert declared.congestion_control == zenoh.CongestionControl.DROP
-        assert (declared.priority == zenoh.Priority.REAL_TIME) is (topic.priority == "real_time")
+        for declared in a.publisher(name, "agilo")._wire._publishers:
+            assert declared.congestion_control == zenoh.CongestionControl.DROP
+            assert (declared.priority == zenoh.Priority.REAL_TIME) is (topic.priority == "real_time")
     assert {name for name, topic in TOPICS.items() if topic.priority == "real_time"} == {
         "cmd_vel",
         "joint_cmd",

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
+from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.profiles import MAX_DOMAIN, KeyProfile, Profile
 
 REMOTE_ENDPOINT = "tls/0.0.0.0:7448"
 KEYS = "tailor-keys"
@@ -23,6 +25,18 @@ class BusSettings:
     remote: str = ""  # second endpoint, for other machines: mutual TLS; empty: none
     keys: str = KEYS  # of `remote`: folder that `tailor keys` writes
     key: str = ""  # of this process for a bus on another machine: a folder in there
+    # plain: <robot>/<topic>; rmw_zenoh: the keys of ROS 2 nodes under it; both: both at once
+    profile: Profile = "plain"
+    ros_domain: int = 0  # ROS_DOMAIN_ID, part of rmw_zenoh's keys
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.ros_domain <= MAX_DOMAIN:
+            raise UsageError(f"ros_domain is {self.ros_domain}, expected 0 to {MAX_DOMAIN}")
+
+    @property
+    def key_profile(self) -> KeyProfile:
+        """Key profile of the bus."""
+        return KeyProfile(self.profile, self.ros_domain)
 
 
 def configure_hosting(parser: argparse.ArgumentParser) -> None:

@@ -13,6 +13,7 @@ from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
+from tailor.schemas.ros2.profiles import PROFILES
 from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import BusSettings
 
@@ -21,6 +22,13 @@ def configure_bus(parser: argparse.ArgumentParser) -> None:
     """Flags of every command that connects to the bus."""
     parser.add_argument("--connect", metavar="ENDPOINT", help=f"bus endpoint (default {DEFAULT_ENDPOINT})")
     parser.add_argument("--key", metavar="DIR", help="key for a bus on another machine, made by `tailor keys new`")
+    parser.add_argument(
+        "--profile",
+        choices=PROFILES,
+        help="keys on the bus: <robot>/<topic> (plain, the default), those of ROS 2 under rmw_zenoh, or both; where a "
+        "bus runs on this machine, its own profile holds",
+    )
+    parser.add_argument("--ros-domain", metavar="N", type=int, help="ROS_DOMAIN_ID of rmw_zenoh's keys (default 0)")
     parser.add_argument("--config", metavar="FILE", default="", help="deployment file (TOML)")
 
 
@@ -35,7 +43,14 @@ def bus_settings(arguments: argparse.Namespace) -> BusSettings:
         from tailor.tools.cli.deployment import read_deployment
 
         settings = read_deployment(arguments.config).bus
-    return replace(settings, endpoint=arguments.connect or settings.endpoint, key=arguments.key or settings.key)
+    return with_bus_flags(settings, arguments)
+
+
+def with_bus_flags(settings: BusSettings, arguments: argparse.Namespace) -> BusSettings:
+    """Settings overridden by the flags of `configure_bus`."""
+    flags = {"endpoint": "connect", "key": "key", "profile": "profile", "ros_domain": "ros_domain"}
+    given = {name: vars(arguments).get(flag) for name, flag in flags.items()}
+    return replace(settings, **{name: value for name, value in given.items() if value is not None})
 
 
 def open_bus(
@@ -54,4 +69,4 @@ def open_bus(
     """
     settings = bus_settings(arguments)
     identity = identity_in(settings.key) if settings.key else None
-    return open_client(settings.endpoint, timeout_s, sender, role, identity)
+    return open_client(settings.endpoint, timeout_s, sender, role, identity, settings.key_profile)

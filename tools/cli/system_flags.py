@@ -6,7 +6,7 @@ import argparse
 from dataclasses import replace
 
 from tailor.tools.cli.deployment import Deployment, read_deployment
-from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.endpoint import configure_bus, with_bus_flags
 from tailor.tools.cli.number_checks import checked
 
 
@@ -33,8 +33,7 @@ def deployment_from(arguments: argparse.Namespace) -> Deployment:
       UsageError: The file cannot be read (see `read_deployment`), or a number is out of its range.
     """
     deployment = read_deployment(arguments.config)
-    if arguments.connect:
-        deployment = replace(deployment, bus=replace(deployment.bus, endpoint=arguments.connect))
+    deployment = replace(deployment, bus=with_bus_flags(deployment.bus, arguments))
     given = vars(arguments)
     settings = deployment.executive
     if given.get("seed") is not None:

@@ -33,7 +33,8 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
         raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
     if settings.security == "open":
         report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
-    with open_local_router(settings.endpoint, settings.security != "open") as (session, _):
+    secured, keys = settings.security != "open", settings.key_profile
+    with open_local_router(settings.endpoint, secured, keys) as (session, _):
         yield session
 
 

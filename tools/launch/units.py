@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from tailor.runtime import realtime
 from tailor.runtime.processes.child import tailor
+from tailor.schemas.ros2.profiles import PLAIN
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.launch import unit_settings
 from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
@@ -140,7 +141,8 @@ def _bus_flags(config: UnitsConfig) -> tuple[str, ...]:
     """Flags of every command; they override the file, whose relative paths mean another folder for a service."""
     file = ("--config", config.deployment_file) if config.deployment_file else ()
     key = ("--key", config.bus.key) if config.bus.key else ()
-    return (*file, "--connect", config.bus.endpoint, *key)
+    ros = ("--profile", config.bus.profile, "--ros-domain", str(config.bus.ros_domain))
+    return (*file, "--connect", config.bus.endpoint, *key, *(ros if config.bus.key_profile != PLAIN else ()))
 
 
 def _scenario(config: UnitsConfig) -> tuple[str, ...]:

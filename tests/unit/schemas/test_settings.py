@@ -23,7 +23,8 @@ def test_nested_tables_become_nested_settings():
     [
         (
             {"bus": {"endpont": "x"}},
-            "f.toml: unknown key 'bus.endpont' (expected one of: endpoint, security, remote, keys, key)",
+            "f.toml: unknown key 'bus.endpont' (expected one of: endpoint, security, remote, keys, key, profile, "
+            "ros_domain)",
         ),
         ({"executive": {"seed": "x"}}, "f.toml: 'executive.seed' is 'x', expected int"),
         ({"executive": {"seed": True}}, "f.toml: 'executive.seed' is True, expected int"),

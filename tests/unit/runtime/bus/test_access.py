@@ -1,8 +1,12 @@
 """Who may publish, call and serve what: the rules themselves, key by key. tests/faults tries them on a live bus."""
 
 import pytest
+import zenoh
 
 from tailor.runtime.bus import access
+from tailor.schemas.ros2.graph import Kind, Node, qos
+from tailor.schemas.ros2.profiles import ros_topic
+from tailor.schemas.ros2.service import set_goal
 from tailor.schemas.services import ROLES
 from tailor.schemas.topics import TOPICS
 
@@ -58,11 +62,49 @@ def test_a_player_of_recordings_drives_arms_and_stops_nobody():
 
 def test_nobody_publishes_on_a_pattern_that_matches_several_topics():
     keys = set().union(*(allowed(role, "put") for role in ROLES))
-    assert keys <= {topic.key.format(robot="*") for topic in TOPICS.values()}
+    plain = {topic.key.format(robot="*") for topic in TOPICS.values()}
+    assert keys <= plain | {ros_topic(topic, "*").key("*") for topic in TOPICS.values()}
+
+
+@pytest.mark.parametrize("name", TOPICS)
+def test_the_key_for_ros_gives_no_role_more_than_the_plain_key(name):
+    plain, ros = TOPICS[name].key.format(robot="*"), ros_topic(TOPICS[name], "*").key("*")
+    allowed_to = {key: [role for role in ROLES if key in allowed(role, "put")] for key in (plain, ros)}
+    assert allowed_to[ros] == allowed_to[plain]
+
+
+@pytest.mark.parametrize("name", TOPICS)
+def test_only_who_may_publish_a_topic_is_announced_as_its_publisher(name):
+    topic = TOPICS[name]
+    token = Node(0, "ab", "node").token_of(1, Kind.PUBLISHER, ros_topic(topic, "agilo"), qos())
+    roles = [role for role in ROLES if any(zenoh.KeyExpr(k).includes(token) for k in allowed(role, "liveliness_token"))]
+    assert roles == [role for role in ROLES if role in access.may_publish(topic)]
+
+
+def test_everybody_may_announce_a_node_and_a_subscription_and_look_at_the_graph():
+    node = Node(0, "ab", "node")
+    for role in ROLES:
+        patterns = [zenoh.KeyExpr(key) for key in allowed(role, "liveliness_token")]
+        for token in (node.token(), node.token_of(1, Kind.SUBSCRIPTION, ros_topic(TOPICS["cmd_vel"], "a"), qos())):
+            assert any(pattern.includes(token) for pattern in patterns)
+        assert allowed(role, "liveliness_query") == allowed(role, "declare_liveliness_subscriber") == {"@ros2_lv/**"}
+
+
+def test_only_the_executive_is_announced_as_the_server_of_goals_and_only_people_as_its_clients():
+    for kind, only in ((Kind.SERVICE, "executive"), (Kind.CLIENT, "people")):
+        token = Node(0, "ab", "node").token_of(1, kind, set_goal(), qos())
+        patterns = {role: [zenoh.KeyExpr(key) for key in allowed(role, "liveliness_token")] for role in ROLES}
+        assert [role for role in ROLES if any(pattern.includes(token) for pattern in patterns[role])] == [only]
 
 
 @pytest.mark.parametrize(
-    ("service", "server"), [("exec/goal", "executive"), ("*/sim/*", "driver"), ("recorder/snapshot", "recorder")]
+    ("service", "server"),
+    [
+        ("exec/goal", "executive"),
+        (set_goal().key("*"), "executive"),
+        ("*/sim/*", "driver"),
+        ("recorder/snapshot", "recorder"),
+    ],
 )
 def test_a_service_has_one_server_and_is_called_by_people(service, server):
     for message in ("declare_queryable", "reply"):
@@ -78,14 +120,15 @@ def test_everybody_may_subscribe_to_everything_and_query_nothing_else():
 
 
 def test_only_the_gateway_passes_everything_on():
-    assert allowed(access.GATEWAY, "put") == {"**"}
+    assert allowed(access.GATEWAY, "put") == {"**", "@ros2_lv/**"}
     assert [role for role in ROLES if access.GATEWAY in {rule["id"] for rule in rules_of(role)}] == []
 
 
 def test_every_topic_and_request_has_a_largest_size():
     limits = access.size_limits()
     sizes = {key: limit["size_limit"] for limit in limits for key in limit["key_exprs"] if limit["messages"] == ["put"]}
-    assert sizes == {topic.key.format(robot="*"): topic.max_bytes for topic in TOPICS.values()}
+    plain = {topic.key.format(robot="*"): topic.max_bytes for topic in TOPICS.values()}
+    assert sizes == plain | {ros_topic(topic, "*").key("*"): topic.max_bytes for topic in TOPICS.values()}
     assert (sizes["*/cmd_vel"], sizes["estop"]) == (4096, 4096)
     assert {"flows": ["ingress"], "messages": ["query"], "key_exprs": ["**"], "size_limit": 65536} in limits
     assert {tuple(limit["flows"]) for limit in limits} == {("ingress",)}
@@ -94,5 +137,7 @@ def test_every_topic_and_request_has_a_largest_size():
 def test_requests_to_stop_and_to_arm_are_limited_in_rate_and_commands_are_not():
     (limits,) = access.rate_limits()
     rates = {rule["key_expr"]: rule["freq"] for rule in limits["rules"]}
-    assert rates == dict.fromkeys(["*/arm_request", "*/self_arm", "estop"], 1000.0)
+    limited = [TOPICS[name] for name in ("arm_request", "self_arm", "estop")]
+    ros = [ros_topic(topic, "*").key("*") for topic in limited]
+    assert rates == dict.fromkeys(["*/arm_request", "*/self_arm", "estop", *ros], 1000.0)
     assert (limits["flows"], sorted(limits["messages"])) == (["ingress"], ["delete", "put"])

@@ -16,7 +16,7 @@ def opened(monkeypatch):
     opened = []
 
     class Router:
-        def __init__(self, endpoint, secured):
+        def __init__(self, endpoint, secured, keys):
             opened.append((endpoint, secured))
 
         def __enter__(self):

@@ -1,0 +1,87 @@
+"""A session's side of rmw_zenoh, without zenoh: its tokens, received keys as plain ones, requests of the service."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from tailor.runtime.bus.attachment import Origin, pack, unpack
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.service import ServiceRequest
+from tailor.runtime.clock import wall_ns
+from tailor.schemas.errors import Rejected
+from tailor.schemas.ros2.graph import Kind, Named, Node, qos
+from tailor.schemas.ros2.profiles import COPY, KeyProfile
+from tailor.schemas.typesystem import ros_type
+
+NAMED_TYPE = "application/cdr;"
+
+
+class Announcer:
+    """Tokens of one node: they end with its session, so what a process declares disappears with it."""
+
+    def __init__(self, session: str, name: str, declare: Callable[[str], Any]) -> None:
+        """Announce nothing yet.
+
+        Args:
+          session: zenoh's id of the session.
+          name: Name of the node.
+          declare: Declares a liveliness token; what it returns is kept.
+        """
+        self._session, self._name, self._declare = session, name, declare
+        self._tokens: dict[tuple[int, Kind, Named | None], Any] = {}  # one each, however often a topic is subscribed to
+
+    def announce(self, kind: Kind, what: Named, domain: int) -> None:
+        """Declare a publisher, subscription, service or client; before the first one of a domain the node itself."""
+        node = Node(domain, self._session, self._name)
+        if (domain, Kind.NODE, None) not in self._tokens:
+            self._tokens[domain, Kind.NODE, None] = self._declare(node.token())
+        if (domain, kind, what) not in self._tokens:
+            # Best effort: the one quality of service of a subscription that matches every publisher.
+            quality = qos(reliable=kind is not Kind.SUBSCRIPTION)
+            self._tokens[domain, kind, what] = self._declare(node.token_of(len(self._tokens), kind, what, quality))
+
+
+def as_plain(raw: Raw, keys: KeyProfile) -> Raw | None:
+    """A received publication under its plain key.
+
+    One that comes under a key for rmw_zenoh which this session does not hear stays as it is.
+
+    Returns:
+      The publication; None if it is the copy of one that the session hears under its plain key.
+    """
+    known = keys.heard(raw.key)
+    if known is None:
+        return raw
+    key, topic = known
+    if raw.encoding == COPY and keys.plain(topic):
+        return None
+    names_type = raw.encoding.startswith(NAMED_TYPE) and raw.encoding != COPY
+    return replace(raw, key=key, encoding=raw.encoding if names_type else f"{NAMED_TYPE}{ros_type(topic.type)}")
+
+
+def goal_request(
+    payload: bytes | None, attachment: bytes | None, respond: Callable[[bytes, bytes | None], None]
+) -> ServiceRequest | None:
+    """A request of `tailor_msgs/srv/SetGoal`; None if it was damaged, and is refused already.
+
+    Args:
+      payload: Its CDR bytes.
+      attachment: Its number and its client, which the response repeats.
+      respond: Sends the CDR bytes and the attachment of a response.
+    """
+    from tailor.schemas.ros2.service import goal_of, response
+
+    origin = unpack(attachment)
+    number = origin.sequence if isinstance(origin, Origin) else 0
+    sender = origin.sender if isinstance(origin, Origin) else ""
+
+    def answer(accepted: bool, text: str) -> None:
+        respond(response(accepted, text), pack(Origin(number, wall_ns(), sender)) if sender else None)
+
+    goal = goal_of(payload or b"")
+    if isinstance(goal, Rejected):
+        answer(False, f"the request is {goal.reason}")
+        return None
+    return ServiceRequest(goal, answer)
