@@ -72,6 +72,12 @@ class B21Body:
         home = dict(zip(JOINTS, HOME, strict=True))
         self.place({"x": x, "y": y, "phi": phi, "width": GRIPPER_MAX_M, **home, **start})
 
+    @property
+    def client(self) -> int:
+        """Number of its world in PyBullet; another one after each reset."""
+        assert self._engine is not None
+        return self._engine.client
+
     def place(self, values: Mapping[str, float]) -> None:
         """Move robot, furniture or cups; push, drop, or make grasps fail. Values left out stay."""
         for name in MOVABLE:
@@ -96,12 +102,11 @@ class B21Body:
 
     def advance(self, duration_ns: int) -> list[Reading]:
         """See Body.advance; rates are those of driver.toml, truth 10 Hz."""
-        assert self._engine is not None
-        readings: list[Reading] = []
+        readings, client = list[Reading](), self.client
         for _ in range(duration_ns // STEP_NS):
             self._firmware.tick(self._robot.angles, self._robot.width)
             self._robot.drive(self._firmware, self._grasp.width)
-            self._bullet.stepSimulation(physicsClientId=self._engine.client)
+            self._bullet.stepSimulation(physicsClientId=client)
             self._robot.read()
             self._feel()
             self._time_ns += STEP_NS

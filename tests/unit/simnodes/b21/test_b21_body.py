@@ -70,7 +70,7 @@ def test_the_robot_is_that_of_the_kinematics():
     for _ in range(10):
         angles = [rng.uniform(joint.lower, joint.upper) for joint in ARM]
         body = made(x=0.4, y=0.2, phi=1.0, **dict(zip(JOINTS, angles, strict=True)))
-        link = bullet.getLinkState(body._robot.body, body._robot.hand, physicsClientId=body._engine.client)
+        link = bullet.getLinkState(body._robot.body, body._robot.hand, physicsClientId=body.client)
         expected = on_plane(0.4, 0.2, 1.0).then(tool_pose(angles))
         finger = bullet.multiplyTransforms(link[4], link[5], (0.12, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
         assert finger[0] == pytest.approx((expected.x, expected.y, expected.z), abs=1e-6)
