@@ -17,8 +17,8 @@ from tailor.simnodes.b21.body import B21Body
 from tailor.simnodes.b21.engine import pybullet
 
 SIZE = (960, 600)  # pixels
-EYE, TARGET = (1.5, -1.9, 2.6), (-1.1, 0.3, 0.65)  # m, map frame
-HALF_VIEW_DEG = 26.0
+EYE, TARGET = (-0.3, -2.9, 2.1), (-1.35, 0.25, 0.75)  # m, map frame
+HALF_VIEW_DEG = 21.0
 TAKING = (-0.302, 0.093, -1.491, 0.0, 1.398, 0.0)  # an arm above a cup at the table's edge
 
 
