@@ -59,6 +59,11 @@ class Shell:
         self._planner = ExternalPlanner(external.command, external.limit_s)
         self._state = initial_state(context)
 
+    @property
+    def state(self) -> State:
+        """The state after the newest tick; another thread may read it, but not step it."""
+        return self._state
+
     def run(self, goal: str, until: Callable[[State], bool]) -> State:
         """Run ticks until `until` is True; the last tick brings the robot to rest.
 

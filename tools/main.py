@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import importlib
+import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
@@ -90,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         extra = extra_of(error) or extra_of(error.__cause__)
         if not extra and isinstance(error, ModuleNotFoundError):
             raise
-        print(f"{plain(name)}: {plain(advice([extra]) if extra else str(error))}", file=sys.stderr)
+        _report(f"{plain(name)}: {plain(advice([extra]) if extra else str(error))}")
         return 2
     except KeyboardInterrupt:
         return 130
@@ -99,7 +100,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     except OSError as error:  # of a named path, or of standard output, which has no name
         path = "" if error.filename is None else f"{error.filename}: "
-        print(f"{plain(name)}: {plain(f'{path}{error.strerror or error}')}", file=sys.stderr)
+        _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}')}")
         return 1 if error.filename is None else 2
 
 
@@ -112,9 +113,15 @@ def _run(arguments: list[str]) -> int:
         return 0
     name, *rest = arguments
     if name not in COMMANDS:
-        print(f"tailor: unknown command '{plain(name)}'{_nearest(name, COMMANDS)} (see tailor --help)", file=sys.stderr)
+        _report(f"tailor: unknown command '{plain(name)}'{_nearest(name, COMMANDS)} (see tailor --help)")
         return 2
     return _call(name, rest)
+
+
+def _report(line: str) -> None:
+    """Print an error; red on a terminal, unless NO_COLOR is set (no-color.org)."""
+    coloured = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+    print(f"\x1b[31m{line}\x1b[0m" if coloured else line, file=sys.stderr)
 
 
 def _call(name: str, rest: Sequence[str]) -> int:

@@ -29,6 +29,11 @@ class Notifier:
         self._alive_at_s = -ALIVE_PERIOD_S
         self._unsent: dict[str, str] = {}  # variables whose datagram the supervisor's full queue refused
 
+    @property
+    def supervised(self) -> bool:
+        """Whether a supervisor takes the reports."""
+        return self._socket is not None
+
     @classmethod
     def from_environment(cls, environment: MutableMapping[str, str] = os.environ) -> Notifier:
         """Notifier to the socket of NOTIFY_SOCKET, which is removed: no child of this process may report for it."""

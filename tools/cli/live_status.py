@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
+from rich.text import Text
 
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, ProcessStates, Subgoals, TickReport
 from tailor.schemas.reason_text import reason_text, result_text
@@ -54,7 +55,7 @@ class _Panel:
         self._processes: ProcessStates | None = None
 
     def report(self, line: str) -> None:
-        self._live.console.print(line, highlight=False, markup=False)
+        self._live.console.print(Text(line, style=colour_of(line)))
 
     def show(self, message: Message) -> None:
         if isinstance(message, ExecStatus):
@@ -75,7 +76,8 @@ class _Panel:
         if status is None:
             grid.add_row("waiting for the executive")
             return grid
-        grid.add_row("mode", f"{status.mode} {reason_text(status.reason, status.detail)}".strip())
+        mode = Text(f"{status.mode} {reason_text(status.reason, status.detail)}".strip(), style=colour_of(status.mode))
+        grid.add_row("mode", mode)
         predicted = max(status.action_predicted_s, 0.1)
         if status.action:
             bar = ProgressBar(total=predicted, completed=min(status.action_elapsed_s, predicted), width=30)
@@ -88,6 +90,19 @@ class _Panel:
         return grid
 
 
+COLOURS = {
+    "red": ("FAULT", "failed", "killed", "ended with", "estopped", "did not start"),
+    "yellow": ("HOLDING", "DISARMED", "stopped", "aborted", "warning"),
+    "green": ("achieved", "done"),
+    "cyan": ("EXECUTING",),
+}
+
+
+def colour_of(line: str) -> str:
+    """Colour of a line for people by the state that it names; empty: none."""
+    return next((colour for colour, words in COLOURS.items() if any(word in line for word in words)), "")
+
+
 def processes_text(states: ProcessStates) -> str:
     """Processes with their states, e.g. "sim running  executive running (2 starts)  record ended"."""
     parts = []
@@ -98,10 +113,10 @@ def processes_text(states: ProcessStates) -> str:
 
 
 @contextmanager
-def screen() -> Iterator[Screen]:
-    """Screen for the kind of stdout: `_Panel` for a terminal, `_Lines` otherwise."""
-    console = Console()
-    if not console.is_terminal:
+def screen(quiet: bool = False) -> Iterator[Screen]:
+    """Screen for the kind of stdout: `_Panel` for a terminal, `_Lines` otherwise; quiet: lines on stderr."""
+    console = Console(stderr=quiet)
+    if quiet or not console.is_terminal:
         yield _Lines(console)
         return
     with Live(console=console, refresh_per_second=10, transient=True) as live:

@@ -112,7 +112,13 @@ class _System:
             elif self._senders.sent(sample, "executive"):
                 self._screen.show(message)
                 if isinstance(message, ExecStatus):
-                    self._result = result_text(message.result, message.result_reason, message.result_detail)
+                    self._take_result(message)
+
+    def _take_result(self, status: ExecStatus) -> None:
+        result = result_text(status.result, status.result_reason, status.result_detail)
+        if result and result != self._result and not self._config.once:
+            self._screen.report(f'{result}. next: tailor goal "{status.goal}" pursues a goal; Ctrl-C stops the system')
+        self._result = result
 
     def _poll(self, now_ns: int) -> None:
         self._supervisor.poll(now_ns)

@@ -29,14 +29,16 @@ if TYPE_CHECKING:
 MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
 
 
-def train_models(request: TrainingRequest, on_action: Callable[[str], None] = lambda _: None) -> list[dict[str, Any]]:
+def train_models(
+    request: TrainingRequest, on_action: Callable[[str, int, int], None] = lambda *_: None
+) -> list[dict[str, Any]]:
     """Train the models of every requested action and write them to the zoo.
 
     Errors in the request are raised before the first model is trained.
 
     Args:
       request: What to train.
-      on_action: Called with the name of each action before its models are trained.
+      on_action: Called before the models of each action are trained, with its name, its number and the number of all.
 
     Returns:
       One row per model: robot, action, kind and test results.
@@ -47,8 +49,8 @@ def train_models(request: TrainingRequest, on_action: Callable[[str], None] = la
     request, sets = checked(request), data_sets(request)
     (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
     rows: list[dict[str, Any]] = []
-    for action, folders in sets.items():
-        on_action(action)
+    for number, (action, folders) in enumerate(sets.items()):
+        on_action(action, number, len(sets))
         rows.extend(train_action(folders, request))
     return rows
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 
 from tailor.tools.cli.number_checks import at_least
@@ -76,14 +77,24 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.seed,
         clearance_learner=arguments.clearance_learner,
     )
-    console = Console(stderr=True)
-    with console.status("reading data sets") as status:
-        rows = train_models(request, lambda action: status.update(f"training {action}"))
+    rows = _trained(request)
     if arguments.json:
         print(json.dumps(rows))
     else:
         table_console().print(_table(rows))
     return 0
+
+
+def _trained(request: TrainingRequest) -> list[dict[str, Any]]:
+    """Rows of the trained models; a bar counts the actions."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        bar = progress.add_task("reading data sets", total=None)
+
+        def on_action(action: str, number: int, total: int) -> None:
+            progress.update(bar, description=f"training {action}", completed=number, total=total)
+
+        return train_models(request, on_action)
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
@@ -36,6 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
     )
     add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
+    add("--json", action="store_true", help="print the numbers of messages as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,7 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
     copied = copy(recording.path, target, keep, note)
-    if copied.damage.text():
-        print(f"{recording.path}: {copied.damage.text()}")
-    print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
+    found = {"output": str(target), "kept": copied.kept, "left_out": copied.left_out, "damage": copied.damage.text()}
+    if arguments.json:
+        print(json.dumps(found))
+    else:
+        if copied.damage.text():
+            print(f"{recording.path}: {copied.damage.text()}")
+        print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
     return 0 if copied.kept else 1

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Mapping
 from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
@@ -13,6 +15,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor recover`."""
     parser.add_argument("file", help="truncated or damaged recording (MCAP)")
     parser.add_argument("-o", "--output", metavar="FILE", help="new file (default: NAME-recovered.mcap)")
+    parser.add_argument("--json", action="store_true", help="print damage and numbers of messages as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -22,10 +25,21 @@ def run(arguments: argparse.Namespace) -> int:
     for _ in scan(source, damage):
         pass
     if not damage.text():
-        print(f"{source}: not damaged, nothing to recover")
+        _print(arguments.json, {"file": str(source), "damage": ""}, f"{source}: not damaged, nothing to recover")
         return 0
     target = Path(arguments.output) if arguments.output else source.with_name(f"{source.stem}-recovered.mcap")
     copied = copy(source, target, lambda *_: True, {})
-    print(f"{source}: {copied.damage.text()}")
-    print(f"{target}: {copied.kept} messages recovered, {copied.left_out} of unknown channels skipped")
+    found = {
+        "file": str(source),
+        "damage": copied.damage.text(),
+        "output": str(target),
+        "recovered": copied.kept,
+        "of_unknown_channels": copied.left_out,
+    }
+    rest = f"{copied.kept} messages recovered, {copied.left_out} of unknown channels skipped"
+    _print(arguments.json, found, f"{source}: {copied.damage.text()}\n{target}: {rest}")
     return 0 if copied.kept else 1
+
+
+def _print(as_json: bool, found: Mapping[str, object], text: str) -> None:
+    print(json.dumps(found) if as_json else text)

@@ -7,6 +7,7 @@ changed, such as an e-stop that somebody pressed meanwhile.
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import time
 
@@ -32,12 +33,13 @@ TEXTS = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor arm`."""
-    parser.add_argument("robot", nargs="?", default="agilo", help="robot of the driver (default agilo)")
+    parser.add_argument("robot", help="robot of the driver, e.g. agilo")
     parser.add_argument("--off", action="store_true", help="disarm instead")
     parser.add_argument("--reset", action="store_true", help="also release a latched emergency stop")
     parser.add_argument(
         "--sender", metavar="HEX", help="sender to obey, 32 hex digits (default: the running executive)"
     )
+    parser.add_argument("--json", action="store_true", help="print outcome, mode and reason as JSON")
     configure_bus(parser)
 
 
@@ -50,13 +52,22 @@ def run(arguments: argparse.Namespace) -> int:
     with open_bus(arguments, "people") as session:
         sender = arguments.sender or ("" if arguments.off else _executive_sender(session))
         if not sender and not arguments.off:
-            print("no executive is running, expected one or --sender")
+            _print(arguments, robot, "no executive", "no executive is running, expected one or --sender", None)
             return 1
         request = ArmRequest(not arguments.off, arguments.reset and not arguments.off, sender, 0)
         outcome, exchange = _exchange(session, robot, request)
     state = _text(robot, exchange.state)
-    print(plain(TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot)))
+    text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot)
+    _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.state)
     return 0 if outcome is Outcome.CONFIRMED else 1
+
+
+def _print(arguments: argparse.Namespace, robot: str, outcome: str, text: str, state: DriverState | None) -> None:
+    if not arguments.json:
+        print(plain(text))
+        return
+    driver = {} if state is None else {"mode": state.mode, "reason": state.reason, "detail": state.detail}
+    print(json.dumps({"robot": robot, "outcome": outcome, "driver": driver, "text": text}))
 
 
 def _executive_sender(session: Session) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -33,6 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed", type=int, default=1, help="random seed of start, ball, target and noise (default %(default)s)"
     )
+    parser.add_argument("--json", action="store_true", help="print the results of both runs as JSON at the end")
     parser.add_argument("--output", type=Path, default=Path("out/demo"), help="output folder (default %(default)s)")
 
 
@@ -51,11 +54,24 @@ def run(arguments: argparse.Namespace) -> int:
         if stop.requested:
             return 130
         tracks.append(recorded_track(f"{name} (h = {horizon})", recording))
-    console = Console(highlight=False, markup=False, soft_wrap=True)
-    console.print(summary(tracks))
     _write(tracks, folder)
-    console.print("\n".join(next_lines(folder)))
+    if arguments.json:
+        print(json.dumps([_row(track) for track in tracks]))
+    else:
+        console = Console(highlight=False, markup=False, soft_wrap=True)
+        console.print(summary(tracks))
+        console.print("\n".join(next_lines(folder)))
     return 0 if all(track.result == "achieved" for track in tracks) else 1
+
+
+def _row(track: Track) -> dict[str, Any]:
+    return {
+        "run": track.title,
+        "result": track.result,
+        "actual_s": round(track.actual_s, 3),
+        "predicted_s": round(track.predicted_s, 3),
+        "missed_ticks": track.missed_ticks,
+    }
 
 
 def _write(tracks: Sequence[Track], folder: Path) -> None:
@@ -89,7 +105,7 @@ def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording:
     settings = config.settings
     refinement = replace(settings.refinement, horizon=horizon)
     config = replace(config, settings=replace(settings, seed=arguments.seed, refinement=refinement))
-    with screen() as shown:
+    with screen(quiet=arguments.json) as shown:
         shown.report(f"{name}: h = {horizon}, scenario {arguments.scenario}, seed {arguments.seed}")
         result = run_system(LaunchConfig(config, private_bus(), recording, once=True), shown, stop)
         shown.report(f"{name}: {result or 'stopped'}")

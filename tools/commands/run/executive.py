@@ -8,6 +8,8 @@ from dataclasses import replace
 
 from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.context import Context, check_goal
+from tailor.executive.core.reasons import Reason
+from tailor.executive.core.state import State
 from tailor.executive.shell import Shell
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock, wall_ns
@@ -22,6 +24,7 @@ from tailor.tools.cli.sender_flag import checked_sender, configure_sender, sende
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 from tailor.tools.launch.package_check import check_package
+from tailor.tools.launch.state_lines import state_lines
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,8 +57,35 @@ def run(arguments: argparse.Namespace) -> int:
         origin = {**provenance(config, context), "machine": platform_fingerprint()}
         origin["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), origin, notifier)
-        state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
+        print_states = not notifier.supervised
+        if print_states:
+            print(beginning(context, goal), flush=True)
+        with state_lines(lambda: state_line(shell.state, context.domain.robot), print_states):
+            state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
     return 1 if arguments.once and state.task.result != "achieved" else 0
+
+
+def beginning(context: Context, goal: str) -> str:
+    """What the executive is about to do."""
+    pursued = f"goal {goal}" if goal else "no goal yet; `tailor goal` sends one"
+    return f"executive of {context.domain.robot}: {pursued}; Ctrl-C stops"
+
+
+def state_line(state: State, robot: str) -> str:
+    """What the executive waits for or does, in one line."""
+    if state.task.result:
+        return f"{state.task.result_text}; `tailor goal` sends another goal"
+    running = state.task.running
+    doing = f": {running.action.name}" if running is not None else ""
+    return f"{state.mode}{doing}" + (f": {state.cause}" if state.cause is not None else "") + _advice(state, robot)
+
+
+def _advice(state: State, robot: str) -> str:
+    """How people go on where the executive can only wait."""
+    reason = state.cause.reason if state.cause is not None else None
+    if reason is Reason.DRIVER_NOT_ARMED:
+        return f"; `tailor arm {robot}` arms it"
+    return f"; `tailor sim {robot}` or a driver of {robot} is expected" if reason is Reason.DRIVER_SILENT else ""
 
 
 def _goal(context: Context, arguments: argparse.Namespace) -> str:

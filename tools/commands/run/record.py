@@ -29,7 +29,7 @@ from tailor.runtime.recordings.snapshot import SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 
@@ -80,6 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
         queue, subscription = session.subscribe_all("**")
         recorder = _recorder(arguments, queue)
         requests = session.service_server(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
+        if not (arguments.quiet or notifier.supervised):
+            print(_beginning(arguments), file=sys.stderr, flush=True)
         notifier.ready()
         _record(recorder, requests, stop, session, notifier, quiet=arguments.quiet)
         notifier.stopping()
@@ -152,6 +154,11 @@ def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:
         request.accept("the snapshot will be written")
     else:
         request.refuse("no message has been received yet, so there is nothing to write")
+
+
+def _beginning(arguments: argparse.Namespace) -> str:
+    what = f"the last {arguments.snapshot:g} s, in memory" if arguments.snapshot else "into a file"
+    return f"recording {what}, waiting for messages on {bus_settings(arguments).endpoint}; Ctrl-C ends it"
 
 
 def _line(health: Health) -> str:

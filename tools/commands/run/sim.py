@@ -14,12 +14,15 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
+from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
+from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
 from tailor.tools.cli.system_flags import deployment_from
+from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world
 
 MAX_SPEED = 10.0
@@ -74,4 +77,19 @@ def run_node(
 ) -> None:
     """Put a world on the bus, under a new random epoch."""
     epoch = 1 + secrets.randbelow(2**62)
-    Node(world, declared, session, MonotonicClock(), epoch, speed, leave).run(stopped, notifier)
+    node = Node(world, declared, session, MonotonicClock(), epoch, speed, leave)
+    print_states = not notifier.supervised
+    if print_states:
+        print(f"simulated {world.body.robot} on the bus; Ctrl-C stops", flush=True)
+    with state_lines(lambda: state_line(node.driver.guard, world.body.robot), print_states):
+        node.run(stopped, notifier)
+
+
+def state_line(guard: Guard, robot: str) -> str:
+    """What the driver obeys or waits for, in one line."""
+    if guard.mode is Mode.ARMED:
+        return f"armed: obeys {guard.sender[:8]}"
+    reset = " --reset" if guard.mode is Mode.ESTOPPED else ""
+    return (
+        f"{guard.mode}: {reason_text(guard.reason, guard.detail)}; `tailor arm {robot}{reset}` arms it for an executive"
+    )

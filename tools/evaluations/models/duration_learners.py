@@ -16,6 +16,7 @@ from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, publish_report
 
 
@@ -46,7 +47,7 @@ def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
     test = duration_examples([episode for episode in unseen if episode.finished], 1)
     space = projective
     rows = []
-    for name in learners.DURATION_LEARNERS:
+    for name in tracked(list(learners.DURATION_LEARNERS), f"{action}: learners"):
         started = time.perf_counter()
         model = fit("duration", name, train, space, arguments.seed)
         seconds = time.perf_counter() - started

@@ -14,6 +14,7 @@ from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, publish_report
 
 
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     space = projective
     observed = test.targets > 0.5
     rows = []
-    for name in learners.SUCCESS_LEARNERS:
+    for name in tracked(list(learners.SUCCESS_LEARNERS), "learners"):
         model = fit("success", name, train, space, arguments.seed)
         rows.append(_row(name, model.predict_proba(space(test.arguments))[:, 1], model.threshold_, observed))
     if weka.installed():

@@ -15,6 +15,7 @@ from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, seeded
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, publish_report
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)
     test = duration_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
     rows: list[dict[str, Any]] = []
-    for name in ORDER:
+    for name in tracked(ORDER, "feature spaces"):
         space = feature_space(name)
         learner = fit("duration", arguments.learner, train, space, arguments.seed)
         off = np.abs(learner.predict(space(test.arguments)) - test.targets)

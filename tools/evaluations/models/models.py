@@ -22,6 +22,7 @@ from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 
@@ -73,7 +74,7 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     durations, successes = load_robot(declared.robot, zoo)
     seed = seeds_of(domain, arguments).first
     made = []
-    for name, action in sorted(declared.actions.items()):
+    for name, action in tracked(sorted(declared.actions.items()), "actions"):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
         floor = fresh.noise_floor(declared.robot, name, seed, arguments.jobs) if floors else {}
         row = {"domain": domain, "action": name, **_duration(durations[action.duration_model], data, seed)}

@@ -19,6 +19,7 @@ from tailor.models.training.training import fit
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models.learned import configure_learned, seeded
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, publish_report
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import Policy, modelled_actions, models_hash, run_policy
@@ -43,7 +44,11 @@ def run(arguments: argparse.Namespace) -> int:
     arguments = seeded(arguments)
     domain = gathering.domain_of(arguments.robot)
     folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
-    rows = [row for action in modelled_actions(domain) for row in _rows(action, folders, arguments)]
+    rows = [
+        row
+        for action in tracked(list(modelled_actions(domain)), "actions")
+        for row in _rows(action, folders, arguments)
+    ]
     remarks = [
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",

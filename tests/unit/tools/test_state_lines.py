@@ -1,0 +1,59 @@
+"""What `tailor executive` and `tailor sim` print when people start them by hand."""
+
+import time
+
+import pytest
+
+from tailor.executive.core.reasons import Cause, Reason
+from tailor.executive.core.state import Result, State, Task
+from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.simnodes.driver import Driver
+from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.tools.commands.run import executive, sim
+from tailor.tools.launch.state_lines import state_lines
+
+
+def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
+    states = iter(["", "waiting", "waiting", "running"])
+    current = [""]
+
+    def text():
+        current[0] = next(states, current[0])
+        return current[0]
+
+    with state_lines(text):
+        time.sleep(0.9)
+    assert capsys.readouterr().out == "waiting\nrunning\n"
+
+
+def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
+    assert Notifier(str(tmp_path / "socket")).supervised
+    assert not SILENT.supervised
+    with state_lines(lambda: "waiting", wanted=False):
+        time.sleep(0.3)
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("reason", "advice"),
+    [
+        (Reason.DRIVER_SILENT, "; `tailor sim agilo` or a driver of agilo is expected"),
+        (Reason.DRIVER_NOT_ARMED, "; `tailor arm agilo` arms it"),
+        (Reason.INPUT_STALE, ""),
+    ],
+)
+def test_an_executive_that_waits_names_what_people_can_do(reason, advice):
+    state = State(belief=None, command=(), cause=Cause(reason, "detail"))
+    assert executive.state_line(state, "agilo") == f"DISARMED: {reason}: detail{advice}"
+
+
+def test_an_executive_that_has_achieved_its_goal_names_the_next_step():
+    state = State(belief=None, command=(), task=Task(result=Result.ACHIEVED))
+    assert executive.state_line(state, "agilo") == "achieved; `tailor goal` sends another goal"
+
+
+def test_a_simulator_that_waits_names_the_command_that_arms_it():
+    guard = Driver(shipped_driver_spec("agilo"), 1).guard
+    assert sim.state_line(guard, "agilo") == "disarmed: just started; `tailor arm agilo` arms it for an executive"
+    guard.arm(0, "a" * 32, 1)
+    assert sim.state_line(guard, "agilo") == "armed: obeys aaaaaaaa"

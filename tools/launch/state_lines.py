@@ -1,0 +1,46 @@
+"""Prints what a process waits for and does, a line per change, beside a loop that must never wait for a terminal."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterator
+
+from tailor.tools.cli.plain_text import plain
+
+PERIOD_S = 0.2
+
+
+@contextlib.contextmanager
+def state_lines(text: Callable[[], str], wanted: bool = True) -> Iterator[None]:
+    """Print a text whenever it has changed, from a thread of its own.
+
+    Args:
+      text: Returns the present state in one line; empty: nothing to print. It is called in the thread.
+      wanted: False: print nothing, for a process whose supervisor reports its state.
+    """
+    ended = threading.Event()
+    thread = threading.Thread(target=_print, args=(text, ended), name="state lines", daemon=True)
+    if wanted:
+        thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        if wanted:
+            thread.join(1.0)  # a terminal that is stopped must not keep the process
+
+
+def _print(text: Callable[[], str], ended: threading.Event) -> None:
+    with contextlib.suppress(OSError):  # a thread inherits the real-time priority of the one that starts it
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    last = ""
+    while True:
+        over = ended.wait(PERIOD_S)
+        line = text()
+        if line and line != last:
+            last = line
+            print(plain(line), flush=True)
+        if over:
+            return
