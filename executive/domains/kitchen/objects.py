@@ -1,0 +1,77 @@
+"""Cups, tables and stool as the kitchen robot believes them: where they stand in the map, seen or held."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from tailor.executive.belief.angles import wrap
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.schemas.messages.kitchen import ObjectPercept
+
+VARIANCES = (1e-8, 1.0)  # of a percept, whatever was received
+MOVED_SIGMAS, MOVED_M = 5.0, 0.04  # a percept farther off than both is not noise: the object was moved
+LEAST_M2 = 1e-7  # variance below which no estimate falls, so that it can still follow
+CREDIBLE_M = 20.0
+MOST = 24  # names that are kept
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """One object: its pose in the map frame as in ObjectPercept (m, rad), and the variance of x and y."""
+
+    name: str
+    x: float
+    y: float
+    z: float
+    phi: float
+    tilt: float
+    var_xy: float
+    seen_ns: int
+
+
+def see(things: tuple[Thing, ...], pose: Pose, percepts: tuple[ObjectPercept, ...], now_ns: int) -> tuple[Thing, ...]:
+    """Fuse a picture, taken from a pose; objects stay where they are until they are seen elsewhere."""
+    known = {thing.name: thing for thing in things}
+    for percept in percepts:
+        if math.hypot(percept.x, percept.y) < CREDIBLE_M and (percept.name in known or len(known) < MOST):
+            known[percept.name] = _fused(known.get(percept.name), _in_map(percept, pose, now_ns))
+    return tuple(known[name] for name in sorted(known))
+
+
+def named(things: tuple[Thing, ...], name: str) -> Thing | None:
+    """The object of a name; None if it was never seen."""
+    return next((thing for thing in things if thing.name == name), None)
+
+
+def carried(things: tuple[Thing, ...], name: str, x: float, y: float, z: float) -> tuple[Thing, ...]:
+    """The objects, of which the one of that name is at a place in the map."""
+    return tuple(replace(thing, x=x, y=y, z=z) if thing.name == name else thing for thing in things)
+
+
+def _in_map(percept: ObjectPercept, pose: Pose, now_ns: int) -> Thing:
+    c, s = math.cos(pose.phi), math.sin(pose.phi)
+    x, y = pose.x + c * percept.x - s * percept.y, pose.y + s * percept.x + c * percept.y
+    lower, upper = VARIANCES
+    heading_m2 = max(0.0, pose.covariance[5]) * (percept.x**2 + percept.y**2)
+    var_xy = min(upper, max(lower, percept.var_xy) + max(0.0, pose.covariance[0]) + heading_m2)
+    return Thing(percept.name, x, y, percept.z, wrap(pose.phi + percept.phi), percept.tilt, var_xy, now_ns)
+
+
+def _fused(old: Thing | None, new: Thing) -> Thing:
+    if old is None:
+        return new
+    off = math.hypot(new.x - old.x, new.y - old.y)
+    if off > max(MOVED_M, MOVED_SIGMAS * math.sqrt(old.var_xy + new.var_xy)) or abs(new.z - old.z) > MOVED_M:
+        return new
+    gain = old.var_xy / (old.var_xy + new.var_xy)
+    return Thing(
+        old.name,
+        old.x + gain * (new.x - old.x),
+        old.y + gain * (new.y - old.y),
+        old.z + gain * (new.z - old.z),
+        wrap(old.phi + gain * wrap(new.phi - old.phi)),
+        new.tilt,
+        max(LEAST_M2, (1.0 - gain) * old.var_xy),
+        new.seen_ns,
+    )
