@@ -62,6 +62,7 @@ class Reach:
     reached_radps: float = 0.25
     reconsidered_s: float = 0.08
     settled_s: float = 0.5  # before the waypoint the motion stands
+    at_once: bool = False  # the driver reaches a velocity at once, rather than at the end of the period
 
     def __call__(self, state: Any, now_ns: int, belief: JointBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is a velocity (rad/s) for each joint.
@@ -120,9 +121,13 @@ class Reach:
         return slow_enough and self._off_rad(motion, now_ns, belief) < self.reached_rad
 
     def _command(self, motion: Motion, now_ns: int, belief: JointBelief) -> Joints:
-        """Velocity at the end of this period, when the driver will have got there, and what corrects the angles."""
+        """Velocity at the end of this period, when the driver will have got there, and what corrects the angles.
+
+        Of a driver that gets there at once: the mean velocity of this period.
+        """
         t = _elapsed_s(motion, now_ns)
-        wanted = zip(motion.cubic.velocities(t + PERIOD_S), motion.cubic.angles(t), belief.angles, strict=True)
+        velocities = motion.cubic.velocities(t + (0.5 if self.at_once else 1.0) * PERIOD_S)
+        wanted = zip(velocities, motion.cubic.angles(t), belief.angles, strict=True)
         return tuple(velocity + self.feedback_per_s * (angle - is_at) for velocity, angle, is_at in wanted)
 
 

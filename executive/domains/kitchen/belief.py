@@ -22,6 +22,7 @@ CREDIBLE_MPS, CREDIBLE_RADPS = 1.5, 3.0  # a faster odometry is none
 LOST_M, LOST_RAD = 0.6, 0.6  # a pose so far off is not noise
 LOST_POSES = 3  # so many such poses in a row relocate the belief
 MOTION_LIMIT_S = 0.5  # without readings for longer, the last velocity is not extrapolated
+UNKNOWN = Pose(0.0, 0.0, 0.0, (25.0, 0.0, 0.0, 25.0, 0.0, 10.0))
 IN_HAND_M = 0.15  # a cup so near the grasp point is the one in the gripper
 
 
@@ -30,7 +31,7 @@ class KitchenBelief:
     """State variables in the map frame (m, rad, m/s, rad/s); joints from the shoulder outward."""
 
     time_ns: int = 0
-    pose: Pose = Pose(0.0, 0.0, 0.0, (25.0, 0.0, 0.0, 25.0, 0.0, 10.0))
+    pose: Pose = UNKNOWN
     v: float = 0.0
     omega: float = 0.0
     moved_ns: int = 0  # arrival of the last odometry
@@ -135,7 +136,8 @@ def _read_joints(belief: KitchenBelief, at_ns: int, state: JointState) -> Kitche
 def _with_held(belief: KitchenBelief) -> KitchenBelief:
     """The belief with the cup between the fingers, which is where the hand is."""
     narrowest, widest = robot.HELD_M
-    if belief.force < robot.HELD_N or not narrowest < belief.width < widest:
+    grasped = bool(belief.held) or belief.force > robot.HELD_N
+    if not grasped or not narrowest < belief.width < widest:
         return replace(belief, held="") if belief.held else belief
     ahead, left, z = robot.ARM.forward(belief.angles).place
     c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)

@@ -1,6 +1,6 @@
-; Two cups from behind the cutlery of one table and of the counter, and back to the dock: 13 actions.
+; Two cups that stand beside each other, to another table, and back: 13 actions.
 (define (problem two-cups)
   (:domain kitchen)
-  (:objects dock table1 table2 counter table3 home - place cup1 cup2 - cup)
-  (:init (robot-at dock) (cup-at cup1 table1) (cup-at cup2 counter) (hand-empty) (arm-home) (free table2) (free table3))
-  (:goal (and (cup-at cup1 table2) (cup-at cup2 table3) (robot-at home))))
+  (:objects dock left1 right1 left2 right2 home - place cup1 cup2 - cup)
+  (:init (robot-at dock) (cup-at cup1 left1) (cup-at cup2 right1) (hand-empty) (arm-home) (free left2) (free right2))
+  (:goal (and (cup-at cup1 left2) (cup-at cup2 right2) (robot-at home))))

@@ -1,0 +1,70 @@
+"""The kitchen robot's executable actions: parameters, controllers, models (paper Table 6).
+
+A label of the plan denotes a place: the robot's stand (x, y, phi, v), and the spot of a cup (spot_x, spot_y, handle).
+"""
+
+from __future__ import annotations
+
+import math
+
+from tailor.executive.actions.arrival_path import ArrivalPath
+from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.domains.kitchen.arm_tasks import GRIP, PUT, REACH_SPOT
+from tailor.executive.interfaces.action import Action, Parameter
+from tailor.schemas.kitchen.furniture import kitchen
+from tailor.schemas.kitchen.kinematics import OMEGA_MAX_RADPS, V_MAX_MPS
+
+ASIDE_RAD = 0.3  # how far aside of the line from the shoulder a hand may point
+CRAWL_MPS = 0.07  # an exact base would else arrive with the very speed that is too fast
+CUP_MOVED_M, HANDLE_TURNED_RAD = 0.05, 0.3  # a cup that turns out to stand elsewhere by this is decided anew
+
+
+def _pose(suffix: str, argument: int) -> tuple[Parameter, ...]:
+    return (
+        Parameter(f"x{suffix}", argument, "x", "m", *kitchen().x),
+        Parameter(f"y{suffix}", argument, "y", "m", *kitchen().y),
+        Parameter(f"phi{suffix}", argument, "phi", "rad", -math.pi, math.pi, periodic=True),
+    )
+
+
+def _speed(suffix: str, argument: int, fastest: float) -> Parameter:
+    return Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, fastest)
+
+
+def _spot(argument: int) -> tuple[Parameter, ...]:
+    """Parameters of the arm's actions, of the place in that argument; see arm_tasks."""
+    return (
+        *_pose("", argument),
+        Parameter("spot_x", argument, "spot_x", "m", *kitchen().x, tolerance=CUP_MOVED_M),
+        Parameter("spot_y", argument, "spot_y", "m", *kitchen().y, tolerance=CUP_MOVED_M),
+        Parameter("aside", argument, "aside", "rad", -ASIDE_RAD, ASIDE_RAD),
+    )
+
+
+def _out(argument: int) -> Parameter:
+    return Parameter("out", argument, "out", "1", 0.0, 1.0)
+
+
+def _handle(argument: int) -> Parameter:
+    return Parameter("handle", argument, "handle", "rad", -math.pi, math.pi, True, HANDLE_TURNED_RAD)
+
+
+GO_TO_POSE = Action(
+    "goToPose",
+    (*_pose("", 0), _speed("", 0, V_MAX_MPS), *_pose("g", 1), _speed("g", 1, 0.0)),
+    GoToPose(
+        V_MAX_MPS,
+        OMEGA_MAX_RADPS,
+        ArrivalPath(V_MAX_MPS, bend_radps=0.8, bend_worth_radps=0.6),
+        crawl_mps=CRAWL_MPS,
+    ),
+    "goToPose/duration",
+    subgoal_action="goToPose",
+    drives=("base",),
+)
+REACH = Action("reach", _spot(0), REACH_SPOT, "reach/duration", drives=("arm",))
+GRIP_CUP = Action("grip", (*_spot(1), _out(1), _handle(1)), GRIP, "grip/duration", drives=("arm", "gripper"))
+PUT_CUP = Action("put", (*_spot(1), _out(1)), PUT, "put/duration", drives=("arm", "gripper"))
+
+ACTIONS = {action.name: action for action in (GO_TO_POSE, REACH, GRIP_CUP, PUT_CUP)}
+EXECUTABLES = {"navigate": "goToPose", "reach": "reach", "grip": "grip", "put": "put"}

@@ -1,0 +1,111 @@
+"""What the arm does at a place: reach over it, grip the cup that stands there, put down the cup in the gripper.
+
+Arguments: the stand (x, y, phi), the cup's spot (x, y), how far the hand comes from aside, whether the arm is out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from tailor.executive.actions.arm_task import ArmTask, Stretch
+from tailor.executive.actions.cubic import Joints
+from tailor.executive.actions.reach import Reach
+from tailor.executive.domains.kitchen import robot
+from tailor.executive.domains.kitchen.belief import KitchenBelief
+from tailor.executive.interfaces.values import Array
+from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M
+
+X, Y, PHI, SPOT_X, SPOT_Y, ASIDE, OUT, HANDLE = range(8)
+BACK_M = (0.12, 0.08, 0.04, 0.0)  # behind the cup where the hand comes down, as far as the arm folds
+OVER_M = 0.07  # above the cup's grasp height
+LIFTED_M = 0.10
+CLOSED_S, OPENED_S = 0.9, 0.7  # until the gripper has closed on a cup, or opened
+SAME_CUP_M = 0.12  # a cup so near the spot is the one to grip
+SHUT, WIDE = 0.0, GRIPPER_MAX_M
+
+ACCELERATION_RADPS2 = 1.1  # of a stretch from rest to rest, over all joints
+MAX_RADPS2, MAX_RADPS = 2.5, 1.0  # what no stretch exceeds
+
+
+def _accelerations(now: Joints, goal: Joints, friction: Joints) -> Joints:
+    return (ACCELERATION_RADPS2,) * len(now)
+
+
+REACH = Reach(
+    _accelerations,
+    MAX_RADPS2,
+    MAX_RADPS,
+    feedback_per_s=4.0,
+    reached_rad=0.02,
+    reached_radps=0.15,
+    at_once=True,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """A level hand at a spot: `up_m` above the grasp height, behind it by the first of `back_m` that the arm reaches.
+
+    `live`: the spot is that of the cup which stands there, as it is believed now.
+    """
+
+    up_m: float
+    back_m: tuple[float, ...] = (0.0,)
+    live: bool = False
+
+    def __call__(self, belief: KitchenBelief, arguments: Array) -> Joints | None:
+        """Joint angles, rad; None if the hand does not get there."""
+        x, y = float(arguments[SPOT_X]), float(arguments[SPOT_Y])
+        place = belief.in_base(*(_cup_at(belief, x, y) if self.live else (x, y)))
+        for back_m in self.back_m:
+            hand = robot.level_hand(*place, robot.GRASP_M + self.up_m, float(arguments[ASIDE]), back_m)
+            angles = robot.angles_for(hand)
+            if angles is not None:
+                return angles
+        return None
+
+
+def _cup_at(belief: KitchenBelief, x: float, y: float) -> tuple[float, float]:
+    cups = (thing for thing in belief.things if thing.name.startswith("cup") and thing.name != belief.held)
+    near = min(((math.hypot(cup.x - x, cup.y - y), cup.x, cup.y) for cup in cups), default=(math.inf, x, y))
+    return near[1:] if near[0] < SAME_CUP_M else (x, y)
+
+
+def _home(belief: KitchenBelief, arguments: Array) -> Joints:
+    return robot.HOME
+
+
+def _missed(belief: KitchenBelief) -> str:
+    return "" if belief.held else "missed the cup"
+
+
+def _lost(belief: KitchenBelief) -> str:
+    return "" if belief.held else "lost the cup"
+
+
+def _kept(belief: KitchenBelief) -> str:
+    return "still holds the cup" if belief.held else ""
+
+
+REACH_SPOT = ArmTask(REACH, (Stretch(Hand(OVER_M, BACK_M)),), homing=False)
+GRIP = ArmTask(
+    REACH,
+    (
+        Stretch(Hand(OVER_M, BACK_M, live=True), WIDE),
+        Stretch(Hand(0.0, live=True), WIDE),
+        Stretch(None, SHUT, CLOSED_S, _missed),
+        Stretch(Hand(LIFTED_M), SHUT),
+        Stretch(_home, SHUT, failed=_lost),
+    ),
+)
+PUT = ArmTask(
+    REACH,
+    (
+        Stretch(Hand(OVER_M), SHUT, failed=_lost),
+        Stretch(Hand(0.003), SHUT),
+        Stretch(None, WIDE, OPENED_S, _kept),
+        Stretch(Hand(0.02, BACK_M), WIDE),
+        Stretch(_home, WIDE),
+    ),
+)

@@ -1,0 +1,125 @@
+"""Places of a scenario: spots for cups on tables, and the stands before them from which the arm reaches them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tailor.executive.belief.angles import difference, wrap
+from tailor.executive.domains.kitchen.belief import KitchenBelief
+from tailor.executive.domains.kitchen.known_places import mapped_cup, table_place
+from tailor.executive.domains.kitchen.objects import Thing
+from tailor.executive.interfaces.domain import Conflict, Scenario
+from tailor.executive.interfaces.values import Interval
+from tailor.schemas.kitchen.furniture import Place, kitchen, on_table
+
+TABLE_M = (0.4, 0.8)  # from the robot's middle to the table, when it grips or puts (paper 6.3)
+TILT_M = 0.03  # a table that is turned a little is nearer at one end of a stand's range: kept off both ends
+LATERAL_M = 0.15  # how far beside the spot the robot may stand
+FACING_RAD = 0.5  # how far it may look aside of the table
+SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
+NEAR_SPOT_M = 0.25  # a cup so near a spot, on its table, is at that place
+ON_TOP_M = 0.06  # height above the table's top by which a cup may be misjudged
+SLACK_M, SLACK_RAD = 0.04, 0.25  # beyond the ranges of a stand the robot still counts as being there
+Ranges = Mapping[str, Interval]
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A spot as it is believed: its table's pose, and its own position (m, map frame)."""
+
+    table: Place
+    x: float
+    y: float
+
+    @property
+    def from_edge_m(self) -> float:
+        """Distance to the edge at which the robot stands."""
+        c, s = math.cos(self.table[2]), math.sin(self.table[2])
+        return kitchen().edge_m - (c * (self.x - self.table[0]) + s * (self.y - self.table[1]))
+
+
+def spots(scenario: Scenario) -> Mapping[str, tuple[str, int]]:
+    """Table and number of the slot of each place that has a spot."""
+    declared: Mapping[str, tuple[str, int]] = scenario.settings["spots"]
+    return declared
+
+
+def spot_of(belief: KitchenBelief, scenario: Scenario, label: str) -> Spot:
+    """The believed spot of a place without a cup."""
+    name, slot = spots(scenario)[label]
+    table = table_place(belief, name)
+    x, y, _ = on_table(table, *kitchen().table.slots[slot])
+    return Spot(table, x, y)
+
+
+def cup_spot(belief: KitchenBelief, scenario: Scenario, label: str, cup: str) -> tuple[Spot, float]:
+    """Spot of the cup that stands at a place, and direction of its handle; where it is not seen yet, the map's.
+
+    Raises:
+      Conflict: The cup is not known to stand there.
+    """
+    if belief.held == cup:
+        raise Conflict(f"{cup} is in the gripper")
+    table, seen = table_place(belief, spots(scenario)[label][0]), belief.thing(cup)
+    if seen is not None:
+        return Spot(table, seen.x, seen.y), seen.phi
+    if kitchen().cups[cup][0] != spots(scenario)[label][0]:
+        raise Conflict(f"{cup} has not been seen at {label}")
+    x, y, phi = mapped_cup(belief, cup)
+    return Spot(table, x, y), phi
+
+
+def stand_ranges(spot: Spot) -> Ranges:
+    """Ranges of x, y and phi where the robot may stand for a spot; the map's axes are along the table's, or nearly."""
+    phi = spot.table[2]
+    nearest, farthest = (spot.from_edge_m + d for d in (TABLE_M[0] + TILT_M, TABLE_M[1] - TILT_M))
+    along, across, sign = (
+        ("x", "y", math.cos(phi)) if abs(math.cos(phi)) > abs(math.sin(phi)) else ("y", "x", math.sin(phi))
+    )
+    at, beside = (spot.x, spot.y) if along == "x" else (spot.y, spot.x)
+    ends = sorted(at + math.copysign(d, sign) for d in (nearest, farthest))
+    facing = wrap(phi + math.pi)
+    return {
+        along: Interval(*ends),
+        across: Interval(beside - LATERAL_M, beside + LATERAL_M),
+        "phi": Interval(facing - FACING_RAD, facing + FACING_RAD),
+        "v": Interval(0.0, 0.0),
+    }
+
+
+def put_ranges(spot: Spot) -> Ranges:
+    """Ranges of the position where a cup may be put at a spot."""
+    phi = spot.table[2]
+    along, across = SPOT_M if abs(math.cos(phi)) > abs(math.sin(phi)) else SPOT_M[::-1]
+    return {
+        "spot_x": Interval(spot.x - along, spot.x + along),
+        "spot_y": Interval(spot.y - across, spot.y + across),
+    }
+
+
+def stands_before(belief: KitchenBelief, spot: Spot) -> bool:
+    """Whether the robot stands where its arm reaches a spot."""
+    ranges, pose = stand_ranges(spot), belief.pose
+    in_x, in_y = (
+        ranges[name].lower - SLACK_M <= value <= ranges[name].upper + SLACK_M
+        for name, value in (("x", pose.x), ("y", pose.y))
+    )
+    middle = 0.5 * (ranges["phi"].lower + ranges["phi"].upper)
+    return in_x and in_y and abs(difference(pose.phi, middle)) < FACING_RAD + SLACK_RAD
+
+
+def place_of(belief: KitchenBelief, scenario: Scenario, cup: Thing) -> str | None:
+    """Label of the place at which a cup stands upright; None: at none."""
+    size = kitchen()
+    if cup.tilt > size.cup.tipped_rad or abs(cup.z - size.table.size[2] - size.cup.height / 2) > ON_TOP_M:
+        return None
+    near = []
+    for label, (name, _) in spots(scenario).items():
+        spot, table = spot_of(belief, scenario, label), table_place(belief, name)
+        off = math.hypot(cup.x - table[0], cup.y - table[1])
+        if off < max(size.table.size[:2]):
+            near.append((math.hypot(cup.x - spot.x, cup.y - spot.y), label))
+    distance, label = min(near, default=(math.inf, ""))
+    return label if distance < NEAR_SPOT_M else None

@@ -1,0 +1,159 @@
+"""Task sampler of the kitchen robot (paper 5.1): drives between stands, and what the arm does at a spot."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tailor.executive.actions.planar import PHIG, VG, XG, YG
+from tailor.executive.belief.angles import difference, wrap
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.kitchen import places
+from tailor.executive.domains.kitchen.action_library import ASIDE_RAD
+from tailor.executive.domains.kitchen.arm_tasks import BACK_M, HANDLE, OUT, OVER_M, Hand
+from tailor.executive.domains.kitchen.belief import FIRST_POSES, KitchenBelief
+from tailor.executive.domains.kitchen.objects import Thing
+from tailor.executive.domains.kitchen.places import Spot
+from tailor.executive.domains.kitchen.scenario_sampling import sample_kitchen
+from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.values import Array
+from tailor.schemas.kitchen.furniture import kitchen, on_table
+from tailor.schemas.kitchen.kinematics import JOINTS
+from tailor.schemas.messages import ActionFinished, Message
+from tailor.schemas.messages.kitchen import KitchenTruth
+
+TOUCHED, TIPPED = "touched furniture", "tipped the cup"
+FROM_START = 0.3  # share of the drives that begin, or end, away from tables
+CUP = "cup1"
+ASIDE_STOOL = {"stool_x": 2.75, "stool_y": -1.95}  # in a corner: the duration of a drive is that of one with a free way
+
+
+@dataclass(frozen=True, slots=True)
+class KitchenSampler:
+    """See action_run.TaskSampler."""
+
+    def sample(self, action: Action, rng: np.random.Generator) -> Array:
+        """Controller arguments: a drive between two stands or the start, or a spot and a stand before it."""
+        if action.name == "goToPose":
+            return np.array([*_anywhere(rng), 0.0, *_anywhere(rng), 0.0])
+        spot, handle = _spot(rng)
+        arguments = [*_stand(spot, rng), spot.x, spot.y, rng.uniform(-ASIDE_RAD, ASIDE_RAD)]
+        arguments += [float(rng.integers(2)), handle][: len(action.parameters) - len(arguments)]
+        return np.array(arguments)
+
+    def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
+        """Start state of the body: the table of the spot stands under it; the arm is out where the arguments say so."""
+        x, y, phi, *others = arguments.tolist()
+        start = {"x": x, "y": y, "phi": phi, "width": 0.0}
+        if action.name == "goToPose":
+            return {**start, **ASIDE_STOOL, "v": others[0], "held": float(rng.integers(2))}
+        start |= _table_under(others[0], others[1], rng)
+        if action.name == "put":
+            start["held"] = 1.0
+        elif action.name == "grip":
+            start |= {f"{CUP}_x": others[0], f"{CUP}_y": others[1], f"{CUP}_phi": arguments[HANDLE].item()}
+        if action.name != "reach" and arguments[OUT] > 0.5:
+            over = Hand(OVER_M, BACK_M if action.name == "grip" else (0.0,))
+            angles = over(KitchenBelief(pose=_exact(start)), arguments)
+            start |= {} if angles is None else dict(zip(JOINTS, angles, strict=True))
+        return start
+
+    def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> KitchenBelief:
+        """The belief after a look around: the robot knows itself, and where the cup is (Table 5)."""
+        unknown = KitchenBelief()
+        angles = tuple(start.get(joint, angle) for joint, angle in zip(JOINTS, unknown.angles, strict=True))
+        believed = replace(unknown, pose=_exact(start), v=start.get("v", 0.0), poses_seen=FIRST_POSES, angles=angles)
+        believed = replace(believed, joints_ns=1, held=CUP if start.get("held") else "", width=2 * kitchen().cup.radius)
+        if f"{CUP}_x" not in start:
+            return believed
+        z = kitchen().table.size[2] + kitchen().cup.height / 2
+        x, y, phi = (start[f"{CUP}_{q}"] for q in ("x", "y", "phi"))
+        return replace(believed, things=(Thing(CUP, x, y, z, phi, 0.0, 1e-5, 0),))
+
+    def arguments_now(self, action: Action, belief: KitchenBelief, arguments: Array) -> list[float]:
+        """Training example: the drive from where the robot is now. What the arm does does not move the stand."""
+        if action.name != "goToPose":
+            return list(arguments.tolist())
+        pose = belief.pose
+        return [pose.x, pose.y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
+
+    def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
+        """What the truth shows: base or arm touched furniture, or a cup tipped."""
+        if not isinstance(truth, KitchenTruth):
+            return ""
+        tipped = any(each.tilt > kitchen().cup.tipped_rad for each in truth.objects if each.name != truth.held)
+        return TOUCHED if truth.touched else TIPPED if tipped else ""
+
+    def work_j(self, before: Message, after: Message) -> float:
+        """NaN: the work of the drives is not known."""
+        return math.nan
+
+    def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
+        """No other names: parameters are named as the belief is."""
+        return {}
+
+    def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
+        """0: cups are there to be moved."""
+        return 0.0
+
+    def motion(self, message: Message, newest: Message | None) -> Message | None:
+        """The newest ground truth."""
+        return message if isinstance(message, KitchenTruth) else newest
+
+    def observed_start(self, message: Message) -> dict[str, float] | None:
+        """Touches and tipped cups need nothing to compare with."""
+        return {} if isinstance(message, KitchenTruth) else None
+
+    def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
+        """Number of pieces of furniture touched anew."""
+        touched = [frozenset[str](), *(frozenset(m.touched) for m in truth if isinstance(m, KitchenTruth))]
+        return sum(len(now - before) for before, now in itertools.pairwise(touched))
+
+    def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
+        """Errors of a drive's position (m) and heading (rad), and of the speed (m/s)."""
+        if not isinstance(truth, KitchenTruth) or action.name != "goToPose":
+            return {}
+        return {
+            "position_m": math.hypot(truth.x - arguments[XG], truth.y - arguments[YG]),
+            "heading_rad": difference(truth.phi, float(arguments[PHIG])),
+            "speed_mps": truth.v - float(arguments[VG]),
+        }
+
+
+def _spot(rng: np.random.Generator) -> tuple[Spot, float]:
+    """A spot at a slot of a displaced table, and the direction of a cup's handle there."""
+    _, tables = sample_kitchen(rng)
+    table = tables[rng.choice(sorted(tables))]
+    x, y = kitchen().table.slots[int(rng.integers(len(kitchen().table.slots)))]
+    off = [rng.uniform(-by, by) for by in kitchen().cup.displaced]
+    at_x, at_y, handle = on_table(table, x + off[0], y + off[1], math.pi + off[2])
+    return Spot(table, at_x, at_y), handle
+
+
+def _stand(spot: Spot, rng: np.random.Generator) -> tuple[float, float, float]:
+    ranges = places.stand_ranges(spot)
+    x, y, phi = (rng.uniform(ranges[q].lower, ranges[q].upper) for q in ("x", "y", "phi"))
+    return x, y, wrap(phi)
+
+
+def _anywhere(rng: np.random.Generator) -> tuple[float, float, float]:
+    if rng.random() < FROM_START:
+        start, _ = sample_kitchen(rng)
+        return start["x"], start["y"], start["phi"]
+    return _stand(_spot(rng)[0], rng)
+
+
+def _table_under(x: float, y: float, rng: np.random.Generator) -> dict[str, float]:
+    """Start values of the nearest table, so that it has a slot at this spot."""
+    name, (_, _, phi) = min(kitchen().tables.items(), key=lambda each: math.dist(each[1][:2], (x, y)))
+    ahead, aside = kitchen().table.slots[0][0], rng.uniform(-0.2, 0.2)
+    at_x, at_y, _ = on_table((x, y, phi), -ahead, -aside)
+    return {f"{name}_x": at_x, f"{name}_y": at_y, f"{name}_phi": phi}
+
+
+def _exact(start: Mapping[str, float]) -> Pose:
+    return Pose(start["x"], start["y"], start["phi"], (1e-8, 0.0, 0.0, 1e-8, 0.0, 1e-8))
