@@ -38,4 +38,4 @@ def test_the_contract_runs_beside_the_repositorys_tests(run):
 def test_an_unknown_domain_is_refused_in_one_line(run):
     done = run("--tailor-domain", "chess")
     assert done.returncode == pytest.ExitCode.USAGE_ERROR
-    assert done.stderr.strip() == "ERROR: --tailor-domain: no domain 'chess', expected one of: arm, soccer"
+    assert done.stderr.strip() == "ERROR: --tailor-domain: no domain 'chess', expected one of: arm, kitchen, soccer"

@@ -30,7 +30,7 @@ class Gripper(Message):
     fingers: tuple[str, ...] = ()
 
 TOPICS = {
-    "gripper": Topic("{robot}/gripper", Gripper, 10, "driver"),
+    "claw": Topic("{robot}/claw", Gripper, 10, "driver"),
     "grip": Topic("{robot}/grip", Gripper, 10, "executive", priority="real_time", max_bytes=100),
 }
 """

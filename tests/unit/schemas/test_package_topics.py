@@ -21,15 +21,15 @@ from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 from courier_robot.messages import Gripper
 prime()
 message = Gripper(5, 0.02, ("left", "right"))
-assert decode(TOPICS["gripper"], encode(message)) == message
+assert decode(TOPICS["claw"], encode(message)) == message
 assert decode(TOPICS["grip"], encode(Gripper(5, 0.02, ("x" * 100,)))).reason == "too long"
 assert ros_type(Gripper) == "courier_msgs/msg/Gripper"
 assert type_of(ros_type(Gripper)) is Gripper
 assert type_hash(Gripper).startswith("RIHS01_")
-assert key_of("gripper", "pedelec") == "pedelec/gripper"
+assert key_of("claw", "pedelec") == "pedelec/claw"
 from tailor.runtime.bus.access import access_control, size_limits
 rules = {rule["id"]: rule["key_exprs"] for rule in access_control([])["rules"]}
-assert [name for name, keys in rules.items() if "*/gripper" in keys] == ["driver publish", "player publish"]
+assert [name for name, keys in rules.items() if "*/claw" in keys] == ["driver publish", "player publish"]
 assert [name for name, keys in rules.items() if "*/grip" in keys] == ["executive publish"]
 assert [row["size_limit"] for row in size_limits() if "*/grip" in row["key_exprs"]] == [100]
 from tailor.schemas.ros2.interface_package import msg_files
@@ -50,22 +50,23 @@ def test_a_message_of_a_package_needs_no_edit_of_ours(tmp_path):
 @pytest.mark.parametrize("first", ["courier_robot.messages", "courier_robot", "tailor.schemas.codec"])
 def test_any_module_may_be_imported_first(tmp_path, first):
     install(tmp_path, FILES, POINTS)
-    code = f"import {first}; from tailor.schemas.topics import TOPICS; assert 'gripper' in TOPICS, TOPICS.faults"
+    code = f"import {first}; from tailor.schemas.topics import TOPICS; assert 'claw' in TOPICS, TOPICS.faults"
     done = run_with(tmp_path, "-c", code)
     assert done.returncode == 0, done.stderr
 
 
 def test_a_package_with_bad_topics_is_refused_and_hinders_no_other(tmp_path):
-    bad = MESSAGES.replace("{robot}/gripper", "estop").replace('"executive"', '"people"')
+    bad = MESSAGES.replace("{robot}/claw", "estop").replace('"executive"', '"people"')
     install(tmp_path, {**FILES, "messages.py": bad}, POINTS)
     done = run_with(tmp_path, "-m", "tailor.tools.main", "executive", "courier")
     assert done.returncode == 2
     assert len(done.stderr.strip().split("\n")) == 1
-    assert "courier_robot:SPEC: topics = 'courier_robot.messages:TOPICS': 'gripper' has the key estop" in done.stderr
+    assert "courier_robot:SPEC: topics = 'courier_robot.messages:TOPICS': 'claw' has the key estop" in done.stderr
     assert "'grip': source is 'people'" in done.stderr
     code = "from tailor.schemas.installed import domain_names; from tailor.schemas.topics import TOPICS;"
     assert (
-        run_with(tmp_path, "-c", f"{code} print(*domain_names(), 'gripper' in TOPICS)").stdout == "arm soccer False\n"
+        run_with(tmp_path, "-c", f"{code} print(*domain_names(), 'claw' in TOPICS)").stdout
+        == "arm kitchen soccer False\n"
     )
 
 

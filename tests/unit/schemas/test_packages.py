@@ -48,7 +48,11 @@ def installs(courier, monkeypatch):
 
 def test_the_robots_that_ship_are_entry_points_without_a_fault():
     ours = {package.name: package for package in discovery.packages() if package.declared_in.startswith("tailor.")}
-    assert {name: package.spec.robot for name, package in ours.items()} == {"arm": "powercube", "soccer": "agilo"}
+    assert {name: package.spec.robot for name, package in ours.items()} == {
+        "arm": "powercube",
+        "kitchen": "b21",
+        "soccer": "agilo",
+    }
     assert all(package.faults == () for package in ours.values())
 
 
