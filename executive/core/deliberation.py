@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -19,8 +19,10 @@ from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import MAX_ACTIONS, Pattern
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
+from tailor.executive.refinement.plan_choice import PlanChoice, score_for
 from tailor.executive.refinement.refinement import Refinement
 
+ALTERNATIVES_LIMIT = 3000  # plans generated in search of other plans, with plan_costs = "models": at most half a second
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
 
 
@@ -57,6 +59,8 @@ class Deliberation:
         self._context = context
         self._belief = belief
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
+        self._found: PlanFound | None = None  # whose plan is being compared
+        self._plan_choice: PlanChoice | None = None  # between the source's plan and others
         self._pattern: Pattern | None = None
         self._watch: BeliefMonitor | None = None
         self._assertion: Assertion | None = None
@@ -95,7 +99,7 @@ class Deliberation:
         return self.plan is not None and not self.plan.steps
 
     def _plan(self, budget: Budget) -> None:
-        result = self.source.advance(budget)
+        result = self._chosen(budget)
         if result is None:
             return
         self.plan_results += (result,)
@@ -108,6 +112,33 @@ class Deliberation:
             self.stage = "decided"
             return
         self._instantiate(result.plan)
+
+    def _chosen(self, budget: Budget) -> PlanFound | None:
+        """The source's next result, of a search with the plan that the models predict to be fastest if so set."""
+        if self._found is None:
+            self._found = self.source.advance(budget)
+            if self._found is None:
+                return None
+            if self._context.settings.plan_costs == "models" and self._found.way == "searched" and self._found.plan:
+                self._plan_choice = self._choice_from(self._found.plan)
+        if self._plan_choice is not None and not self._plan_choice.advance(budget):
+            return None
+        found, self._found = self._found, None
+        if self._plan_choice is None or found.plan is self._plan_choice.best:
+            return found
+        best, self._plan_choice = self._plan_choice.best, None
+        fault = planning.validate(best, self._context.pddl_domain, self.source.problem)
+        return found if fault else replace(found, plan=best)
+
+    def _choice_from(self, first: planning.Plan) -> PlanChoice:
+        context, source = self._context, self.source
+        settings = replace(context.settings.planner, node_limit=ALTERNATIVES_LIMIT)
+        others = planning.PlanEnumeration(source.problem, settings, source.ground, first)
+        seed = [context.settings.seed, 4, self.number]
+        score = score_for(
+            context.domain, context.scenario, context.models, context.settings.refinement, self._belief, seed
+        )
+        return PlanChoice(first, others, score)
 
     def _instantiate(self, plan: planning.Plan) -> None:
         settings = self._context.settings.refinement

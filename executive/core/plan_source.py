@@ -82,7 +82,7 @@ class PlanSource:
         self._limit_s = context.settings.external.limit_s + GRACE_S
         self._after_plans = context.settings.external.after_plans
         self._domain = context.pddl_domain
-        self._problem = problem
+        self.problem, self.ground = problem, ground
         self._search = planning.Search(context.pddl_domain, problem, context.settings.planner, ground)
         self._work = planning.PacedWork(reuse, REUSE_FREE_PORTIONS) if reuse is not None else None  # or validation ...
         if reuse is None:
@@ -128,11 +128,11 @@ class PlanSource:
             if self._answer is None or budget.spent():
                 return None
             self.request = None
-            return _from_answer(self._answer, self._domain, self._problem)
+            return _from_answer(self._answer, self._domain, self.problem)
         limited = budget if self._make_request is None else _HeadStart(budget, self._search, self._after_plans)
         result = self._search.advance(limited)
         if result is not None and (self._make_request is None or result.status in ("solved", "unsolvable")):
-            return validated(result, "searched", self._domain, self._problem)
+            return validated(result, "searched", self._domain, self.problem)
         self._request_if_due(ended=result is not None)
         return None
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tailor.executive.planning.anytime import AnytimeSearch
+    from tailor.executive.planning.enumeration import PlanEnumeration
     from tailor.executive.planning.orders.every_order import UndecidedError, validate_every_order
     from tailor.executive.planning.pddl.domain_reader import parse_domain
     from tailor.executive.planning.pddl.errors import PddlError, Unsupported
@@ -50,6 +51,7 @@ __all__ = [
     "PacedWork",
     "PddlError",
     "Plan",
+    "PlanEnumeration",
     "PlanTextError",
     "Problem",
     "Result",
@@ -107,6 +109,7 @@ _MODULES = {
     "parse_problem": "pddl.problem_reader",
     "PddlError": "pddl.errors",
     "Plan": "plans.plan",
+    "PlanEnumeration": "enumeration",
     "PlanTextError": "plans.vhpop_reader",
     "Problem": "pddl.problem",
     "relink": "plans.suffix",

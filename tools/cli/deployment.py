@@ -54,6 +54,8 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
 
     scenario = deployment.scenario or domains.scenarios(domain)[0]
     settings, planner = deployment.executive, _external(deployment.planner, domain)
+    if deployment.planner.costs != "steps":
+        settings = replace(settings, plan_costs=deployment.planner.costs)
     if deployment.planner.engine != "kairos":
         settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
     if planner.command:

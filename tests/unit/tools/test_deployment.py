@@ -33,6 +33,13 @@ def test_a_flag_wins_over_the_file_and_leaves_the_rest(tmp_path):
     assert config(tmp_path, text, "--planner", "").settings.external.command == "", "an empty one switches it off"
 
 
+def test_plans_may_be_chosen_by_the_models_whatever_the_planner(tmp_path):
+    assert config(tmp_path, "").settings.plan_costs == "steps"
+    assert config(tmp_path, '[planner]\ncosts = "models"\n').settings.plan_costs == "models"
+    with pytest.raises(UsageError, match="costs"):
+        config(tmp_path, '[planner]\ncosts = "metres"\n')
+
+
 def test_the_default_is_no_external_planner(tmp_path):
     assert config(tmp_path, "").settings.external == PlannerCommand()
 

@@ -40,12 +40,12 @@ def three_places(settings=None):
     return context
 
 
-def drive(context, seen_from, ticks=120, budget=lambda: CheckBudget(500)):
+def drive(context, seen_from, ticks=120, budget=lambda: CheckBudget(500), goal=GOAL):
     """Drives the point on the line; from tick `seen_from` on b has been visited by somebody else."""
     state, x, ticks_run, published, states = initial_state(context), 0.0, [], [], []
     for n in range(1, ticks + 1):
         samples = (odometry(n * TICK, x, n, SEEN if n >= seen_from else 0.0), driver(n * TICK))
-        given, granted = Inputs(samples, GOAL if n == 1 else ""), budget()
+        given, granted = Inputs(samples, goal if n == 1 else ""), budget()
         state, outputs = step(context, state, n * TICK, given, granted)
         x += 0.1 * state.command[0]
         ticks_run.append(RecordedTick(n, n * TICK, given, granted.granted))
