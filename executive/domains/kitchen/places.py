@@ -19,7 +19,6 @@ TILT_M = 0.03  # a table that is turned a little is nearer at one end of a stand
 LATERAL_M = 0.15  # how far beside the spot the robot may stand
 FACING_RAD = 0.5  # how far it may look aside of the table
 SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
-NEAR_SPOT_M = 0.25  # a cup so near a spot, on its table, is at that place
 ON_TOP_M = 0.06  # height above the table's top by which a cup may be misjudged
 SLACK_M, SLACK_RAD = 0.04, 0.25  # beyond the ranges of a stand the robot still counts as being there
 Ranges = Mapping[str, Interval]
@@ -111,15 +110,20 @@ def stands_before(belief: KitchenBelief, spot: Spot) -> bool:
 
 
 def place_of(belief: KitchenBelief, scenario: Scenario, cup: Thing) -> str | None:
-    """Label of the place at which a cup stands upright; None: at none."""
+    """Label of the place at which a cup stands upright: the nearest one of its table. None: at none."""
     size = kitchen()
     if cup.tilt > size.cup.tipped_rad or abs(cup.z - size.table.size[2] - size.cup.height / 2) > ON_TOP_M:
         return None
     near = []
     for label, (name, _) in spots(scenario).items():
-        spot, table = spot_of(belief, scenario, label), table_place(belief, name)
-        off = math.hypot(cup.x - table[0], cup.y - table[1])
-        if off < max(size.table.size[:2]):
+        if _on_top(cup, table_place(belief, name)):
+            spot = spot_of(belief, scenario, label)
             near.append((math.hypot(cup.x - spot.x, cup.y - spot.y), label))
-    distance, label = min(near, default=(math.inf, ""))
-    return label if distance < NEAR_SPOT_M else None
+    return min(near)[1] if near else None
+
+
+def _on_top(cup: Thing, table: Place) -> bool:
+    c, s = math.cos(table[2]), math.sin(table[2])
+    dx, dy = cup.x - table[0], cup.y - table[1]
+    deep, wide, _ = kitchen().table.size
+    return abs(c * dx + s * dy) < deep / 2 and abs(c * dy - s * dx) < wide / 2
