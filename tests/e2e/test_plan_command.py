@@ -309,3 +309,13 @@ def test_memory_is_limited(capsys, monkeypatch):
     assert code == 1
     assert "no plan within 1 MB of memory" in err
     assert plan(capsys, DOMAIN, PROBLEM, "--memory-limit", "none")[0] == 2
+
+
+def test_a_long_name_is_cut_in_the_line_without_a_plan(capsys, tmp_path):
+    (tmp_path / "both.pddl").write_text(
+        f"(define (domain d) (:predicates (p))) (define (problem {'x' * 9000}) (:domain d) (:init) (:goal (p)))"
+    )
+    code, _, err = plan(capsys, str(tmp_path / "both.pddl"))
+    assert code == 1
+    assert "xxx..." in err
+    assert len(err) < 300

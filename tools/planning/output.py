@@ -8,6 +8,7 @@ import sys
 from typing import Any
 
 from tailor.executive.planning import Problem, Result, format_links, format_plan
+from tailor.executive.planning.pddl.errors import shortened
 
 
 def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
@@ -17,7 +18,7 @@ def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu
         print(json.dumps(as_json(result, problem.name, cpu_ms)))
     elif plan is None:
         outcome = "no plan exists" if result.status == "unsolvable" else "no plan found"
-        print(f"{problem.name}: {outcome}: {result.reason}", file=sys.stderr)
+        print(shortened(f"{problem.name}: {outcome}: {result.reason}"), file=sys.stderr)
     elif args.links:
         print(format_links(plan), end="")
     elif args.dot:

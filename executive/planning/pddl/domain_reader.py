@@ -10,6 +10,7 @@ from tailor.executive.planning.pddl.language import Domain, Typed
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
 from tailor.executive.planning.pddl.typed_lists import read_typed, variables_of
 
+ABOVE_ALL = "the type 'object' is above all others and has none above itself"
 MAX_TYPES = 500  # the largest competition domain has 30
 SUPPORTED = frozenset(
     {
@@ -104,6 +105,8 @@ def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
     for typed in read_typed(form.items[1:], None):
         if typed.name != "object":
             types[typed.name] = typed.types
+        elif typed.types != ("object",):
+            raise next(n for n in form.items[1:] if isinstance(n, Word) and n.text == "object").place.error(ABOVE_ALL)
     for parents in list(types.values()):
         for parent in parents:  # a parent that is named only behind a dash is a type as well
             types.setdefault(parent, ("object",))

@@ -149,7 +149,9 @@ def _read_value(form: Form, draft: _Draft, scope: Scope) -> None:
     if parameters is None:
         raise function.place.error(f"unknown function '{function.head}'")
     terms = read_terms(function, parameters, scope)
-    draft.values[(function.head, *terms)] = number_of(form.items[2])
+    fact, value = (function.head, *terms), number_of(form.items[2])
+    if draft.values.setdefault(fact, value) != value:
+        raise form.place.error(f"({' '.join(fact)}) has another value already: {draft.values[fact]:g}")
 
 
 # --- metric --------------------------------------------------------------------------------------

@@ -330,6 +330,12 @@ def test_types_above_themselves_are_refused_at_their_place():
         parse_domain(text, "d.pddl")
 
 
+def test_no_type_is_above_object():
+    with pytest.raises(PddlError, match=r"d.pddl:1:28: the type 'object' is above all others"):
+        parse_domain("(define (domain d) (:types object - t t) (:predicates (p)))", "d.pddl")
+    parse_domain("(define (domain d) (:types object t - object) (:predicates (p)))", "d.pddl")
+
+
 def test_an_object_that_is_a_constant_is_refused_at_its_own_place():
     domain = parse_domain("(define (domain d) (:constants k) (:predicates (p)))")
     with pytest.raises(PddlError, match=r"t.pddl:2:14: 'k' is already a constant"):
@@ -363,6 +369,7 @@ PROBLEM = "(define (problem p) (:domain d)\n (:objects a)\n {part})"
         ("(:goal (p)) (:goal (q a))", "problem:3:14: ':goal' is given twice"),
         ("(:goal (p)) (:metric maximize (f))", "problem:3:14: the metric maximize (f) is not supported"),
         ("(:goal (p)) (:init (= (g) 1))", "problem:3:24: unknown function 'g'"),
+        ("(:goal (p)) (:init (= (f) 1) (= (f) 1) (= (f) 2))", "problem:3:41: (f) has another value already: 1"),
         ("(:goal (p)) (:init (at -1 (p)))", "problem:3:25: expected a time of at least 0"),
         (
             "(:goal (p)) (:init (at 1 (p)) (at 1 (not (p))))",
