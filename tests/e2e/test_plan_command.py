@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tailor.executive.planning import parse_plan, validate
+from tailor.tools.benchmarks.planning_scale import problem_text
 from tailor.tools.cli import plan_limits
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own, printed
@@ -65,23 +66,56 @@ def test_dot_and_svg_draw_links_and_orderings_apart(capsys):
     assert "(dribbleball r1 b1 p2 p1)" in svg
 
 
-@pytest.mark.parametrize("name", ["kitchen-s3", "soccer-typed-p3"])
-def test_svg_holds_every_line_and_word_and_no_word_stands_on_a_box(capsys, name):
-    _, svg, _ = plan(capsys, str(OWN / f"{name[:-3]}-domain.pddl"), str(OWN / f"{name}.pddl"), "--svg")
+def numbers(shape, *names):
+    return [float(shape.get(name)) for name in names]
+
+
+def segments(path):
+    """The straight pieces of a line that runs down and across."""
+    x, y, *pieces = path.get("d").removeprefix("M").split()
+    x, y = float(x), float(y)
+    for piece in pieces:
+        then = (x, float(piece[1:])) if piece[0] == "V" else (float(piece[1:]), y)
+        yield (x, y), then
+        x, y = then
+
+
+def hits(box, a, b):
+    """Whether a piece of a line runs through the inside of a box."""
+    left, top, width, height = box
+    inside_x = min(a[0], b[0]) < left + width and max(a[0], b[0]) > left
+    return inside_x and min(a[1], b[1]) < top + height and max(a[1], b[1]) > top
+
+
+@pytest.mark.parametrize(
+    "name", ["kitchen-s3", "soccer-typed-p3", "kitchen-durative-s3", "kitchen-reach-s2", "20 steps"]
+)
+def test_svg_holds_every_word_in_a_box_and_no_line_crosses_one(capsys, tmp_path, name):
+    files = [str(OWN / f"{name[:-3]}-domain.pddl"), str(OWN / f"{name}.pddl")]
+    if name == "20 steps":
+        files = [DOMAIN, str(tmp_path / "cups.pddl")]
+        Path(files[1]).write_text(problem_text(5))
+    _, svg, _ = plan(capsys, *files, "--svg")
     picture = ElementTree.fromstring(svg)
-    _, top, width, height = map(float, picture.get("viewBox").split())
-    boxes = [tuple(float(r.get(k)) for k in ("x", "y", "width", "height")) for r in picture.iter(f"{SVG}rect")
-             if r.get("rx")]  # fmt: skip
+    _, _, width, height = map(float, picture.get("viewBox").split())
+    assert height > width / 2, "from top to bottom"
+    boxes = [numbers(r, "x", "y", "width", "height") for r in picture.iter(f"{SVG}rect") if r.get("rx")]
+    assert len(boxes) >= 4
+    for left, top, w, h in boxes:
+        assert 0 < left < left + w < width
+        assert 0 < top < top + h < height
+        assert sum(hits((left, top, w, h), (x, y), (x + u, y + v)) for x, y, u, v in boxes) == 1, "only itself"
     for word in picture.iter(f"{SVG}text"):
-        x, y = float(word.get("x")), float(word.get("y"))
-        assert 0 < x < width
-        assert top < y < top + height
-        if word.get("font-size") == "9":
-            assert not any(left <= x <= left + w and up <= y <= up + h for left, up, w, h in boxes), word.text
-    for path in picture.iter(f"{SVG}path"):
-        if path.get("marker-end"):
-            start, first, second, end = (float(y) for y in path.get("d").split()[1::2])
-            assert top < (start + 3 * first + 3 * second + end) / 8 < top + height  # a Bezier curve's middle
+        (x, y, size), text = numbers(word, "x", "y", "font-size"), word.text
+        assert any(u <= x and x + 0.55 * size * len(text) <= u + w and v < y < v + h for u, v, w, h in boxes), text
+    lines = [list(segments(path)) for path in picture.iter(f"{SVG}path") if path.get("marker-end")]
+    assert lines
+    for a, b in (piece for line in lines for piece in line):
+        assert 0 < max(a[0], b[0]) < width
+        assert not any(hits(box, a, b) for box in boxes)
+    across = [(a[1], *sorted((a[0], b[0]))) for line in lines for a, b in line if a[1] == b[1] and a[0] != b[0]]
+    for n, (y, left, right) in enumerate(across):
+        assert not any(y == z and left < v and u < right for z, u, v in across[:n]), "two lines on each other"
 
 
 def test_options_have_vhpops_letters_and_names(capsys):

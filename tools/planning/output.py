@@ -26,7 +26,7 @@ def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu
 
         print(to_dot(plan), end="")
     elif args.svg:
-        from tailor.tools.figures.plan_drawing import to_svg
+        from tailor.tools.figures.plan_svg import to_svg
 
         print(to_svg(plan), end="")
     else:
