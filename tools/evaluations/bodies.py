@@ -1,12 +1,15 @@
-"""Bodies of evaluations: the one that training used, or a degraded one in place of the real robot."""
+"""Bodies of evaluations: the one that training used, or one of another profile in place of the real robot."""
 
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.agilo import profiles
+from tailor.schemas.installed import spec_of
 from tailor.simnodes.body import Body
 from tailor.tools.lockstep.action_run import new_body
 
@@ -24,7 +27,16 @@ def body_of(domain: str, profile: str) -> Body:
     """
     if not profile:
         return new_body(domains.load(domain))
-    known = tuple(profiles.PROFILES) if domain == "soccer" else ()
+    profiles = _profiles(domain)
+    known = tuple(profiles.PROFILES) if profiles else ()
     if profile not in known:
         raise UsageError(f"no profile '{profile}' of {domain}'s body, expected one of: {', '.join(known) or 'none'}")
-    return profiles.body(profile)
+    body: Body = profiles.body(profile)
+    return body
+
+
+def _profiles(domain: str) -> Any:
+    """The module `profiles` beside that of the body: PROFILES by name, and a function `body`; None: there is none."""
+    beside = spec_of(domain).body.partition(":")[0].rpartition(".")[0]
+    name = f"{beside}.profiles"
+    return import_module(name) if beside and find_spec(name) else None
