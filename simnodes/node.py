@@ -71,11 +71,15 @@ class Node:
         """
         notifier.ready()
         while not stopped():
-            self._run_period(self._loop.wait_for_next_period())
+            self.run_period()
             notifier.alive()
         notifier.stopping()
         self.driver.guard.disarm(Reason.SHUTDOWN)
         self._publish_state(self._clock.now_ns())
+
+    def run_period(self) -> None:
+        """Wait for the next period and run it; `run` does so until it is stopped."""
+        self._run_period(self._loop.wait_for_next_period())
 
     def _run_period(self, period: Period) -> None:
         self._services.answer()

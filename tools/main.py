@@ -32,6 +32,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "status": ("tailor.tools.commands.look.status", "state and health of a running system, with an e-stop key"),
     "units": ("tailor.tools.commands.run.units", "write systemd units for a robot"),
     "driver": ("tailor.tools.commands.drivers.driver", "drive a real robot: guard, arming and watchdogs around it"),
+    "check-driver": (
+        "tailor.tools.commands.drivers.check_driver",
+        "check a driver against its contract, and whether the robot moves as its models expect",
+    ),
     "record": ("tailor.tools.commands.run.record", "record the bus into an MCAP file"),
     "replay": ("tailor.tools.commands.look.replay", "play a recording on the bus"),
     "info": ("tailor.tools.commands.look.info", "summarise a recording"),

@@ -54,6 +54,9 @@ def test_a_new_robot_runs_with_no_line_edited(kind, environment, run, tmp_path):
     environment.install("--no-build-isolation", "--editable", folder)
     from_episodes_to_a_verified_run(run, folder, name, name)
     assert (folder / f"fresh_{kind}" / "models" / name).is_dir()
+    if kind == "wheeled":
+        script = ROOT / "tests" / "e2e" / "packages" / "drive_plain_robot.py"
+        assert "\nachieved" in f"\n{run(folder, 'python', script, name, ROOT)}"
     assert "passed" in run(folder, "pytest")
 
 

@@ -1,0 +1,146 @@
+"""Check a driver on the bus against its contract, clause by clause, then whether the robot moves as its models expect.
+
+The robot moves, slowly, and the e-stop of ALL drivers on the bus is pressed twice. Hardware asks for a confirmation.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from tailor.executive import domains
+from tailor.runtime.bus.session import Session
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names, spec_of_robot
+from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.conformance import report as reports
+from tailor.tools.conformance.bench import Bench, NotPossible
+from tailor.tools.conformance.clause import Verdict
+from tailor.tools.conformance.fit import Response, differences, responses
+from tailor.tools.conformance.live_link import LiveLink, NoDriverError
+from tailor.tools.conformance.report import Report
+from tailor.tools.conformance.simulated_link import SimulatedLink
+from tailor.tools.conformance.suite import clauses, verdicts
+from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.lockstep.worlds import make_world
+
+MAX_FRACTION = 0.3  # of the limits, for all but the fit at top speed
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Flags of `tailor check-driver`."""
+    parser.add_argument("robot", help=f"robot of the driver: {', '.join(robot_names())}")
+    parser.add_argument("--driver", metavar="FILE", help="specification of the driver (default: that of its package)")
+    parser.add_argument("--report", metavar="FILE", type=Path, help="write the outcome as a Markdown page")
+    parser.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    parser.add_argument("--speed", type=float, default=0.15, help="test speed as a fraction of the limits (0.15)")
+    parser.add_argument("--top-speed", action="store_true", help="compare step responses up to the limits")
+    parser.add_argument("--clause", action="append", default=[], help="try only this clause; may be repeated")
+    parser.add_argument("--no-fit", action="store_true", help="leave out the comparison with the models' robot")
+    parser.add_argument(
+        "--yes", action="store_true", help="hardware: people know, and the robot has two metres of room"
+    )
+    configure_bus(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """0 if every clause was tried and kept and the robot moves as expected, else 1."""
+    domain = domains.load(spec_of_robot(arguments.robot).name)
+    spec = driver_of(arguments.robot, arguments.driver)
+    check_driver(domain, spec)
+    if not 0.0 < arguments.speed <= MAX_FRACTION:
+        raise UsageError(f"--speed is {arguments.speed:g}, expected more than 0 and at most {MAX_FRACTION:g}")
+    known = [each.name for each in clauses()]
+    named = [each.replace(" ", "_").replace("-", "_") for each in arguments.clause]
+    unknown = sorted(set(named) - set(known))
+    if unknown:
+        raise UsageError(f"--clause {', '.join(unknown)}: expected one of: {', '.join(known)}")
+    codec.prime()
+    with open_bus(arguments, "executive") as executive, open_bus(arguments, "people") as people:
+        sensors = [sensor.topic for sensor in spec.sensors]
+        try:
+            link = LiveLink(executive, people, arguments.robot, spec.command_topics, sensors)
+        except NoDriverError as error:
+            raise UsageError(f"{error}, expected one on the bus, e.g. `tailor sim {arguments.robot}`") from error
+        bench = Bench(link, domain, spec, arguments.speed)
+        _check_free(bench, arguments.robot)
+        simulated = _is_simulator(people, arguments.robot)
+        if not simulated:
+            _confirm(arguments.robot, arguments.yes)
+        try:
+            report = _checked(bench, arguments, named, "simulator" if simulated else "hardware")
+        finally:
+            bench.request(arm=False)
+    if arguments.report is not None:
+        arguments.report.write_text(reports.markdown(report), encoding="utf-8")
+    if arguments.json:
+        print(json.dumps(reports.values(report)))
+    return 0 if report.kept and not report.misfits else 1
+
+
+def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind: str) -> Report:
+    """Try everything, and print each outcome as it comes."""
+
+    def show(text: str) -> None:
+        if not arguments.json:
+            print(text, flush=True)
+
+    found: list[Verdict] = []
+    for verdict in verdicts(bench, named):
+        found.append(verdict)
+        show(reports.line(verdict))
+    robot: str = arguments.robot
+    if arguments.no_fit or not spec_of_robot(robot).body:
+        return Report(robot, kind, found)
+    try:
+        real, models = _fit(bench, 1.0 if arguments.top_speed else arguments.speed)
+    except NotPossible as error:
+        show(f"fit: not tried: {error}")
+        return Report(robot, kind, found)
+    report = Report(robot, kind, found, real, models, list(differences(real, models)))
+    for misfit in report.misfits or ["it moves as the models' robot does"]:
+        show(f"fit: {misfit}")
+    if report.misfits:
+        show(reports.advice(report))
+    return report
+
+
+def _fit(bench: Bench, fraction: float) -> tuple[list[Response], list[Response]]:
+    """Step responses of the driver on the bus, and of the body that the models were learned on."""
+    robot = bench.domain.robot
+    model = Bench(SimulatedLink(make_world(robot, "", 0), bench.spec), bench.domain, bench.spec, bench.fraction)
+    return responses(bench, fraction), responses(model, fraction)
+
+
+def _is_simulator(people: Session, robot: str) -> bool:
+    accepted, answer = people.call(f"{robot}/sim/step", "0", timeout_s=1.0)
+    return accepted or "no service" not in answer
+
+
+def _confirm(robot: str, agreed: bool) -> None:
+    """Let a person confirm that hardware may move.
+
+    Raises:
+      UsageError: Nobody does.
+    """
+    if agreed:
+        return
+    if not sys.stdin.isatty():
+        raise UsageError(f"{robot} is hardware that will move, expected --yes or a terminal to confirm")
+    print(
+        f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped twice."
+    )
+    if input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ").strip() != robot:
+        raise UsageError("not confirmed, so nothing was moved")
+
+
+def _check_free(bench: Bench, robot: str) -> None:
+    try:
+        state = bench.state()
+    except NotPossible as error:
+        raise UsageError(f"{robot}: {error}") from error
+    if state.mode == "armed":
+        raise UsageError(f"{robot} is armed for {state.armed_sender}, expected a driver that nobody uses")

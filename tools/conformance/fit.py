@@ -1,0 +1,108 @@
+"""Does this robot move as the one did from which the action models were learned? Step responses of each axis, compared.
+
+The models' robot is the simulated body of the package, in simulated time behind the same driver. A real robot that
+answers later, accelerates otherwise or reaches another speed makes every predicted duration wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from statistics import fmean
+
+from tailor.tools.conformance.bench import Bench, Heard, speed_in
+
+STEP_S = 2.5  # of one step: a slow robot has reached its speed
+SMOOTHED = 5  # samples
+DEAD_S, SLOPE, SPEED = 0.08, 0.3, 0.1  # differences that matter: seconds, and fractions
+LOW, HIGH = 0.25, 0.75  # of the step; between them a response is steepest, and noise matters least
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """How one axis follows a step from standstill.
+
+    Attributes:
+      axis, unit: Name of the axis, and unit of its speed.
+      commanded: Speed of the step.
+      dead_s: Time until it begins to move, extrapolated from the steep part.
+      slope: Acceleration in the steep part, unit per second.
+      speed: Speed that it reaches.
+    """
+
+    axis: str
+    unit: str
+    commanded: float
+    dead_s: float
+    slope: float
+    speed: float
+
+
+def responses(bench: Bench, fraction: float) -> list[Response]:
+    """Step responses of all axes that sensors show, up to a fraction of their limits.
+
+    Raises:
+      NotPossible: The driver cannot be armed, or the robot does not come to rest.
+    """
+    found = []
+    bench.begin()
+    for index, test_speed in list(bench.tests()):
+        axis = bench.domain.axes[index]
+        step = test_speed * fraction / bench.fraction
+        bench.begin()
+        bench.arm()
+        start_s = bench.link.now_s()
+        bench.drive([step if each == index else rest for each, rest in enumerate(bench.rest)], STEP_S)
+        series = [(h.at_s - start_s, v) for h in _since(bench, start_s) if (v := speed_in(h, axis.name)) is not None]
+        bench.drive(bench.rest, STEP_S / 2)
+        response = _response(series, step)
+        if response is not None:
+            found.append(Response(axis.name, axis.unit, step, *response))
+    return found
+
+
+def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterator[str]:
+    """Every difference that matters between a robot and the models' robot, in words."""
+    by_axis = {each.axis: each for each in models}
+    followed = {each.axis for each in real}
+    yield from (f"{axis} does not follow a step, the models' robot does" for axis in by_axis if axis not in followed)
+    for each in real:
+        other = by_axis.get(each.axis)
+        if other is None:
+            continue
+        if abs(each.dead_s - other.dead_s) > DEAD_S:
+            yield f"{each.axis} answers after {each.dead_s:.2f} s, the models' robot after {other.dead_s:.2f} s"
+        if abs(each.slope / other.slope - 1.0) > SLOPE:
+            unit = f"{each.unit}²" if each.unit.endswith("/s") else f"{each.unit}/s"
+            yield f"{each.axis} accelerates with {each.slope:.2f} {unit}, the models' robot with {other.slope:.2f}"
+        if abs(each.speed / other.speed - 1.0) > SPEED:
+            yield (
+                f"{each.axis} reaches {each.speed:.2f} of {each.commanded:.2f} {each.unit}, the models' robot "
+                f"{other.speed:.2f}"
+            )
+
+
+def _since(bench: Bench, start_s: float) -> list[Heard]:
+    return [each for each in bench.log if each.at_s >= start_s]
+
+
+def _response(series: Sequence[tuple[float, float]], step: float) -> tuple[float, float, float] | None:
+    """Dead time, slope and speed; None if the axis does not move."""
+    smooth = [
+        (fmean(t for t, _ in part), fmean(v for _, v in part) / step)
+        for part in (series[i : i + SMOOTHED] for i in range(len(series) - SMOOTHED + 1))
+    ]
+    low_s, high_s = _crossing(smooth, LOW), _crossing(smooth, HIGH)
+    if low_s is None or high_s is None or high_s <= low_s:
+        return None
+    rise_s = (high_s - low_s) / (HIGH - LOW)
+    settled = [v for t, v in series if t > 0.8 * STEP_S]
+    return low_s - LOW * rise_s, step / rise_s, fmean(settled) if settled else 0.0
+
+
+def _crossing(series: Sequence[tuple[float, float]], level: float) -> float | None:
+    for (t0, v0), (t1, v1) in pairwise(series):
+        if v0 < level <= v1:
+            return t0 + (t1 - t0) * (level - v0) / (v1 - v0)
+    return None

@@ -1,0 +1,77 @@
+"""A link to a driver on the bus, a simulator or hardware, in real time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+from tailor.runtime.bus.attachment import Origin, unpack
+from tailor.runtime.bus.inbox import Source
+from tailor.runtime.bus.session import Session
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Message
+from tailor.schemas.ros2.plain import frame_in
+from tailor.schemas.topics import TOPICS, key_of
+from tailor.tools.conformance.bench import Heard
+
+POLL_S = 0.002
+MATCH_S = 5.0  # for the driver to appear
+PEOPLE = ("arm_request", "estop")
+
+
+class NoDriverError(Exception):
+    """Nobody takes commands on the bus."""
+
+
+class LiveLink:
+    """Publishes as an executive and as people; hears what the driver publishes."""
+
+    def __init__(
+        self, executive: Session, people: Session, robot: str, commands: Iterable[str], sensors: Iterable[str]
+    ) -> None:
+        """Subscribe, and wait for the driver.
+
+        Raises:
+          NoDriverError: There is none within MATCH_S.
+        """
+        self._robot = robot
+        self._sources: dict[str, Source] = {
+            name: executive.plain_source(key_of(name, robot)) for name in ("driver", *sensors)
+        }
+        self._publishers = {name: executive.publisher(name, robot) for name in commands}
+        self._publishers |= {name: people.publisher(name, robot) for name in PEOPLE}
+        until_s = time.monotonic() + MATCH_S
+        while not all(publisher.matched() for publisher in self._publishers.values()):
+            if time.monotonic() > until_s:
+                raise NoDriverError(f"no driver of {robot} within {MATCH_S:g} s")
+            time.sleep(POLL_S)
+
+    def now_s(self) -> float:
+        """Monotonic time."""
+        return time.monotonic()
+
+    def wait(self, seconds: float) -> list[Heard]:
+        """Listen for that long."""
+        until_s, heard = time.monotonic() + seconds, list[Heard]()
+        while True:
+            now_s = time.monotonic()
+            for topic, source in self._sources.items():
+                heard += self._received(topic, source, now_s)
+            if now_s >= until_s:
+                return heard
+            time.sleep(min(POLL_S, until_s - now_s))
+
+    def publish(self, topic: str, message: Message, origin: Origin) -> None:
+        """Publish with any origin."""
+        self._publishers[topic].put_raw(encode(message), origin)
+
+    def _received(self, topic: str, source: Source, now_s: float) -> list[Heard]:
+        heard = []
+        while (raw := source.receive()) is not None:
+            if isinstance(raw, Rejected):
+                continue
+            message, origin = decode(TOPICS[topic], raw.payload), unpack(raw.attachment)
+            if isinstance(message, Message) and isinstance(origin, Origin):
+                heard.append(Heard(now_s, topic, message, frame_in(raw.payload), origin.sender, origin.sequence))
+        return heard
