@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from statistics import fmean
 
-from tailor.tools.conformance.bench import Bench, Heard, speed_in
+from tailor.tools.conformance.bench import Bench, speed_in
 
-STEP_S = 2.5  # of one step: a slow robot has reached its speed
+STEP_S = 3.0  # longest step; a step ends as soon as the axis has settled, since an arm has no room to run
+WINDOW_S, SETTLED = 0.3, 0.03  # change of the mean speed from window to window, as a fraction of the step
 SMOOTHED = 5  # samples
 DEAD_S, SLOPE, SPEED = 0.08, 0.3, 0.1  # differences that matter: seconds, and fractions
+RISE_S = 0.05  # of the whole rise: less is as good as at once
 LOW, HIGH = 0.25, 0.75  # of the step; between them a response is steepest, and noise matters least
 
 
@@ -47,19 +49,30 @@ def responses(bench: Bench, fraction: float) -> list[Response]:
     """
     found = []
     bench.begin()
-    for index, test_speed in list(bench.tests()):
-        axis = bench.domain.axes[index]
-        step = test_speed * fraction / bench.fraction
+    for index, _ in list(bench.tests()):
+        axis, limit = bench.domain.axes[index], bench.spec.limits[index]
+        step = fraction * min(abs(limit.lower), abs(limit.upper))
         bench.begin()
         bench.arm()
-        start_s = bench.link.now_s()
-        bench.drive([step if each == index else rest for each, rest in enumerate(bench.rest)], STEP_S)
-        series = [(h.at_s - start_s, v) for h in _since(bench, start_s) if (v := speed_in(h, axis.name)) is not None]
-        bench.drive(bench.rest, STEP_S / 2)
+        series = _series(bench, [step if each == index else rest for each, rest in enumerate(bench.rest)], index)
+        bench.drive(bench.rest, 1.0)
         response = _response(series, step)
         if response is not None:
             found.append(Response(axis.name, axis.unit, step, *response))
     return found
+
+
+def _series(bench: Bench, command: Sequence[float], index: int) -> list[tuple[float, float]]:
+    """Times since the step and speeds of the axis `index`, until it has settled."""
+    name, step, start_s = bench.domain.axes[index].name, command[index], bench.link.now_s()
+    means: list[float] = []
+    while bench.link.now_s() - start_s < STEP_S:
+        bench.drive(command, WINDOW_S)
+        means.append(bench.measured(name, WINDOW_S) or 0.0)
+        if len(means) > 1 and means[-1] > step / 2 and abs(means[-1] - means[-2]) < SETTLED * step:
+            break
+    heard = [each for each in bench.log if each.at_s >= start_s]
+    return [(each.at_s - start_s, v) for each in heard if (v := speed_in(each, name)) is not None]
 
 
 def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterator[str]:
@@ -73,7 +86,8 @@ def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterato
             continue
         if abs(each.dead_s - other.dead_s) > DEAD_S:
             yield f"{each.axis} answers after {each.dead_s:.2f} s, the models' robot after {other.dead_s:.2f} s"
-        if abs(each.slope / other.slope - 1.0) > SLOPE:
+        longer_s = each.commanded / each.slope - other.commanded / other.slope
+        if abs(each.slope / other.slope - 1.0) > SLOPE and abs(longer_s) > RISE_S:
             unit = f"{each.unit}²" if each.unit.endswith("/s") else f"{each.unit}/s"
             yield f"{each.axis} accelerates with {each.slope:.2f} {unit}, the models' robot with {other.slope:.2f}"
         if abs(each.speed / other.speed - 1.0) > SPEED:
@@ -83,22 +97,23 @@ def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterato
             )
 
 
-def _since(bench: Bench, start_s: float) -> list[Heard]:
-    return [each for each in bench.log if each.at_s >= start_s]
-
-
 def _response(series: Sequence[tuple[float, float]], step: float) -> tuple[float, float, float] | None:
     """Dead time, slope and speed; None if the axis does not move."""
+    if len(series) <= SMOOTHED:
+        return None
+    period_s = (series[-1][0] - series[0][0]) / (len(series) - 1)
+    still = [(series[0][0] - k * period_s, 0.0) for k in range(SMOOTHED, 0, -1)]  # before the step
+    whole = [*still, *series]
     smooth = [
         (fmean(t for t, _ in part), fmean(v for _, v in part) / step)
-        for part in (series[i : i + SMOOTHED] for i in range(len(series) - SMOOTHED + 1))
+        for part in (whole[i : i + SMOOTHED] for i in range(len(whole) - SMOOTHED + 1))
     ]
     low_s, high_s = _crossing(smooth, LOW), _crossing(smooth, HIGH)
     if low_s is None or high_s is None or high_s <= low_s:
         return None
     rise_s = (high_s - low_s) / (HIGH - LOW)
-    settled = [v for t, v in series if t > 0.8 * STEP_S]
-    return low_s - LOW * rise_s, step / rise_s, fmean(settled) if settled else 0.0
+    settled = [v for t, v in series if t > series[-1][0] - WINDOW_S]
+    return low_s - LOW * rise_s, step / rise_s, fmean(settled)
 
 
 def _crossing(series: Sequence[tuple[float, float]], level: float) -> float | None:
