@@ -185,8 +185,10 @@ class Session:
 
             service.prime()
             named = service.set_goal()
-            queryable = self._zenoh.declare_queryable(named.key(self.keys.domain), zenoh.handlers.RingChannel(16))
-            sources.append(_RosRequestSource(queryable))
+            requests: Any = zenoh.handlers.RingChannel(16)
+            key = named.key(self.keys.domain)
+            # A client of ROS 2 calls only queryables that are declared complete.
+            sources.append(_RosRequestSource(self._zenoh.declare_queryable(key, requests, complete=True)))
             self._graph.announce(Kind.SERVICE, named, self.keys.domain)
         return ServiceServer(*sources)
 

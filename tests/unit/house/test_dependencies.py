@@ -30,10 +30,10 @@ def declared(requirements: list[str]) -> set[str]:
 
 
 EXTRA = PROJECT["optional-dependencies"]
-OF_USERS = sorted(EXTRA.keys() - {"all", "test"})  # extras that users install
+OF_USERS = sorted(EXTRA.keys() - {"all", "test", "ros"})  # extras that users install
 PLANNERS = declared(EXTRA["kairos"] + EXTRA["up"])
 RUN = declared(PROJECT["dependencies"] + [line for extra in OF_USERS for line in EXTRA[extra]]) - PLANNERS
-TEST = declared(EXTRA["test"]) - {"tailor"}
+TEST = declared(EXTRA["test"] + EXTRA["ros"]) - {"tailor"}
 UNBOUNDED = {"cryptography", "pyarrow", "rich"}  # major versions often, none broke us: docs/dependencies.md
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
 OF_EXAMPLES = {"rerun"}  # for those who have it; Tailor needs no viewer
@@ -45,7 +45,8 @@ def imported_distributions(paths: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for path in paths:
         for name in {name.split(".")[0] for name in imported_names(path)} - OURS - set(sys.stdlib_module_names):
-            known = {canonical(name)} & (RUN | TEST | PLANNERS)  # of a meta-package
+            # Of a meta-package, or of ROS 2's that is not installed.
+            known = {canonical(name), f"ros-{canonical(name)}"} & (RUN | TEST | PLANNERS)
             found[known.pop() if known else canonical(DISTRIBUTIONS.get(name, [name])[0])] = path
     return found
 
