@@ -21,9 +21,7 @@ from rich.table import Table
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import (
-    DEFAULT,
     MATCHING,
-    AnytimeSearch,
     Problem,
     Result,
     Search,
@@ -126,17 +124,6 @@ def start_up_s(name: str = "soccer-p1", runs: int = 5) -> float:
     return min(used_s)
 
 
-def improvements(name: str = "kitchen-durative-s3", limit: int = 5000) -> list[tuple[float, int]]:
-    """Makespan of each plan of an anytime search, with the number of plans generated before it."""
-    problem = read(*texts(name))
-    search = AnytimeSearch(problem.domain, problem, replace(DEFAULT, node_limit=limit))
-    found = []
-    while not search.ended:
-        result = search.advance(CheckBudget(UNLIMITED))
-        found += [(round(search.value, 2), search.counts[0])] if result is not None and result.plan is not None else []
-    return found
-
-
 def run(console: Console, quick: bool) -> None:
     """Print the table.
 
@@ -157,5 +144,3 @@ def run(console: Console, quick: bool) -> None:
     console.print(table)
     console.print(f"memory: {bytes_per_plan():.0f} bytes per generated plan")
     console.print(f"tailor plan on soccer-p1, from start to end: {start_up_s(runs=1 if quick else 5):.2f} s of CPU")
-    makespans = ", ".join(f"{value:g} after {generated} plans" for value, generated in improvements())
-    console.print(f"anytime makespan of kitchen-durative-s3: {makespans}")

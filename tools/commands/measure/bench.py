@@ -16,7 +16,7 @@ from tailor.tools.cli.terminal import table_console
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and beside CPU burners; delay from percept to command",
-    "planning": "steps, generated and visited plans and CPU time of each problem",
+    "planning": "steps, counts and CPU time of each problem; solved by configuration; anytime plans; share of a tick",
     "refine": "gap to the best known value over CPU time for each solver; time of proofs",
     "models": "time of a prediction and of a fit",
     "gather": "simulated seconds for each wall second",
@@ -24,6 +24,7 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
+PLANNERS = ("planners.configurations", "planners.improvement", "planners.tick_share")  # of `planning`, after its table
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH = "soak", "growth"
 ON_REQUEST = {
@@ -89,4 +90,6 @@ def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool
         options = (arguments.minutes, arguments.seed, arguments.every, arguments.only, output, arguments.json)
         return bool(module.run(console, module.Options(*options)))
     module.run(console, arguments.quick)
+    for more in PLANNERS if name == "planning" else ():
+        importlib.import_module(f"tailor.tools.benchmarks.{more}").run(console, arguments.quick)
     return True

@@ -1,0 +1,78 @@
+"""Benchmark of planning inside ticks: its share of a tick's time in every scenario, in lock-step.
+
+CPU time of the search, the reuse of the last plan and the search for a better one, relative to the tick of 100 ms.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from tailor.executive import domains
+from tailor.executive.composition import ExecutiveConfig, build_context
+from tailor.executive.core.context import PERIOD_NS, Settings
+from tailor.executive.core.plan_reuse import Preparation
+from tailor.executive.core.plan_source import PlanSource
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import domain_names
+from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.worlds import make_world
+
+SECONDS, QUICK_SECONDS = 60.0, 8.0
+
+
+def shares(domain: str, scenario: str, seconds: float, settings: Settings | None = None) -> list[float]:
+    """Share of planning in each tick of one run, in percent of the tick."""
+    world = make_world(domains.load(domain).robot, scenario, 0)
+    _, start = domains.seeded_scenario(domain, scenario, 0)
+    context = build_context(ExecutiveConfig(domain, scenario, settings or Settings()), SENDER)
+    marks = [0]
+    with _timed(PlanSource, "advance") as searched, _timed(Preparation, "advance") as prepared:
+        run_lockstep(
+            context, world.body, start, 0, limit_s=seconds,
+            on_tick=lambda tick, outputs: marks.append(searched[0] + prepared[0]),
+        )  # fmt: skip
+    return [100.0 * float(ns) / PERIOD_NS for ns in np.diff(marks)]
+
+
+@contextmanager
+def _timed(kind: type[Any], name: str) -> Iterator[list[int]]:
+    """The CPU nanoseconds spent in a method while the context lasts, in a list of one number."""
+    real, spent = getattr(kind, name), [0]
+
+    def timed(self: Any, *arguments: Any) -> Any:
+        started_ns = time.process_time_ns()
+        try:
+            return real(self, *arguments)
+        finally:
+            spent[0] += time.process_time_ns() - started_ns
+
+    setattr(kind, name, timed)
+    try:
+        yield spent
+    finally:
+        setattr(kind, name, real)
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print one row for each scenario."""
+    table = Table(title="planning in percent of a tick (100 ms), CPU time", box=None)
+    table.add_column("scenario", no_wrap=True)
+    for column in ("ticks", "p50", "p99", "max"):
+        table.add_column(column, justify="right")
+    for domain in domain_names():
+        for scenario in domains.scenarios(domain)[: 2 if quick else None]:
+            try:
+                shared = shares(domain, scenario, QUICK_SECONDS if quick else SECONDS)
+            except UsageError as reason:  # a robot without a simulated body or without models
+                console.print(f"{domain} {scenario}: not measured: {reason}")
+                continue
+            p50, p99, most = np.percentile(shared, [50, 99, 100])
+            table.add_row(f"{domain} {scenario}", str(len(shared)), *(f"{p:.2f}" for p in (p50, p99, most)))
+    console.print(table)
