@@ -64,6 +64,7 @@ class ArmTask:
 
     reach: Reach
     stretches: tuple[Stretch, ...]
+    fastest_radps: float  # limit of each joint
     homing: bool = True  # the last stretch brings the arm home
 
     def __call__(self, state: Any, now_ns: int, belief: ArmBelief, arguments: Array) -> Control:
@@ -101,7 +102,9 @@ class ArmTask:
             return progress, (0.0,) * len(belief.angles), rested
         waypoint = [value for angle in progress.goal for value in (angle, 0.0)]
         control = self.reach(progress.motion, now_ns, belief, np.array([*waypoint, *waypoint]))
-        return replace(progress, motion=control.state), control.command, control.outcome == "done"
+        most = self.fastest_radps
+        velocities = tuple(max(-most, min(most, velocity)) for velocity in control.command)
+        return replace(progress, motion=control.state), velocities, control.outcome == "done"
 
     def _still(self, belief: ArmBelief, number: int) -> tuple[float, ...]:
         width = self.stretches[number].width

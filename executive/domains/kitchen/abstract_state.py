@@ -31,13 +31,16 @@ def anchor(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact
 
 
 def _cups(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact]) -> Iterator[Fact]:
-    """Where each cup is: in the hand, at a place, or, if it was never seen, where it was."""
+    """Where each cup is: in the hand, at a place, or, if it is not seen, where it was, or where the map has it."""
     for cup in scenario.settings["cups"]:
         seen = belief.thing(cup)
         if belief.held == cup:
             yield ("holding", cup)
         elif seen is None:
-            yield from (fact for fact in remembered if fact[0] == "cup-at" and fact[1] == cup)
+            was_at = (fact[2] for fact in remembered if fact[0] == "cup-at" and fact[1] == cup)
+            looked_for = next(was_at, places.mapped_label(scenario, cup))
+            if looked_for is not None:
+                yield ("cup-at", cup, looked_for)
         elif (label := places.place_of(belief, scenario, seen)) is not None:
             yield ("cup-at", cup, label)
 

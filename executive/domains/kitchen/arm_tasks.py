@@ -14,7 +14,7 @@ from tailor.executive.actions.reach import Reach
 from tailor.executive.domains.kitchen import robot
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.interfaces.values import Array
-from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M
+from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M, JOINT_MAX_RADPS
 
 X, Y, PHI, SPOT_X, SPOT_Y, ASIDE, OUT, HANDLE = range(8)
 BACK_M = (0.12, 0.08, 0.04, 0.0)  # behind the cup where the hand comes down, as far as the arm folds
@@ -88,7 +88,7 @@ def _kept(belief: KitchenBelief) -> str:
     return "still holds the cup" if belief.held else ""
 
 
-REACH_SPOT = ArmTask(REACH, (Stretch(Hand(OVER_M, BACK_M)),), homing=False)
+REACH_SPOT = ArmTask(REACH, (Stretch(Hand(OVER_M, BACK_M)),), JOINT_MAX_RADPS, homing=False)
 GRIP = ArmTask(
     REACH,
     (
@@ -98,6 +98,7 @@ GRIP = ArmTask(
         Stretch(Hand(LIFTED_M), SHUT),
         Stretch(_home, SHUT, failed=_lost),
     ),
+    JOINT_MAX_RADPS,
 )
 PUT = ArmTask(
     REACH,
@@ -108,4 +109,5 @@ PUT = ArmTask(
         Stretch(Hand(0.02, BACK_M), WIDE),
         Stretch(_home, WIDE),
     ),
+    JOINT_MAX_RADPS,
 )

@@ -138,7 +138,7 @@ def _with_held(belief: KitchenBelief) -> KitchenBelief:
     narrowest, widest = robot.HELD_M
     grasped = bool(belief.held) or belief.force > robot.HELD_N
     if not grasped or not narrowest < belief.width < widest:
-        return replace(belief, held="") if belief.held else belief
+        return replace(belief, held="", things=objects.let_go(belief.things, belief.held)) if belief.held else belief
     ahead, left, z = robot.ARM.forward(belief.angles).place
     c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)
     hand = belief.pose.x + c * ahead - s * left, belief.pose.y + s * ahead + c * left, z

@@ -1,4 +1,4 @@
-"""Where tables and cups are: as they were seen, else as the map of the kitchen has them."""
+"""Where tables, cups and the stool are: as they were seen, else as the map of the kitchen has them."""
 
 from __future__ import annotations
 
@@ -25,3 +25,9 @@ def mapped_cup(belief: KitchenBelief, name: str) -> Place:
     """Place of a cup, and direction of its handle, according to the map, on its table as it was seen."""
     table, slot, handle = kitchen().cups[name]
     return on_table(table_place(belief, table), *kitchen().table.slots[slot], handle)
+
+
+def stool_place(belief: KitchenBelief) -> tuple[float, float]:
+    """Middle of the stool, m in the map frame."""
+    seen = belief.thing("stool")
+    return kitchen().stool.place if seen is None else (seen.x, seen.y)

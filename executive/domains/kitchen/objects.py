@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 from tailor.executive.belief.angles import wrap
 from tailor.executive.belief.planar_ekf import Pose
+from tailor.schemas.kitchen.furniture import kitchen
 from tailor.schemas.messages.kitchen import ObjectPercept
 
 VARIANCES = (1e-8, 1.0)  # of a percept, whatever was received
 MOVED_SIGMAS, MOVED_M = 5.0, 0.04  # a percept farther off than both is not noise: the object was moved
 LEAST_M2 = 1e-7  # variance below which no estimate falls, so that it can still follow
 CREDIBLE_M = 20.0
+PUT_DOWN_M = 0.05  # from the height at which a cup stands on a table
 MOST = 24  # names that are kept
 
 
@@ -47,6 +49,12 @@ def named(things: tuple[Thing, ...], name: str) -> Thing | None:
 def carried(things: tuple[Thing, ...], name: str, x: float, y: float, z: float) -> tuple[Thing, ...]:
     """The objects, of which the one of that name is at a place in the map."""
     return tuple(replace(thing, x=x, y=y, z=z) if thing.name == name else thing for thing in things)
+
+
+def let_go(things: tuple[Thing, ...], name: str) -> tuple[Thing, ...]:
+    """The objects after a cup has left the gripper: one that was not put down may be anywhere until it is seen."""
+    stands_m = kitchen().table.size[2] + kitchen().cup.height / 2
+    return tuple(thing for thing in things if thing.name != name or abs(thing.z - stands_m) < PUT_DOWN_M)
 
 
 def _in_map(percept: ObjectPercept, pose: Pose, now_ns: int) -> Thing:

@@ -45,6 +45,12 @@ def spots(scenario: Scenario) -> Mapping[str, tuple[str, int]]:
     return declared
 
 
+def mapped_label(scenario: Scenario, cup: str) -> str | None:
+    """Place at which a cup stands by the map of the kitchen: lost ones are looked for there. None: at none."""
+    table, slot, _ = kitchen().cups[cup]
+    return next((label for label, place in spots(scenario).items() if tuple(place) == (table, slot)), None)
+
+
 def spot_of(belief: KitchenBelief, scenario: Scenario, label: str) -> Spot:
     """The believed spot of a place without a cup."""
     name, slot = spots(scenario)[label]

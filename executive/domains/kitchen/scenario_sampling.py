@@ -64,13 +64,16 @@ def _displaced(place: Place, by: Place, rng: np.random.Generator) -> Place:
 
 
 def _event(row: Mapping[str, Any], start: Values, cups: Mapping[str, Place], rng: np.random.Generator) -> Values:
-    """An event: a cup is moved on its table, falls out of the hand, or the next grasp fails."""
+    """An event: a cup is moved towards the middle of its table, a cup is pushed, or the next grasp fails."""
     event = {"at_s": float(rng.uniform(*row["between_s"]))}
-    if "cup" not in row:
-        return {**event, row["kind"]: 1.0}
+    if "fumble" in row:
+        return {**event, "fumble": float(row["fumble"])}
     cup, table = row["cup"], cups[row["cup"]]
+    if "push_mps" in row:
+        speed, angle = rng.uniform(*row["push_mps"]), rng.uniform(-math.pi, math.pi)
+        return {**event, f"{cup}_vx": float(speed * math.cos(angle)), f"{cup}_vy": float(speed * math.sin(angle))}
     x, y = start[f"{cup}_x"], start[f"{cup}_y"]
-    side, distance = rng.choice((-1.0, 1.0)), rng.uniform(*row["move_m"])
-    across = table[2] + math.pi / 2
-    moved = x + side * distance * math.cos(across), y + side * distance * math.sin(across)
-    return {**event, f"{cup}_x": float(moved[0]), f"{cup}_y": float(moved[1])}
+    c, s = math.cos(table[2] + math.pi / 2), math.sin(table[2] + math.pi / 2)  # across the table
+    aside = c * (x - table[0]) + s * (y - table[1])
+    distance = -math.copysign(rng.uniform(*row["move_m"]), aside)
+    return {**event, f"{cup}_x": float(x + distance * c), f"{cup}_y": float(y + distance * s)}

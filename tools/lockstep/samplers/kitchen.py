@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.actions.planar import PHIG, VG, XG, YG
+from tailor.executive.actions.planar import PHIG, VG, XG, YG, X, Y
 from tailor.executive.belief.angles import difference, wrap
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.kitchen import places
-from tailor.executive.domains.kitchen.action_library import ASIDE_RAD
+from tailor.executive.domains.kitchen.action_library import ASIDE_RAD, TOUCHED_STOOL
 from tailor.executive.domains.kitchen.arm_tasks import BACK_M, HANDLE, OUT, OVER_M, Hand
 from tailor.executive.domains.kitchen.belief import FIRST_POSES, KitchenBelief
 from tailor.executive.domains.kitchen.objects import Thing
@@ -25,6 +25,8 @@ from tailor.schemas.kitchen.furniture import kitchen, on_table
 from tailor.schemas.kitchen.kinematics import JOINTS
 from tailor.schemas.messages import ActionFinished, Message
 from tailor.schemas.messages.kitchen import KitchenTruth
+from tailor.tools.lockstep.samplers import stool
+from tailor.tools.lockstep.samplers.beside import Beside
 
 TOUCHED, TIPPED = "touched furniture", "tipped the cup"
 FROM_START = 0.3  # share of the drives that begin, or end, away from tables
@@ -62,6 +64,25 @@ class KitchenSampler:
             start |= {} if angles is None else dict(zip(JOINTS, angles, strict=True))
         return start
 
+    def sample_among_objects(self, action: Action, rng: np.random.Generator) -> Array:
+        """As `sample`: drives are as long among objects."""
+        return self.sample(action, rng)
+
+    def beside(self, action: Action, truths: Sequence[Message], count: int, rng: np.random.Generator) -> list[Beside]:
+        """Stools beside a drive, half of them beside its rest from some tick on."""
+        ways = np.array([(truth.x, truth.y) for truth in truths if isinstance(truth, KitchenTruth)])
+        ticks = [0 if k % 2 else int(rng.integers(len(ways))) for k in range(count)]
+        return [stool.beside(ways[tick:], tick, rng) for tick in ticks]
+
+    def context(self, action: Action, arguments: Array, rng: np.random.Generator) -> Array:
+        """A stool near the straight way, as it is believed: x, y, radius."""
+        ends = np.array([arguments[[X, Y]], arguments[[XG, YG]]])
+        return stool.beside(ends[0] + np.linspace(0.0, 1.0, 50)[:, None] * (ends[1] - ends[0]), 0, rng).row
+
+    def context_start(self, action: Action, row: Array, rng: np.random.Generator) -> dict[str, float]:
+        """The stool at that place; its error in the belief is in the row."""
+        return {"stool_x": float(row[0]), "stool_y": float(row[1])}
+
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> KitchenBelief:
         """The belief after a look around: the robot knows itself, and where the cup is (Table 5)."""
         unknown = KitchenBelief()
@@ -85,6 +106,8 @@ class KitchenSampler:
         """What the truth shows: base or arm touched furniture, or a cup tipped."""
         if not isinstance(truth, KitchenTruth):
             return ""
+        if "stool" in truth.touched:
+            return TOUCHED_STOOL
         tipped = any(each.tilt > kitchen().cup.tipped_rad for each in truth.objects if each.name != truth.held)
         return TOUCHED if truth.touched else TIPPED if tipped else ""
 

@@ -10,7 +10,7 @@ import pytest
 
 from tailor.executive import domains, planning
 from tailor.executive.belief.planar_ekf import Pose
-from tailor.executive.domains.kitchen import abstract_state, places, predicates, robot
+from tailor.executive.domains.kitchen import abstract_state, objects, places, predicates, robot
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.domains.kitchen.objects import Thing
 from tailor.executive.interfaces.budget import CheckBudget
@@ -106,6 +106,17 @@ def test_a_cup_in_its_place_is_there():
 def test_a_cup_on_the_floor_or_tipped_is_nowhere(lost):
     facts = anchored(believed(cup(*on_table1(), **lost), pose=STAND))
     assert not any(fact[0] in ("cup-at", "holding") for fact in facts)
+
+
+def test_a_cup_lost_on_the_way_is_looked_for_where_the_map_has_it():
+    lost = KitchenBelief(pose=Pose(0.0, 0.0, 0.0, EXACT), poses_seen=9, joints_ns=1)
+    facts = abstract_state.anchor(lost, scenario(), frozenset({("robot-at", "dock"), ("holding", "cup1")}))
+    assert {("cup-at", "cup1", "table1"), ("hand-empty",)} <= facts
+
+
+@pytest.mark.parametrize(("z", "kept"), [(CUP_M, True), (1.05, False)])
+def test_a_cup_that_left_the_gripper_is_known_only_if_it_was_put_down(z, kept):
+    assert bool(objects.let_go((cup(*on_table1(), z=z),), "cup1")) is kept
 
 
 def test_a_cup_out_of_reach_makes_the_robot_drive_again():
