@@ -63,7 +63,9 @@ def memory_table(rows: Iterable[Mapping[str, Any]]) -> Table:
     """Table of `memory_rows`: those with a slope, or all if there is none."""
     rows = list(rows)
     rows = [row for row in rows if row["slope"] is not None] or rows
-    table = Table(title="resident memory", caption="slope after the first ten minutes, 95 % interval")
+    table = Table(
+        title="own memory, without pages of files", caption="slope after the first ten minutes, 95 % interval"
+    )
     for column in ("process", "minutes", "first MB", "last MB", "slope MB/h"):
         table.add_column(column, justify="left" if column == "process" else "right")
     for row in rows:

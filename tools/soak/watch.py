@@ -20,7 +20,7 @@ class Watch:
     """Watches one system; call `poll` many times a second.
 
     Attributes:
-      memory: Resident memory of each process, by name and process id.
+      memory: Own resident memory of each process, without pages of files, by name and process id.
       launcher_gone: The launcher has ended although nobody wanted it to.
     """
 
@@ -94,7 +94,7 @@ class Watch:
         )
 
     def _sample(self, now_ns: int, name: str, pid: int) -> None:
-        size_mb = processes.rss_mb(pid)
+        size_mb = processes.own_mb(pid)
         if size_mb is not None:
             self.memory.setdefault((name, pid), []).append((now_ns / 1e9, size_mb))
 

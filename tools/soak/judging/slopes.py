@@ -16,7 +16,7 @@ FLAT_MB_PER_H = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """Resident memory of one process from its start to its end."""
+    """Own memory of one process from its start to its end."""
 
     first_mb: float
     last_mb: float

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-_PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 1e6
 _MODULE = b"tailor.tools.main"
 
 
@@ -31,11 +30,15 @@ def is_alive(pid: int) -> bool:
         return False
 
 
-def rss_mb(pid: int) -> float | None:
-    """Resident memory; None if the process has ended."""
+def own_mb(pid: int) -> float | None:
+    """Resident memory without pages of files, whose code and data the kernel may drop; None if the process has ended.
+
+    A leak grows it. Pages of a library's code come with every rare path that is taken for the first time.
+    """
     try:
-        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE_MB
-    except (OSError, IndexError):
+        sizes = dict(line.split(":", 1) for line in Path(f"/proc/{pid}/status").read_text().splitlines())
+        return sum(int(sizes[name].split()[0]) for name in ("RssAnon", "RssShmem")) * 1024 / 1e6
+    except (OSError, KeyError):
         return None
 
 
