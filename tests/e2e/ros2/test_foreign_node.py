@@ -10,44 +10,24 @@ from tailor.schemas import messages as m
 from tailor.schemas.ros2.profiles import KeyProfile
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
-from tests.support.ros2.definitions import write_definitions
 
 sdk = pytest.importorskip("zenoh_ros2_sdk")
+node = pytest.importorskip("tests.support.ros2.sdk")
 KEYS = KeyProfile("rmw_zenoh", 0)
 ODOMETRY = m.Odometry(1_500_000_000, 1.0, 2.0, 0.5, 0.1, 0.2)
 
 
 @pytest.fixture(scope="module")
 def ros(tmp_path_factory):
-    """Makes the SDK's publishers, subscribers and clients; yields (make, our session) on one router."""
-    from zenoh_ros2_sdk import message_registry
-    from zenoh_ros2_sdk.session import ZenohSession
-
+    """The node's maker, and our session, on one router."""
     codec.prime()
-    folder = tmp_path_factory.mktemp("definitions")
-    write_definitions(folder)
     endpoint = free_endpoint()
-    port = int(endpoint.rpartition(":")[2])
-    with open_router(endpoint), open_client(endpoint, keys=KEYS, role="executive") as session:
-        message_registry.get_registry().messages_dir = folder
-        ZenohSession.get_instance("127.0.0.1", port)
-        made = []
-
-        def make(kind, *arguments, **more):
-            made.append(kind(*arguments, domain_id=0, router_port=port, **more))
-            return made[-1]
-
+    with (
+        open_router(endpoint),
+        open_client(endpoint, keys=KEYS, role="executive") as session,
+        node.sdk_node(endpoint, tmp_path_factory.mktemp("definitions")) as make,
+    ):
         yield make, session
-        for each in made:
-            each.close()
-        ZenohSession.get_instance().session.close()
-        ZenohSession._instance = None
-
-
-def value(name, **fields):
-    from zenoh_ros2_sdk.session import ZenohSession
-
-    return ZenohSession.get_instance().store.types[name](**fields)
 
 
 def test_it_reads_our_odometry(ros):
@@ -90,12 +70,12 @@ def test_we_read_its_pose(ros):
 def publish_pose(publisher, x, y):
     import numpy as np
 
-    stamp = value("builtin_interfaces/msg/Time", sec=3, nanosec=0)
-    point = value("geometry_msgs/msg/Point", x=x, y=y, z=0.0)
-    turn = value("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0)
-    pose = value("geometry_msgs/msg/Pose", position=point, orientation=turn)
-    spread = value("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=np.eye(6).ravel() / 4)
-    publisher.publish(header=value("std_msgs/msg/Header", stamp=stamp, frame_id="map"), pose=spread)
+    stamp = node.value("builtin_interfaces/msg/Time", sec=3, nanosec=0)
+    point = node.value("geometry_msgs/msg/Point", x=x, y=y, z=0.0)
+    turn = node.value("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0)
+    pose = node.value("geometry_msgs/msg/Pose", position=point, orientation=turn)
+    spread = node.value("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=np.eye(6).ravel() / 4)
+    publisher.publish(header=node.value("std_msgs/msg/Header", stamp=stamp, frame_id="map"), pose=spread)
 
 
 def test_its_estop_is_latched(ros):
@@ -127,12 +107,11 @@ def test_its_call_of_the_service_is_answered(ros, goal, answer):
 
 def test_it_lists_our_topics_and_service_while_we_live(ros):
     from zenoh_ros2_sdk import discovery
-    from zenoh_ros2_sdk.session import ZenohSession
 
     _, session = ros
     session.publisher("cmd_vel", "robot7")
     goal_server(session)
-    port = ZenohSession.get_instance().router_port
+    port = node.port()
 
     def listed():
         return dict(discovery.get_topic_names_and_types(domain_id=0, router_port=port))
