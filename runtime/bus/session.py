@@ -137,6 +137,10 @@ class Session:
         self._announce_key(Kind.SUBSCRIPTION, key)
         return self._ring(key)
 
+    def raw_sources(self, name: str, robot: str) -> list[Source]:
+        """Raw messages of a topic of ours, one source for each of its keys in this session's profile."""
+        return [self._ring(each) for each, _ in self._keys_of(TOPICS[name], key_of(name, robot))]
+
     def _announce_key(self, kind: Kind, key: str) -> None:
         """Show ROS 2 what this session has at a key, if it is one of rmw_zenoh's."""
         parsed = parsed_key(key)

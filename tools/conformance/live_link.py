@@ -12,7 +12,7 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.ros2.plain import frame_in
-from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.topics import TOPICS
 from tailor.tools.conformance.bench import Heard
 
 POLL_S = 0.002
@@ -35,10 +35,8 @@ class LiveLink:
         Raises:
           NoDriverError: There is none within MATCH_S.
         """
-        self._robot = robot
-        self._sources: dict[str, Source] = {
-            name: executive.plain_source(key_of(name, robot)) for name in ("driver", *sensors)
-        }
+        names = ("driver", *sensors)
+        self._sources = [(name, source) for name in names for source in executive.raw_sources(name, robot)]
         self._publishers = {name: executive.publisher(name, robot) for name in commands}
         self._publishers |= {name: people.publisher(name, robot) for name in PEOPLE}
         until_s = time.monotonic() + MATCH_S
@@ -56,7 +54,7 @@ class LiveLink:
         until_s, heard = time.monotonic() + seconds, list[Heard]()
         while True:
             now_s = time.monotonic()
-            for topic, source in self._sources.items():
+            for topic, source in self._sources:
                 heard += self._received(topic, source, now_s)
             if now_s >= until_s:
                 return heard
