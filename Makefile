@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OLD := import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models ros2 lint types bench clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models ros2 lint types bench docs clean
 
 setup: .venv/.installed
 
@@ -65,6 +65,13 @@ types: setup
 
 bench: setup
 	$(BIN)/tailor bench
+
+.venv/.docs: .venv/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	@touch $@
+
+docs: .venv/.docs  # the documentation site in out/site; a broken link is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
 
 clean:
 	rm -rf .venv out build *.egg-info

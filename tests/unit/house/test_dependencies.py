@@ -30,10 +30,11 @@ def declared(requirements: list[str]) -> set[str]:
 
 
 EXTRA = PROJECT["optional-dependencies"]
-OF_USERS = sorted(EXTRA.keys() - {"all", "test", "ros"})  # extras that users install
+OF_USERS = sorted(EXTRA.keys() - {"all", "docs", "test", "ros"})  # extras that users install
 PLANNERS = declared(EXTRA["kairos"] + EXTRA["up"])
 RUN = declared(PROJECT["dependencies"] + [line for extra in OF_USERS for line in EXTRA[extra]]) - PLANNERS
 TEST = declared(EXTRA["test"] + EXTRA["ros"]) - {"tailor"}
+SITE = declared(EXTRA["docs"])
 UNBOUNDED = {"cryptography", "pyarrow", "rich"}  # major versions often, none broke us: docs/dependencies.md
 PINNED = declared((ROOT / "constraints.txt").read_text().split())
 OF_EXAMPLES = {"rerun"}  # for those who have it; Tailor needs no viewer
@@ -83,7 +84,7 @@ def test_every_package_that_the_tests_import_is_declared() -> None:
     assert {name: path for name, path in imported.items() if name not in RUN | TEST | OF_EXAMPLES} == {}
 
 
-@pytest.mark.parametrize("name", sorted(RUN | TEST | PLANNERS))
+@pytest.mark.parametrize("name", sorted(RUN | TEST | PLANNERS | SITE))
 def test_a_dependency_is_pinned_and_explained(name: str) -> None:
     assert name in PINNED
     page = (Path(ROOT) / "docs" / "dependencies.md").read_text()

@@ -1,11 +1,15 @@
 """Pages name files, folders and commands that exist."""
 
+import importlib
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 import tailor
-from tailor.tools.main import COMMANDS
+from tailor.tools.main import COMMANDS, GROUPS
 from tests.unit.house import draw_clauses, draw_roles
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
@@ -16,6 +20,11 @@ PAGES = [
     *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")),
 ]
 REFERENCE = sorted(f"docs/robots/{page.name}" for page in (ROOT / "docs" / "robots").glob("*.md"))
+GUIDE = sorted(
+    page.relative_to(ROOT).as_posix() for page in (ROOT / "docs").glob("[gr][ue][if]*/*.md")
+)  # guide, reference
+COMMANDS_BY_GROUP = [name for group in GROUPS for name in COMMANDS if group in COMMANDS[name][0].split(".")]
+GENERATED = {"commands.md", "configuration.md"}  # by docs/site/hooks.py
 TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
 PATH = re.compile(rf"`((?:{TOPS}|core|planning|refinement)/[\w./-]*)`")
 LINK = re.compile(r"\]\((?!http|#)([^)#]+)")
@@ -26,15 +35,19 @@ def exists(path: str) -> bool:
     return any((ROOT / folder / path).exists() for folder in ("", "executive"))
 
 
-@pytest.mark.parametrize("page", PAGES + REFERENCE)
+def known(page: Path) -> bool:
+    return page.exists() or (page.parent.resolve() == ROOT / "docs" / "reference" and page.name in GENERATED)
+
+
+@pytest.mark.parametrize("page", PAGES + REFERENCE + GUIDE)
 def test_a_page_names_files_that_exist(page: str) -> None:
     text = (ROOT / page).read_text()
     assert {path for path in PATH.findall(text) if not exists(path)} == set()
     folder = (ROOT / page).parent
-    assert {link for link in LINK.findall(text) if not (folder / link).exists()} == set()
+    assert {link for link in LINK.findall(text) if not known(folder / link)} == set()
 
 
-@pytest.mark.parametrize("page", PAGES + REFERENCE)
+@pytest.mark.parametrize("page", PAGES + REFERENCE + GUIDE)
 def test_a_page_names_commands_that_exist(page: str) -> None:
     assert set(COMMAND.findall((ROOT / page).read_text())) <= set(COMMANDS)
 
@@ -66,3 +79,28 @@ def test_the_page_on_security_lists_every_role_with_its_rights() -> None:
 def test_the_page_on_the_contract_lists_every_clause() -> None:
     page = draw_clauses.PAGE.read_text()
     assert draw_clauses.drawn(page) == page, "run `python -m tests.unit.house.draw_clauses`"
+
+
+def test_the_site_has_every_page_in_its_navigation() -> None:
+    listed = set(re.findall(r"- (?:[^:\n]+: )?([\w./-]+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.MULTILINE))
+    pages = {page.removeprefix("docs/") for page in PAGES + REFERENCE + GUIDE} - {"README.md"}
+    assert listed == pages | {f"reference/{name}" for name in GENERATED} | {"CHANGELOG.md"}
+
+
+def test_the_generated_pages_hold_every_command_and_every_setting(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [str(ROOT / "docs" / "site"), *sys.path])
+    commands = importlib.import_module("commands_page").commands_page()
+    assert re.findall("^### tailor (.+)$", commands, re.MULTILINE) == COMMANDS_BY_GROUP
+    page = importlib.import_module("configuration_page").configuration_page()
+    assert "## `[executive.refinement]`" in page
+    assert "| `horizon` | `int` | `2` | actions optimised together" in page
+
+
+@pytest.mark.slow
+def test_the_site_is_built_without_a_broken_link(tmp_path: Path) -> None:
+    pytest.importorskip("mkdocs", reason="extra docs")
+    command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(tmp_path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    html = "".join(page.read_text() for page in tmp_path.rglob("*.html"))
+    assert re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"']?https?:", html) == []
