@@ -47,11 +47,14 @@ class Preparation:
         suffix = planning.shortest_suffix(plan, self._done, self._domain, self._problem)
         self._suffix = planning.PacedWork(suffix, REUSE_FREE_PORTIONS)
         self._result: planning.Result | None = None
-        self._search: planning.Search | None = None
+        self._search: planning.Search | planning.AnytimeSearch | None = None
         left = len({other.id for other in plan.steps} - self._done)
-        if context.settings.improve_plans and left > (0 if plan.durative else 1):
-            settings = _bounded(context, None if plan.durative else left - 1)
-            self._search = planning.Search(context.pddl_domain, self._problem, settings, ground)
+        measured = _measured(self._problem)
+        if context.settings.improve_plans and left > (0 if measured else 1):
+            if measured:
+                self._search = planning.AnytimeSearch(self._domain, self._problem, _bounded(context, None, 2), ground)
+            else:
+                self._search = planning.Search(self._domain, self._problem, _bounded(context, left - 1), ground)
 
     def serves(self, plan: planning.Plan, step: int, expected: frozenset[Fact]) -> bool:
         """Whether this starts from the state `expected` after that step of that plan."""
@@ -67,7 +70,13 @@ class Preparation:
 
     def advance(self, budget: Budget) -> None:
         """Continue until all is done or the budget is spent."""
-        if self._suffix.advance(budget) and self._search is not None and self._result is None:
+        if not self._suffix.advance(budget) or self._search is None:
+            return
+        if isinstance(self._search, planning.AnytimeSearch):
+            while self._search.advance(budget) is not None:  # each plan is better than the one before
+                pass
+            self._result = self._search.best
+        elif self._result is None:
             self._result = self._search.advance(budget)
 
     def suffix(
@@ -86,11 +95,16 @@ class Preparation:
         return found if found.plan is not None else None
 
 
-def better(plan: planning.Plan, other: planning.Plan) -> bool:
-    """Strict comparison: by makespan for durative plans, otherwise by number of steps."""
-    if plan.durative:
-        return plan.makespan < other.makespan
+def better(plan: planning.Plan, other: planning.Plan, problem: planning.Problem) -> bool:
+    """Strict comparison: by cost or makespan if the problem has costs or durations, otherwise by number of steps."""
+    if _measured(problem):
+        return planning.quality(plan, problem) < planning.quality(other, problem)
     return len(plan.steps) < len(other.steps)
+
+
+def _measured(problem: planning.Problem) -> bool:
+    """Whether plans differ by more than their numbers of steps."""
+    return problem.domain.durative or problem.metric == "cost"
 
 
 def reuse(
@@ -112,14 +126,14 @@ def reuse(
     prepared = preparation.suffix(plan, done, problem) if preparation is not None else None
     left = yield from prepared or planning.shortest_suffix(plan, done, context.pddl_domain, problem)
     found = (yield from preparation.better_plan(problem)) if preparation is not None else None
-    if found is not None and found.plan is not None and (left is None or better(found.plan, left)):
+    if found is not None and found.plan is not None and (left is None or better(found.plan, left, problem)):
         return found
     return PlanFound("solved", "suffix", left, 0, 0) if left is not None else None
 
 
-def _bounded(context: Context, steps: int | None) -> planning.Settings:
-    """The planner's settings, limited to `improve_plans` generated plans and to `steps` steps."""
+def _bounded(context: Context, steps: int | None, searches: int = 1) -> planning.Settings:
+    """The planner's settings, limited to `improve_plans` generated plans in so many searches, and to `steps` steps."""
     planner = context.settings.planner
-    nodes = min(planner.node_limit, context.settings.improve_plans)
+    nodes = min(planner.node_limit, context.settings.improve_plans // searches)
     limit = planner.step_limit if steps is None else steps
     return replace(planner, engine="pocl", node_limit=nodes, step_limit=limit)  # the other engine's plans are longer

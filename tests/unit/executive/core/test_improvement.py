@@ -9,14 +9,16 @@ import pytest
 
 from tailor.executive import planning
 from tailor.executive.core.context import Settings
-from tailor.executive.core.plan_reuse import better
+from tailor.executive.core.plan_reuse import Preparation, better
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.replay.test_replay_core import FickleBudget
+from tests.support.planning_problems import own, read
 from tests.support.toy_domain import driver, line_context, odometry
 
 TICK = 100_000_000
@@ -136,10 +138,62 @@ def test_better_means_strictly_fewer_steps_or_strictly_sooner():
             "p", (), tuple(planning.Step(i, ("a",), end, 0.0) for i, end in enumerate(ends, 1)), durative=durative
         )
 
-    assert better(plan(1, 2), plan(1, 2, 3))
-    assert not better(plan(1, 2), plan(1, 1))
-    assert better(plan(1, 2, 3, durative=True), plan(9, durative=True))
-    assert not better(plan(9, durative=True), plan(9, durative=True))
+    _, plain = own("kitchen-s1")
+    assert better(plan(1, 2), plan(1, 2, 3), plain)
+    assert not better(plan(1, 2), plan(1, 1), plain)
+    _, timed = own("kitchen-durative-s1")
+    assert better(plan(1, 2, 3, durative=True), plan(9, durative=True), timed)
+    assert not better(plan(9, durative=True), plan(9, durative=True), timed)
+
+
+COSTS = """(define (domain shop) (:predicates (s) (p) (q)) (:functions (total-cost))
+  (:action enter :parameters () :effect (and (s) (increase (total-cost) 1)))
+  (:action dear :parameters () :precondition (s) :effect (and (q) (increase (total-cost) 9)))
+  (:action cheap :parameters () :precondition (s) :effect (and (p) (increase (total-cost) 2)))
+  (:action go :parameters () :precondition (p) :effect (and (q) (increase (total-cost) 3))))"""
+SHOPPING = "(define (problem x) (:domain shop) (:init) (:goal (q)) (:metric minimize (total-cost)))"
+
+
+def test_a_plan_of_more_steps_and_less_cost_is_better():
+    domain, problem = read(COSTS, SHOPPING)
+    dear = planning.completed(planning.parse_plan("(enter)\n(dear)\n"), domain, problem)
+    context = replace(line_context(), pddl_domain=domain, problem=problem)
+    inside = frozenset([("s",)])
+    preparation = Preparation(context, dear, dear.steps[0].id, frozenset(), inside, "", planning.GroundCache())
+    preparation.advance(CheckBudget(1000))
+    now = problem.with_initial(inside)
+    found = completed_work(preparation.better_plan(now)).plan
+    assert [step.action for step in found.steps] == [("cheap",), ("go",)]
+    left = planning.suffix(dear, frozenset({dear.steps[0].id}), domain, now)
+    assert better(found, left, now)
+    assert not better(left, found, now)
+
+
+def two_robots():
+    """A preparation after the first step of a plan for two robots that takes 56 s, though 28 will do."""
+    domain, problem = own("kitchen-durative-s3")
+    plan = planning.Search(domain, problem, COVERAGE).advance(CheckBudget(10**6)).plan
+    expected = planning.apply_action(domain, problem, frozenset(problem.initial), plan.steps[0].action)
+    context = replace(line_context(Settings(improve_plans=1600)), pddl_domain=domain, problem=problem)
+    ground = planning.GroundCache()
+    preparation = Preparation(context, plan, plan.steps[0].id, frozenset(), expected, "", ground)
+    return preparation, plan, problem.with_initial(sorted(expected))
+
+
+COVERAGE = planning.Settings(("ADDR", "ADDR_WORK", "BUC", "LIFO"), engine="pocl")
+
+
+@pytest.mark.parametrize("checks", [7, 10**6])
+def test_plans_with_durations_become_better_as_long_as_the_budget_lasts(checks):
+    preparation, plan, problem = two_robots()
+    for _ in range(2000 // checks + 1):
+        preparation.advance(CheckBudget(checks))
+    found = completed_work(preparation.better_plan(problem))
+    assert found.way == "improved"
+    assert plan.makespan > 50
+    assert found.plan.makespan < 29
+    assert planning.validate(found.plan, problem.domain, problem) == ""
+    assert better(found.plan, plan, problem)
 
 
 def test_a_failed_action_leaves_no_better_plan_behind():
