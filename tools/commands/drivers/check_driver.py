@@ -1,6 +1,6 @@
 """Check a driver on the bus against its contract, clause by clause, then whether the robot moves as its models expect.
 
-The robot moves, slowly, and the e-stop of ALL drivers on the bus is pressed twice. Hardware asks for a confirmation.
+The robot moves, slowly, and the e-stop of ALL drivers on the bus is pressed twice. Hardware needs a confirmation.
 """
 
 from __future__ import annotations
