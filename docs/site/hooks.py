@@ -42,3 +42,8 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
 def on_post_page(output: str, **_: Any) -> str:
     """Without the one script that the theme would fetch: it serves a search in pages opened from a folder."""
     return FETCHED.sub("", output)
+
+
+def on_post_template(output_content: str, **_: Any) -> str:
+    """The same for the page of errors."""
+    return FETCHED.sub("", output_content)
