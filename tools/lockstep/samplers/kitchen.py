@@ -31,6 +31,7 @@ from tailor.tools.lockstep.samplers.beside import Beside
 TOUCHED, TIPPED = "touched furniture", "tipped the cup"
 FROM_START = 0.3  # share of the drives that begin, or end, away from tables
 CUP = "cup1"
+MASS_KG, ROLLING_N = 120.0, 18.0  # of the B21; 1.5 % of its weight resists its rolling
 ASIDE_STOOL = {"stool_x": 2.75, "stool_y": -1.95}  # in a corner: the duration of a drive is that of one with a free way
 
 
@@ -112,8 +113,13 @@ class KitchenSampler:
         return TOUCHED if truth.touched else TIPPED if tipped else ""
 
     def work_j(self, before: Message, after: Message) -> float:
-        """NaN: the work of the drives is not known."""
-        return math.nan
+        """Work of the base's drive between two states, joules: it speeds up and rolls; the arm's is not counted."""
+        if not isinstance(before, KitchenTruth) or not isinstance(after, KitchenTruth):
+            return math.nan
+        passed_s = (after.stamp_ns - before.stamp_ns) * 1e-9
+        gained_j = 0.5 * MASS_KG * (after.v**2 - before.v**2)
+        rolled_m = 0.5 * abs(before.v + after.v) * passed_s
+        return max(0.0, gained_j + ROLLING_N * rolled_m)
 
     def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
         """No other names: parameters are named as the belief is."""
