@@ -24,7 +24,8 @@ BENCHMARKS = {
     "recording": "CPU share of the recorder, loss, lateness of a replay, speed of verify",
 }
 
-PLANNERS = ("planners.configurations", "planners.improvement", "planners.tick_share")  # of `planning`, after its table
+# of `planning`, after its table
+PLANNERS = ("planners.improvement", "planners.tours", "planners.tick_share", "planners.configurations")
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH = "soak", "growth"
 ON_REQUEST = {

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.planning import DEFAULT, MATCHING
-from tailor.tools.benchmarks.planners import configurations, improvement, tick_share
+from tailor.tools.benchmarks.planners import configurations, improvement, tick_share, tours
 from tailor.tools.benchmarks.planning import texts
 
 
@@ -36,3 +36,11 @@ def test_planning_takes_its_share_of_the_first_ticks_and_the_method_is_restored(
     assert len(shared) > 20
     assert max(shared) > 0
     assert sorted(shared)[len(shared) // 2] == pytest.approx(0, abs=2), "most ticks plan nothing"
+
+
+@pytest.mark.slow
+def test_a_tour_chosen_by_the_models_is_driven_faster():
+    by_steps, by_models = tours.driven(1, "steps"), tours.driven(1, "models")
+    assert by_steps.achieved
+    assert by_models.achieved
+    assert by_models.duration_s < by_steps.duration_s
