@@ -9,6 +9,7 @@ import numpy as np
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
+from tailor.executive.refinement.objective.joint_costs import joint_costs
 from tailor.executive.refinement.objective.ranges import ranges_of
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -62,6 +63,10 @@ class SequenceObjective:
         for stage in self.stages:
             total += stage.cost(candidates[:, stage.columns])
         return total
+
+    def costs(self, stages: Sequence[Stage], samples: Sequence[Array]) -> list[Array]:
+        """Cost of several stages, each for samples of its own; those of one model are predicted together."""
+        return joint_costs(stages, samples)
 
     def predict(self, candidate: Array) -> tuple[Prediction, ...]:
         """Predictions for one candidate, shape (d,), action by action; fields of shape (1,)."""

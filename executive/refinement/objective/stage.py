@@ -91,11 +91,15 @@ class Stage:
 
     def predict(self, samples: Array) -> Prediction:
         """Predictions for samples of the free parameters, shape (n, len(columns))."""
-        count, arrivals = len(samples), len(self._displacements)
         parameters = self.parameters(samples)
         arguments = self.action.arguments(parameters)
-        self.evaluations += count * arrivals
-        mean, std = self.models.duration.predict(arguments)
+        return self._prediction(parameters, arguments, *self.models.duration.predict(arguments))
+
+    def _prediction(self, parameters: Array, arguments: Array, mean: Array, std: Array) -> Prediction:
+        """Predictions from the outputs of the duration model, both of shape (n_arrivals * n,)."""
+        arrivals = len(self._displacements)
+        count = len(parameters) // arrivals
+        self.evaluations += len(parameters)
         failure = own = worst = energy = met = np.zeros(count)
         success = self.models.success
         if isinstance(success, ContextSuccess):
@@ -117,7 +121,14 @@ class Stage:
 
     def cost(self, samples: Array) -> Array:
         """Seconds, shape (n,), for samples of shape (n, len(columns)); +inf is INVALID."""
-        prediction, settings = self.predict(samples), self._settings
+        return self._cost(self.predict(samples))
+
+    def cost_of(self, parameters: Array, arguments: Array, mean: Array, std: Array) -> Array:
+        """As `cost`, from parameters, arguments, and the outputs of the duration model for them."""
+        return self._cost(self._prediction(parameters, arguments, mean, std))
+
+    def _cost(self, prediction: Prediction) -> Array:
+        settings = self._settings
         cost: Array = prediction.duration_s + settings.k_std * prediction.std_s
         if self.models.success is not None or self._risk_to_next is not None:
             cost += prediction.failure_s

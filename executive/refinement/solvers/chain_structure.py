@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,11 @@ class ChainObjective(Objective, Protocol):
 
     @property
     def coarse_stages(self) -> Sequence[StageCost]:
-        """Approximations of the terms that need fewer model inputs, for a first look."""
+        """Approximations of the terms that need fewer model inputs."""
+        ...
+
+    def costs(self, stages: Sequence[Any], samples: Sequence[Array]) -> list[Array]:
+        """Cost of each of the stages for its own samples."""
         ...
 
 
@@ -78,15 +82,27 @@ def links_of(stages: Sequence[StageCost], blocks: tuple[Columns, ...]) -> tuple[
     return tuple(links)
 
 
-def pairwise_costs(link: Link, before: Array, own: Array) -> Array:
-    """Cost of the stage for every pair of values, shape (len(before), len(own)); each sample is predicted once."""
+def pair_costs(
+    objective: ChainObjective, links: Sequence[Link], before: Sequence[Array], own: Sequence[Array]
+) -> list[Array]:
+    """Cost of each stage for every pair of values, shape (len(before[i]), len(own[i])); each is predicted once."""
+    samples = [_pairs(*each) for each in zip(links, before, own, strict=False)]
+    rows = [each.reshape(each.shape[0] * each.shape[1], each.shape[2]) for each in samples]
+    costs = objective.costs([link.stage for link in links], rows)
+    return [
+        np.broadcast_to(cost.reshape(each.shape[:2]), (len(first), len(second)))
+        for cost, each, first, second in zip(costs, samples, before, own, strict=False)
+    ]
+
+
+def _pairs(link: Link, before: Array, own: Array) -> Array:
+    """Samples of a stage, shape (m, n, len(columns)); a side that it does not depend on has one row."""
     first = before[:, link.before] if len(link.before) else np.empty((1, 0))
     second = own[:, link.own] if len(link.own) else np.empty((1, 0))
     samples = np.empty((len(first), len(second), len(link.from_before)))
     samples[:, :, link.from_before] = first[:, None, :]
     samples[:, :, ~link.from_before] = second[None, :, :]
-    cost = link.stage.cost(samples.reshape(len(first) * len(second), -1)).reshape(len(first), len(second))
-    return np.broadcast_to(cost, (len(before), len(own)))
+    return samples
 
 
 def forward_costs(costs: list[Array]) -> list[Array]:

@@ -34,20 +34,24 @@ def run(console: Console, quick: bool, output: Path) -> None:
     Raises:
       NoMeasurement: A curve has no points.
     """
-    measured = []
+    measured: list[Curve] = []
+    output.parent.mkdir(parents=True, exist_ok=True)
     for name, part in PARTS.items():
         with console.status(name):
             measured += list(part(quick))
+        _write(measured, output)  # after each part, because all of them take long
     table = Table("curve", "work", "from", "to", "exponent", "allowed", "", title="growth")
     for curve in measured:
         first, last = (f"{work:g}: {cost:.3g}" for work, cost in (curve.points[0], curve.points[-1]))
         remark = "grows too fast" if curve.too_fast else ""
         table.add_row(curve.name, curve.work, first, last, f"{curve.exponent:.2f}", f"{curve.allowed:.0f}", remark)
     console.print(table)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(json.dumps([curve.fields() for curve in measured], indent=1) + "\n")
-    draw(measured, output.with_suffix(".png"))
     console.print(f"{output}, {output.with_suffix('.png')}")
+
+
+def _write(curves: Sequence[Curve], output: Path) -> None:
+    output.write_text(json.dumps([curve.fields() for curve in curves], indent=1) + "\n")
+    draw(curves, output.with_suffix(".png"))
 
 
 def draw(curves: Sequence[Curve], path: Path) -> None:

@@ -44,6 +44,9 @@ class Legs:
     def __call__(self, candidates):
         return sum(leg.cost(candidates[:, leg.columns]) for leg in self.stages)
 
+    def costs(self, stages, samples):
+        return [stage.cost(own) for stage, own in zip(stages, samples, strict=True)]
+
 
 def least_on_grid(objective) -> float:
     """Exact minimum over a grid of values for every subgoal, by dynamic programming."""

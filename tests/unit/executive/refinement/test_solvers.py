@@ -45,6 +45,9 @@ class Function:
 
     __call__ = cost
 
+    def costs(self, stages, samples):
+        return [stage.cost(own) for stage, own in zip(stages, samples, strict=True)]
+
 
 def cube(half: float, count: int) -> Ranges:
     return Ranges(np.full(count, -half), np.full(count, half), np.zeros(count, dtype=bool))
