@@ -62,15 +62,12 @@ class Candidates:
         if best is not None:
             ordered = np.vstack([best[block], ordered])
         apart = MIN_DISTANCE * self._ranges.width[block]
-        close: NDArray[np.bool_] = np.logical_and.reduce(np.abs(ordered[:, None] - ordered) <= apart, axis=2)
-        chosen: list[int] = []
-        for candidate in range(len(close)):
-            if len(chosen) > N_ELITE:
-                break
-            if not close[candidate, chosen].any():
-                chosen.append(candidate)
+        chosen: list[Array] = []
+        while len(ordered) and len(chosen) <= N_ELITE:
+            chosen.append(ordered[0])
+            ordered = ordered[(np.abs(ordered - ordered[0]) > apart).any(axis=1)]
         if chosen:
-            self._kept[index] = ordered[chosen]
+            self._kept[index] = np.array(chosen)
 
     def _drawn(self, count: int, kept: Sequence[Array]) -> list[Array]:
         kept = [values[: count // 2] for values in kept]
