@@ -20,9 +20,8 @@ PAGES = [
     *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")),
 ]
 REFERENCE = sorted(f"docs/robots/{page.name}" for page in (ROOT / "docs" / "robots").glob("*.md"))
-GUIDE = sorted(
-    page.relative_to(ROOT).as_posix() for page in (ROOT / "docs").glob("[gr][ue][if]*/*.md")
-)  # guide, reference
+SITE = ("guide", "reference")
+GUIDE = sorted(f"docs/{name}/{page.name}" for name in SITE for page in (ROOT / "docs" / name).glob("*.md"))
 COMMANDS_BY_GROUP = [name for group in GROUPS for name in COMMANDS if group in COMMANDS[name][0].split(".")]
 GENERATED = {"commands.md", "configuration.md"}  # by docs/site/hooks.py
 TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
