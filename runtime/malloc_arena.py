@@ -13,6 +13,6 @@ _M_ARENA_MAX = -8  # <malloc.h> of the GNU C library
 
 
 def share_one_arena() -> bool:
-    """Call it before threads start; False if the C library knows no arenas (musl)."""
+    """Call it before threads start; False if the C library is not GNU's."""
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     return mallopt is not None and mallopt(_M_ARENA_MAX, 1) == 1
