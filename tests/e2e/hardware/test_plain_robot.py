@@ -5,11 +5,15 @@ import os
 import signal
 import time
 from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from tailor.executive import domains
-from tests.support.bus_system import bus_system
+from tailor.runtime.bus.opening import open_client
+from tailor.tools.launch.hosting import free_endpoint
+from tests.support.bus_system import accepts, answers, started
 from tests.support.patience import wait_until
 from tests.support.robots.driving import achieved, arm, executive_on, newest, ready
 
@@ -17,13 +21,35 @@ GUARD_S, BASE_S, RAMP_S = 0.3, 0.5, 0.9 / 0.65  # the guard's timeout, the base'
 BUSY_S = 1.0  # of a machine that runs other tests
 
 
+class System(NamedTuple):
+    session: object
+    endpoint: str
+    start: object
+    trace: Path
+    driver: object
+    base: object
+    bus: object
+    robots_bus: object
+
+
+@contextmanager
+def killable_bus():
+    """A bus in its own process: yields (session, endpoint, start, bus)."""
+    endpoint = free_endpoint()
+    with started() as start:
+        bus = start("tailor.tools.main", "bus", "--security", "open", "--connect", endpoint)
+        wait_until(lambda: accepts(endpoint) and answers(endpoint), "bus")
+        with open_client(endpoint) as session:
+            yield session, endpoint, start, bus
+
+
 @contextmanager
 def driven(tmp_path, domain="soccer", scenario="waypoints", settings="", robot_name="agilo", **robot):
-    """A stand-in robot on a bus of its own behind `tailor driver`: yields (session, endpoint, start, trace)."""
+    """A stand-in robot on a bus of its own behind `tailor driver`: yields a System."""
     start_pose = domains.seeded_scenario(domain, scenario, 0)[1]
     pose = [start_pose[name] for name in ("x", "y", "phi")]
     trace, file = tmp_path / "trace", tmp_path / "robot.toml"
-    with bus_system() as (session, endpoint, start), bus_system() as (_, robots, start_robot):
+    with killable_bus() as (session, endpoint, start, bus), killable_bus() as (_, robots, start_robot, robots_bus):
         options = {"endpoint": robots, "trace": str(trace), "start": pose, **robot}
         base = start_robot("tests.support.stand_ins.plain_robot", json.dumps(options))
         command = options.get("command", "twist")
@@ -32,7 +58,7 @@ def driven(tmp_path, domain="soccer", scenario="waypoints", settings="", robot_n
             f'[topics]\npose = "{options.get("pose", "amcl_pose")}"\n[pose]\nstart = {pose}\n'
         )
         driver = start("tailor.tools.main", "driver", file, "--connect", endpoint)
-        yield session, endpoint, start, trace, driver, base
+        yield System(session, endpoint, start, trace, driver, base, bus, robots_bus)
 
 
 def rows(trace):
@@ -61,15 +87,25 @@ def test_a_plain_robot_drives_through_its_waypoints(tmp_path, command, pose):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("dies", "limit_s"), [("executive", GUARD_S), ("driver", BASE_S), ("both", BASE_S)])
+@pytest.mark.parametrize(
+    ("dies", "limit_s"),
+    [
+        ("executive", GUARD_S),
+        ("bus", GUARD_S),
+        ("driver", BASE_S),
+        ("executive, driver", BASE_S),
+        ("robots_bus", BASE_S),
+    ],
+)
 def test_a_plain_robot_stops_whoever_is_killed(tmp_path, dies, limit_s):
-    with driven(tmp_path) as (session, endpoint, start, trace, driver, _):
+    with driven(tmp_path) as system:
+        session, trace = system.session, system.trace
         ready(session, "agilo")
-        executive = executive_on(start, endpoint, "soccer", "waypoints")
+        executive = executive_on(system.start, system.endpoint, "soccer", "waypoints")
         arm(session, "agilo")
         wait_until(moving(trace), "motion")
-        for process in {"executive": [executive], "driver": [driver], "both": [executive, driver]}[dies]:
-            os.kill(process.pid, signal.SIGKILL)
+        for name in dies.split(", "):
+            os.kill((executive if name == "executive" else getattr(system, name)).pid, signal.SIGKILL)
         killed_s = time.monotonic()
         wait_until(at_rest(trace), "rest")
         stopped_s = next(row[0] for row in rows(trace)[::-1] if row[3] != 0.0)  # last time that it was to move
@@ -82,7 +118,7 @@ def test_a_plain_robot_stops_whoever_is_killed(tmp_path, dies, limit_s):
 
 @pytest.mark.slow
 def test_a_robot_whose_odometry_repeats_itself_is_stopped(tmp_path):
-    with driven(tmp_path) as (session, endpoint, start, trace, _, base):
+    with driven(tmp_path) as (session, endpoint, start, trace, _, base, *_):
         states = session.inbox(["driver"], "agilo")
         ready(session, "agilo")
         executive_on(start, endpoint, "soccer", "waypoints")
