@@ -70,7 +70,7 @@ def run(console: Console, quick: bool) -> None:
         for scenario in domains.scenarios(domain)[: 2 if quick else None]:
             try:
                 shared = shares(domain, scenario, QUICK_SECONDS if quick else SECONDS)
-            except UsageError as reason:  # a robot without a simulated body or without models
+            except (UsageError, ModuleNotFoundError) as reason:  # no simulated body, its engine or its models
                 console.print(f"{domain} {scenario}: not measured: {reason}")
                 continue
             p50, p99, most = np.percentile(shared, [50, 99, 100])
