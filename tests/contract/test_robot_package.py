@@ -85,4 +85,4 @@ def test_a_package_that_raises_hinders_no_other_robot(site):
     (site / "courier_robot" / "__init__.py").write_text("raise SystemError('broken')\n")
     assert "courier_robot:SPEC: cannot be loaded: SystemError: broken" in tailor(site, "up", "courier").stderr
     done = tailor(site, "sim", "hal")
-    assert "no robot 'hal', expected one of: powercube, agilo" in done.stderr
+    assert "no robot 'hal', expected one of: powercube, b21, agilo" in done.stderr

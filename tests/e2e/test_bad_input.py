@@ -37,7 +37,7 @@ def refused(*arguments):
             ("executive", "soccer", "--planner", "'vhpop"),
             "planner command ''vhpop': cannot be started: No closing quot",
         ),
-        (("sim", "hal"), "no robot 'hal', expected one of: powercube, agilo"),
+        (("sim", "hal"), "no robot 'hal', expected one of: powercube, b21, agilo"),
         (("driver", "nowhere:Rover"), "nowhere:Rover: No module named 'nowhere', expected package.module:Class"),
         (("check-driver", "hal"), "no robot 'hal', expected one of: "),
         (("check-driver", "agilo", "--speed", "0.9"), "--speed is 0.9, expected more than 0 and at most 0.3"),

@@ -111,6 +111,7 @@ def test_no_publisher_of_a_loop_waits_for_a_slow_reader_and_stops_and_commands_g
     assert {name for name, topic in TOPICS.items() if topic.priority == "real_time"} == {
         "cmd_vel",
         "joint_cmd",
+        "gripper_cmd",
         "estop",
     }
 

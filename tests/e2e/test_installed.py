@@ -15,7 +15,7 @@ from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
 from tests.support.robots.fresh_environment import LINKS, Environment, built, copied_source
 
-DATA_KINDS = {".template", ".msg", ".pddl", ".toml", ".xml", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
+DATA_KINDS = {".template", ".msg", ".pddl", ".toml", ".xml", ".urdf", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
 HOSTILE = 'raise SystemExit("a module of the working folder was imported")\n'
 
@@ -79,7 +79,7 @@ def test_the_wheel_has_one_top_level_name(wheel):
 
 
 def test_the_wheel_finds_its_robots_by_their_entry_points(call):
-    assert "no robot 'hal', expected one of: powercube, agilo" in call("sim", "hal").stderr
+    assert "no robot 'hal', expected one of: powercube, b21, agilo" in call("sim", "hal").stderr
 
 
 def test_the_wheel_holds_every_module_and_every_data_file(wheel):

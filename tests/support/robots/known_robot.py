@@ -11,6 +11,7 @@ import pytest
 from tailor.schemas import codec, typesystem
 from tailor.schemas.own import converters
 from tailor.schemas.packages import discovery
+from tailor.schemas.ros2 import service
 from tailor.schemas.topics import TOPICS
 from tailor.tools.new_robot.names import package_of
 from tailor.tools.new_robot.templates import write_robot
@@ -51,5 +52,6 @@ def _forget() -> None:
         codec._codec,
         codec._limit,
         converters,
+        service.set_goal_hash,
     ):
         cached.cache_clear()
