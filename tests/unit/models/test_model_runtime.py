@@ -84,9 +84,9 @@ def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -
 
 @pytest.mark.promise("P32")
 def test_a_model_of_another_robot_is_refused(zoo: Path) -> None:
-    shutil.copytree(zoo / "agilo", zoo / "b21")
-    with pytest.raises(UsageError, match=r"model of agilo/\w+/duration, expected b21/\w+/duration"):
-        runtime.load_robot("b21", zoo)
+    shutil.copytree(zoo / "agilo", zoo / "rover")
+    with pytest.raises(UsageError, match=r"model of agilo/\w+/duration, expected rover/\w+/duration"):
+        runtime.load_robot("rover", zoo)
 
 
 def test_a_model_of_another_action_is_refused(zoo: Path) -> None:
