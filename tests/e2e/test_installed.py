@@ -15,7 +15,10 @@ from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import ROOT
 from tests.support.robots.fresh_environment import LINKS, Environment, built, copied_source
 
-DATA_KINDS = {".template", ".msg", ".pddl", ".toml", ".xml", ".urdf", ".onnx", ".json", ".html", ".js", ".css", ".typed"}
+DATA_KINDS = {
+    f".{kind}"
+    for kind in ["template", "msg", "pddl", "toml", "xml", "urdf", "onnx", "json", "html", "js", "css", "typed"]
+}
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
 HOSTILE = 'raise SystemExit("a module of the working folder was imported")\n'
 
