@@ -88,7 +88,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _trained(request: TrainingRequest) -> list[dict[str, Any]]:
     """Rows of the trained models; a bar counts the actions."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         bar = progress.add_task("reading data sets", total=None)
 
         def on_action(action: str, number: int, total: int) -> None:

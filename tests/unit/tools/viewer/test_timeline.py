@@ -63,7 +63,7 @@ def test_an_arm_has_a_pen_without_a_heading_and_links_that_turn() -> None:
 def test_a_simulator_is_drawn_as_its_robot_before_the_executive_is_up() -> None:
     events = RunTimeline().events_of(0.0, "agilo/sim/truth", SoccerGroundTruth(0, *[0.0] * 9))
     assert "outline truth chassis" in kinds(events)
-    stranger = RunTimeline().events_of(0.0, "b21/sim/pose", m.PlanarTruth(0, *[0.0] * 5))
+    stranger = RunTimeline().events_of(0.0, "rover/sim/pose", m.PlanarTruth(0, *[0.0] * 5))
     assert "outline truth robot" in kinds(stranger), "by convention"
 
 
