@@ -102,7 +102,7 @@ def raw_delete(session, key):
 
 SENSORS = {
     "odom", "pose", "ball", "opponents", "joint_states", "currents", "driver",
-    "truth", "opponents_truth", "joint_truth", "planar_truth",
+    "truth", "opponents_truth", "joint_truth", "planar_truth", "gripper", "objects", "kitchen_truth",
 }  # fmt: skip
 REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick",
@@ -110,7 +110,7 @@ REPORTS = {
 }  # fmt: skip
 SCENES = {"scene", "scene_truth", "transforms", "log"}
 MAY_PUBLISH = {
-    "executive": {"cmd_vel", "joint_cmd", "self_arm", *REPORTS},
+    "executive": {"cmd_vel", "joint_cmd", "gripper_cmd", "self_arm", *REPORTS},
     "driver": SENSORS,
     "people": {"arm_request", "estop"},
     "recorder": set(),
