@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tailor.runtime.bus.inbox import by_reason
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
@@ -98,7 +98,7 @@ class Node:
 
     def _receive(self, now_ns: int) -> None:
         accepted = self.driver.guard.accepted
-        self.driver.take(self._inbox.drain(now_ns), self._rejected(), now_ns, self._frozen_ns)
+        self.driver.take(self._inbox.drain(now_ns), by_reason(self._inbox.rejected), now_ns, self._frozen_ns)
         if self.driver.guard.accepted > accepted:
             self._world.begin()
 
@@ -118,9 +118,3 @@ class Node:
         state = self.driver.state(now_ns, wall_ns())
         if state is not None:
             self._publishers["driver"].publish(state)
-
-    def _rejected(self) -> Counter[str]:
-        counts: Counter[str] = Counter()
-        for (_, reason), count in self._inbox.rejected.items():
-            counts[reason] += count
-        return counts

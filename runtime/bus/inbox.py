@@ -6,7 +6,7 @@ Drained from the loop's own thread, without callbacks. Rejected samples are coun
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -118,3 +118,11 @@ def _received(source: Source) -> list[Raw | Rejected]:
     while len(waiting) < EVENT_DEPTH and (raw := source.receive()) is not None:
         waiting.append(raw)
     return waiting
+
+
+def by_reason(rejected: Mapping[tuple[str, str], int]) -> Counter[str]:
+    """How many messages an inbox has rejected for each reason, under all keys."""
+    counts: Counter[str] = Counter()
+    for (_, reason), count in rejected.items():
+        counts[reason] += count
+    return counts

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from tailor.runtime.bus.inbox import by_reason
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
@@ -96,7 +96,7 @@ class HardwareNode:
     def _run_period(self, now_ns: int) -> None:
         self._sense()
         self._judge(now_ns)
-        self.driver.take(self._inbox.drain(now_ns), self._rejected(), now_ns)
+        self.driver.take(self._inbox.drain(now_ns), by_reason(self._inbox.rejected), now_ns)
         self._hand(now_ns)
         self._publish_state(now_ns)
 
@@ -152,9 +152,3 @@ class HardwareNode:
         state = self.driver.state(now_ns, wall_ns())
         if state is not None:
             self._publishers["driver"].publish(state)
-
-    def _rejected(self) -> Mapping[str, int]:
-        counts: Counter[str] = Counter()
-        for (_, reason), count in self._inbox.rejected.items():
-            counts[reason] += count
-        return counts
