@@ -12,7 +12,7 @@ from tailor.runtime.bus.service import ServiceRequest
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import Rejected
 from tailor.schemas.ros2.graph import Kind, Named, Node, qos
-from tailor.schemas.ros2.profiles import COPY, KeyProfile
+from tailor.schemas.ros2.profiles import BARE, COPY, KeyProfile
 from tailor.schemas.typesystem import ros_type
 
 NAMED_TYPE = "application/cdr;"
@@ -59,6 +59,17 @@ def as_plain(raw: Raw, keys: KeyProfile) -> Raw | None:
         return None
     names_type = raw.encoding.startswith(NAMED_TYPE) and raw.encoding != COPY
     return replace(raw, key=key, encoding=raw.encoding if names_type else f"{NAMED_TYPE}{ros_type(topic.type)}")
+
+
+def ros_request(query: Any) -> ServiceRequest | None:
+    """The request of `tailor_msgs/srv/SetGoal` in one of zenoh's queries; None if it is refused already."""
+    payload, attachment = (None if part is None else part.to_bytes() for part in (query.payload, query.attachment))
+
+    def respond(response: bytes, origin: bytes | None) -> None:
+        query.reply(query.key_expr, response, encoding=BARE, attachment=origin)
+        query.drop()
+
+    return goal_request(payload, attachment, respond)
 
 
 def goal_request(

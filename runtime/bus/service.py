@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 
 class ServiceRequest:
@@ -23,11 +23,38 @@ class ServiceRequest:
 
 
 class RequestSource(Protocol):
-    """Source of requests; session.py implements it with a zenoh queryable."""
+    """Source of requests."""
 
     def receive(self) -> ServiceRequest | None:
         """Oldest waiting request, None if there is none; never blocks."""
         ...
+
+
+class QueryableSource:
+    """Requests that wait in one of zenoh's queryables; `read` makes a request of a query, None if it refused it."""
+
+    def __init__(self, queryable: Any, read: Callable[[Any], ServiceRequest | None]) -> None:
+        self._queryable, self._read = queryable, read
+
+    def receive(self) -> ServiceRequest | None:
+        """See RequestSource."""
+        query = self._queryable.try_recv()
+        return None if query is None else self._read(query)
+
+
+def text_request(query: Any) -> ServiceRequest:
+    """The request in a query whose payload is text; the response is text as well."""
+    payload = query.payload
+    text = "" if payload is None else payload.to_bytes().decode(errors="replace")
+
+    def respond(accepted: bool, response: str) -> None:
+        if accepted:
+            query.reply(query.key_expr, response)
+        else:
+            query.reply_err(response)
+        query.drop()
+
+    return ServiceRequest(text, respond)
 
 
 class ServiceServer:

@@ -16,8 +16,8 @@ from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.ros_wires import Announcer, as_plain, goal_request
-from tailor.runtime.bus.service import RequestSource, ServiceRequest, ServiceServer
+from tailor.runtime.bus.ros_wires import Announcer, as_plain, ros_request
+from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.graph import Kind, parsed_key
@@ -182,7 +182,7 @@ class Session:
     def service_server(self, key: str) -> ServiceServer:
         """Server of the requests under `key`, and of ROS 2's if it knows the service; a loop polls it."""
         sources: list[RequestSource] = [
-            _RequestSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16)))
+            QueryableSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16)), text_request)
         ]
         if self.keys.announces and key == SERVICES["goal"].pattern:
             from tailor.schemas.ros2 import service
@@ -192,7 +192,8 @@ class Session:
             requests: Any = zenoh.handlers.RingChannel(16)
             key = named.key(self.keys.domain)
             # A client of ROS 2 calls only queryables that are declared complete.
-            sources.append(_RosRequestSource(self._zenoh.declare_queryable(key, requests, complete=True)))
+            queryable = self._zenoh.declare_queryable(key, requests, complete=True)
+            sources.append(QueryableSource(queryable, ros_request))
             self._graph.announce(Kind.SERVICE, named, self.keys.domain)
         return ServiceServer(*sources)
 
@@ -277,46 +278,6 @@ class _Source:
             if raw is not None:
                 return raw
         return None
-
-
-class _RequestSource:
-    def __init__(self, queryable: Any) -> None:
-        self._queryable = queryable
-
-    def receive(self) -> ServiceRequest | None:
-        query = self._queryable.try_recv()
-        if query is None:
-            return None
-        payload = query.payload
-        text = "" if payload is None else payload.to_bytes().decode(errors="replace")
-
-        def respond(accepted: bool, response: str) -> None:
-            if accepted:
-                query.reply(query.key_expr, response)
-            else:
-                query.reply_err(response)
-            query.drop()
-
-        return ServiceRequest(text, respond)
-
-
-class _RosRequestSource:
-    """Requests of `tailor_msgs/srv/SetGoal`."""
-
-    def __init__(self, queryable: Any) -> None:
-        self._queryable = queryable
-
-    def receive(self) -> ServiceRequest | None:
-        query = self._queryable.try_recv()
-        if query is None:
-            return None
-        payload, attachment = (None if part is None else part.to_bytes() for part in (query.payload, query.attachment))
-
-        def respond(response: bytes, origin: bytes | None) -> None:
-            query.reply(query.key_expr, response, encoding=BARE, attachment=origin)
-            query.drop()
-
-        return goal_request(payload, attachment, respond)
 
 
 def _raw(sample: zenoh.Sample) -> Raw:
