@@ -121,14 +121,14 @@ class Deliberation:
                 return None
             if self._context.settings.plan_costs == "models" and self._found.way == "searched" and self._found.plan:
                 self._plan_choice = self._choice_from(self._found.plan)
-        if self._plan_choice is not None and not self._plan_choice.advance(budget):
+        choice = self._plan_choice
+        if choice is not None and not choice.advance(budget):
             return None
-        found, self._found = self._found, None
-        if self._plan_choice is None or found.plan is self._plan_choice.best:
+        found, self._found, self._plan_choice = self._found, None, None
+        if choice is None or found.plan is choice.best:
             return found
-        best, self._plan_choice = self._plan_choice.best, None
-        fault = planning.validate(best, self._context.pddl_domain, self.source.problem)
-        return found if fault else replace(found, plan=best)
+        fault = planning.validate(choice.best, self._context.pddl_domain, self.source.problem)
+        return found if fault else replace(found, plan=choice.best)
 
     def _choice_from(self, first: planning.Plan) -> PlanChoice:
         context, source = self._context, self.source
