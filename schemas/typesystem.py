@@ -107,12 +107,17 @@ def add_service(name: str, request: str, response: str) -> None:
     def at_most_one(part: str) -> Any:
         return Nodetype.SEQUENCE, (one(part), 1)
 
-    info, asked, answered = "service_msgs/msg/ServiceEventInfo", f"{name}_Request", f"{name}_Response"
-    parts = {part: get_types_from_msg(text, part) for part, text in ((asked, request), (answered, response))}
+    info, request_name, response_name = "service_msgs/msg/ServiceEventInfo", f"{name}_Request", f"{name}_Response"
+    texts = {request_name: request, response_name: response}
+    parts = {part: get_types_from_msg(text, part) for part, text in texts.items()}
     types: dict[str, Any] = {part: next(iter(read.values())) for part, read in parts.items()}
-    event = [("info", one(info)), ("request", at_most_one(asked)), ("response", at_most_one(answered))]
+    event = [("info", one(info)), ("request", at_most_one(request_name)), ("response", at_most_one(response_name))]
     types[f"{name}_Event"] = ([], event)
-    messages = [("request_message", asked), ("response_message", answered), ("event_message", f"{name}_Event")]
+    messages = [
+        ("request_message", request_name),
+        ("response_message", response_name),
+        ("event_message", f"{name}_Event"),
+    ]
     types[name] = ([], [(field, one(part)) for field, part in messages])  # so do ROS 2's type descriptions
     typestore().register(types)
 
