@@ -14,8 +14,9 @@ from tailor.simnodes.agilo import firmware as fw
 from tailor.simnodes.agilo.opponents import NAMES, Opponents
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
 from tailor.simnodes.agilo.scene import load_scene
-from tailor.simnodes.agilo.sensing import POSE_PERIOD_NS, Sensing, Sensors
+from tailor.simnodes.agilo.sensing import Sensing, Sensors
 from tailor.simnodes.body import Reading
+from tailor.simnodes.planar_sensing import POSE_PERIOD_NS
 
 TRUTH_PERIOD_NS = 100_000_000
 FAR_M = 50.0  # a ball that the start does not place

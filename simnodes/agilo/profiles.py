@@ -20,7 +20,7 @@ PROFILES = {
             pose_sigma_rad=math.radians(3),
             pose_dropout=0.15,
             ball_dropout=0.15,
-            encoder_scale=0.03,
+            odom_scale=0.03,
             camera_delay_ns=80_000_000,
         ),
     ),

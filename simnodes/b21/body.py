@@ -20,9 +20,10 @@ from tailor.simnodes.b21.physical_parameters import PhysicalParameters
 from tailor.simnodes.b21.robot import Robot
 from tailor.simnodes.b21.sensing import Sensing, Sensors
 from tailor.simnodes.body import STEP_NS, Reading
+from tailor.simnodes.planar_sensing import POSE_PERIOD_NS
 
 GRAVITY_MPS2 = -9.81
-STATE_NS, GRIPPER_NS, POSE_NS, OBJECTS_NS, TRUTH_NS = 20_000_000, 50_000_000, 80_000_000, 100_000_000, 100_000_000
+STATE_NS, GRIPPER_NS, OBJECTS_NS, TRUTH_NS = 20_000_000, 50_000_000, 100_000_000, 100_000_000
 ROBOT = ("x", "y", "phi", "v", "omega", *JOINTS, "width")
 FURNITURE = tuple(f"{name}_{quantity}" for name in MOVABLE for quantity in ("x", "y", "phi"))
 CUPS = tuple(f"{name}_{quantity}" for name in kitchen().cups for quantity in ("x", "y", "phi", "vx", "vy"))
@@ -156,7 +157,7 @@ class B21Body:
         if now_ns % GRIPPER_NS == 0:
             force_n = self._p.grip_n if self._grasp.held else robot.squeeze_n  # it goes on pressing what it holds
             readings.append(Reading("gripper", sensors.gripper(now_ns, robot.width, force_n), now_ns))
-        if now_ns % POSE_NS == 0 and (measured := sensors.pose(now_ns, *pose)) is not None:
+        if now_ns % POSE_PERIOD_NS == 0 and (measured := sensors.pose(now_ns, *pose)) is not None:
             readings.append(Reading("pose", measured, now_ns))
         if now_ns % OBJECTS_NS == 0:
             standing = (*self._furniture.objects(), *self._cups.objects())
