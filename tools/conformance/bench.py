@@ -26,9 +26,15 @@ class NotPossible(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """A message of the driver."""
+    """A message of the driver.
+
+    Attributes:
+      at_s: When it was received.
+      stamp_s: When it was measured, by the driver's clock; `at_s` for a message without a stamp.
+    """
 
     at_s: float
+    stamp_s: float
     topic: str
     message: Message
     frame: str
@@ -49,6 +55,10 @@ class Link(Protocol):
 
     def publish(self, topic: str, message: Message, origin: Origin) -> None:
         """Publish to the driver, with any origin."""
+        ...
+
+    def stalled_s(self) -> float:
+        """Longest time, since the last call, for which this process could not run when it had to."""
         ...
 
 

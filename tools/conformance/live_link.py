@@ -39,6 +39,7 @@ class LiveLink:
         self._sources = [(name, source) for name in names for source in executive.raw_sources(name, robot)]
         self._publishers = {name: executive.publisher(name, robot) for name in commands}
         self._publishers |= {name: people.publisher(name, robot) for name in PEOPLE}
+        self._stalled_s = 0.0
         until_s = time.monotonic() + MATCH_S
         while not all(publisher.matched() for publisher in self._publishers.values()):
             if time.monotonic() > until_s:
@@ -58,7 +59,14 @@ class LiveLink:
                 heard += self._received(topic, source, now_s)
             if now_s >= until_s:
                 return heard
-            time.sleep(min(POLL_S, until_s - now_s))
+            pause_s = min(POLL_S, until_s - now_s)
+            time.sleep(pause_s)
+            self._stalled_s = max(self._stalled_s, time.monotonic() - now_s - pause_s)
+
+    def stalled_s(self) -> float:
+        """Longest delay of this process since the last call."""
+        stalled_s, self._stalled_s = self._stalled_s, 0.0
+        return stalled_s
 
     def publish(self, topic: str, message: Message, origin: Origin) -> None:
         """Publish with any origin."""
@@ -71,5 +79,7 @@ class LiveLink:
                 continue
             message, origin = decode(TOPICS[topic], raw.payload), unpack(raw.attachment)
             if isinstance(message, Message) and isinstance(origin, Origin):
-                heard.append(Heard(now_s, topic, message, frame_in(raw.payload), origin.sender, origin.sequence))
+                stamp_s = getattr(message, "stamp_ns", 0) * 1e-9 or now_s
+                frame = frame_in(raw.payload)
+                heard.append(Heard(now_s, stamp_s, topic, message, frame, origin.sender, origin.sequence))
         return heard

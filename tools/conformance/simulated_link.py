@@ -58,6 +58,10 @@ class SimulatedLink:
         else:
             self._waiting.append(Sample(key, received, self._now_ns, origin.sequence, origin.sender))
 
+    def stalled_s(self) -> float:
+        """Simulated time stands still while the process does."""
+        return 0.0
+
     def received(self, topic: str, message: Message) -> Message | Rejected:
         """The message as it is received."""
         return decode(TOPICS[topic], encode(message))
@@ -89,8 +93,8 @@ class SimulatedLink:
 
     def hear(self, topic: str, message: Message, sequence: int) -> None:
         """Take a message that the node publishes."""
-        frame = frame_in(encode(message))
-        self._heard.append(Heard(self.now_s(), topic, message, frame, DRIVER, sequence))
+        frame, now_s = frame_in(encode(message)), self.now_s()  # its stamp is real time, here time is simulated
+        self._heard.append(Heard(now_s, now_s, topic, message, frame, DRIVER, sequence))
 
 
 class NoRequests:

@@ -8,20 +8,13 @@ import pytest
 from tailor.tools.launch.hosting import free_endpoint
 from tailor.tools.new_robot.templates import kinds
 from tests.support.bus_system import ROOT
-from tests.support.robots.fresh_environment import Environment, built, copied_source
 
 PORTER = ROOT / "tests" / "support" / "robots" / "porter"
 FORKLIFT = ROOT / "tests" / "support" / "robots" / "forklift"
 EPISODES = 120  # few, for time's sake: enough to learn from
+FAST = ("--learner", "m5")  # 25 s less than the default one, which the new arm and the tutorial train with
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("live")]
-
-
-@pytest.fixture(scope="module")
-def environment(tmp_path_factory):
-    source = copied_source(tmp_path_factory.mktemp("source"))
-    wheel = built("build_wheel", source, tmp_path_factory.mktemp("wheel"))
-    return Environment.made(tmp_path_factory.mktemp("environment"), wheel)
 
 
 @pytest.fixture
@@ -37,9 +30,9 @@ def run(environment, tmp_path):
     return output
 
 
-def from_episodes_to_a_verified_run(run, folder, domain, robot):
+def from_episodes_to_a_verified_run(run, folder, domain, robot, learner=FAST):
     run(folder, "tailor", "gather", robot, "--episodes", EPISODES, "--jobs", 2)
-    run(folder, "tailor", "train", robot)
+    run(folder, "tailor", "train", robot, *learner)
     run(folder, "tailor", "up", domain, "--once", "--record", "run.mcap", "--connect", free_endpoint())
     assert "equal" in run(folder, "tailor", "verify", "run.mcap")
     run(folder, "tailor", "view", "run.mcap", "-o", "run.html")
@@ -52,7 +45,7 @@ def test_a_new_robot_runs_with_no_line_edited(kind, environment, run, tmp_path):
     run(tmp_path, "tailor", "new", "robot", name, "--kind", kind)
     folder = tmp_path / name
     environment.install("--no-build-isolation", "--editable", folder)
-    from_episodes_to_a_verified_run(run, folder, name, name)
+    from_episodes_to_a_verified_run(run, folder, name, name, () if kind == "arm" else FAST)
     assert (folder / f"fresh_{kind}" / "models" / name).is_dir()
     if kind == "wheeled":
         script = ROOT / "tests" / "e2e" / "packages" / "drive_plain_robot.py"
@@ -80,4 +73,4 @@ def test_a_robot_with_two_outlets_runs_and_one_guard_stops_both(environment, run
     assert "porter_msgs/msg/RailCommand" in told
     assert "porter_msgs/msg/GripCommand" in told
     stopped = run(folder, "python", ROOT / "tests" / "e2e" / "packages" / "silence_one_outlet.py", free_endpoint())
-    assert stopped.strip() == "stopped"
+    assert "stopped" in stopped.splitlines()

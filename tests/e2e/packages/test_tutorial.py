@@ -6,7 +6,6 @@ import subprocess
 import pytest
 
 from tests.support.bus_system import ROOT
-from tests.support.robots.fresh_environment import Environment, built, copied_source
 
 PAGE = ROOT / "docs" / "new-robot.md"
 COMMANDS = re.compile(r"```sh\n(.*?)```", re.DOTALL)
@@ -26,9 +25,7 @@ def script(page: str, pip: str) -> str:
     return f"set -ex\n{text}"
 
 
-def test_every_command_of_the_tutorial_succeeds(tmp_path):
-    wheel = built("build_wheel", copied_source(tmp_path / "source"), tmp_path)
-    environment = Environment.made(tmp_path / "environment", wheel)
+def test_every_command_of_the_tutorial_succeeds(environment, tmp_path):
     commands = script(PAGE.read_text(), environment.pip_command("--no-build-isolation", "--editable", "."))
     work = tmp_path / "empty"
     work.mkdir()
