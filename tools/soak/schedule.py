@@ -3,8 +3,9 @@
 Memory can only be measured in processes that live for long, and many faults end one. So a soak of at least
 `MEASURED_MIN` minutes has three parts: at its begin and at its end any fault may come, and process faults come first;
 between them all processes live on, under all other faults. The middle begins with the faults that every process meets
-once before it is measured: those for which the bus starts threads, which then stay. A shorter soak draws any fault at
-any time, and measures no slope. Faults are drawn like cards: none comes twice before all have come once.
+twice before it is measured: those for which the bus starts threads and fills pools, which then stay. A shorter soak
+draws any fault at any time, and measures no slope. Faults are drawn like cards: none comes twice before all have come
+once.
 """
 
 from __future__ import annotations

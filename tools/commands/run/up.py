@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from tailor.runtime.malloc_arena import share_one_arena
+from tailor.runtime.malloc_arenas import HOST, limit_arenas
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     A system that ends by itself is a failure as well (1).
     """
     stop = stop_on_signals()
-    share_one_arena()
+    limit_arenas(HOST)
     if arguments.require_recording and arguments.record is None:
         raise UsageError("--require-recording: expected --record FILE as well")
     if arguments.letters:

@@ -83,4 +83,4 @@ DEADLY: dict[str, Fault] = {
     _SENDERS: _INTRUSIONS[_SENDERS],
 }
 FAULTS = HARMLESS | DEADLY
-SETTLING = ("router frozen 2 s", "silent connections")  # the bus starts threads and fills pools the first time
+SETTLING = ("router frozen 2 s", "silent connections") * 2  # the bus starts threads and fills pools the first times

@@ -52,3 +52,5 @@ def test_a_short_soak_draws_any_fault():
 def test_every_robot_settles_before_memory_is_measured(seed):
     begin = [each for each in planned(seed) if BEGIN_MIN * 60 <= each.at_s < BEGIN_MIN * 60 + SETTLING_S]
     assert {(each.fault, each.robot) for each in begin} >= set(product(SETTLING, ROBOTS))
+    counts = Counter((each.fault, each.robot) for each in begin)
+    assert all(counts[pair] >= 2 for pair in product(SETTLING, ROBOTS))

@@ -1,4 +1,4 @@
-"""One arena for all threads: what one frees, another uses."""
+"""Few arenas for all threads: what one frees, another uses."""
 
 import ctypes
 import subprocess
@@ -8,10 +8,10 @@ import pytest
 
 SCRIPT = """
 import ctypes, sys, threading
-from tailor.runtime.malloc_arena import share_one_arena
+from tailor.runtime.malloc_arenas import limit_arenas
 
-if sys.argv[1] == "one":
-    share_one_arena()
+if sys.argv[1] != "many":
+    limit_arenas(int(sys.argv[1]))
 libc = ctypes.CDLL(None)
 libc.malloc.restype, libc.malloc.argtypes = ctypes.c_void_p, [ctypes.c_size_t]
 together = threading.Barrier(8)
@@ -37,6 +37,7 @@ def arenas(how):
 
 
 @pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "malloc_stats"), reason="the C library has no arenas")
-def test_threads_share_one_arena():
+def test_threads_share_few_arenas():
     assert arenas("many") > 1
-    assert arenas("one") == 1
+    assert arenas("1") == 1
+    assert arenas("2") == 2
