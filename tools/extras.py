@@ -15,6 +15,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "bullet": ("pybullet",),
     "learn": ("joblib", "onnx", "pyarrow", "sklearn", "skl2onnx", "scipy", "threadpoolctl"),
     "plots": ("matplotlib",),
+    "cluster": ("distributed",),
     "kairos": ("kairos",),
     "up": ("unified_planning",),
 }

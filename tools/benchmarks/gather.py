@@ -28,7 +28,7 @@ def run(console: Console, quick: bool) -> None:
             with tempfile.TemporaryDirectory() as folder:
                 spec = gathering.DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
                 gathering.prepare(spec, resume=False)
-                parts = [gathering.run_part(spec, first) for first in gathering.missing_parts(spec)]
+                parts = list(gathering.gather(spec, gathering.missing_parts(spec), jobs=1))
             count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))
             if not count:
                 raise NoMeasurement(f"{robot}/{action} gathered no episode")

@@ -17,6 +17,7 @@ from rich.table import Table
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.figures.report_page import image, page, table
+from tailor.tools.parallel.cluster import configure_cluster
 
 Row = Mapping[str, Any]
 MAX_COLUMNS = 9  # that fit a screen
@@ -39,6 +40,7 @@ class Report:
 def configure_report(parser: argparse.ArgumentParser) -> None:
     """Declare the flags of every evaluation."""
     parser.add_argument("--jobs", type=processes, default=2, help="processes (default %(default)s)")
+    configure_cluster(parser)
     parser.add_argument("--json", action="store_true", help="print the rows as JSON")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into DIR")
     parser.add_argument("--store", type=Path, metavar="DIR", default=Path("out/evaluate"),

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -27,6 +26,7 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
+from tailor.tools.parallel.pool import completed
 
 PIN_STREAM = 4
 
@@ -62,12 +62,10 @@ def run_all(
                 wanted.append((variant, seed))
             else:
                 found[variant.name][seed] = known
-    running = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(
-        delayed(run_one)(task, variant, seed) for variant, seed in wanted
-    )
+    running = completed(run_one, [(task, variant, seed) for variant, seed in wanted], jobs)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, transient=True, console=Console(stderr=True)) as progress:
-        for outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
+        for _, outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
             found[outcome.variant][outcome.seed] = outcome
             journals[outcome.variant].note(outcome)
     return found

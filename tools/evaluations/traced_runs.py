@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from joblib import Parallel, delayed
 from rich.progress import track
 
 from tailor.executive.core.context import Context
@@ -13,6 +12,7 @@ from tailor.schemas.messages import Message, Subgoals
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.figures.track import Track, track_of
+from tailor.tools.parallel.pool import completed, in_order
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +37,8 @@ def trace_all(
 ) -> dict[tuple[str, int], TracedRun]:
     """Run every variant at every seed; runs by name of the variant and seed."""
     wanted = [(variant, seed) for seed in seeds for variant in variants]
-    running = Parallel(n_jobs=jobs, return_as="generator")(
-        delayed(_traced)(task, variant, seed) for variant, seed in wanted
-    )
-    traced_runs = track(running, title, total=len(wanted), transient=True)
+    running = completed(_traced, [(task, variant, seed) for variant, seed in wanted], jobs)
+    traced_runs = in_order(track(running, title, total=len(wanted), transient=True))
     return {(variant.name, seed): traced for (variant, seed), traced in zip(wanted, traced_runs, strict=True)}
 
 

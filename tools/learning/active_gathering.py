@@ -23,6 +23,7 @@ from tailor.tools.learning.refined_choices import Choice, refined_choices
 from tailor.tools.learning.run_gathering import prepare_chosen
 from tailor.tools.learning.steps import Step, counted
 from tailor.tools.lockstep import action_run
+from tailor.tools.parallel.pool import completed
 
 FIRST_SEED = 3_000_000_000  # of situations; disjoint from those of evaluations and of on-policy runs
 ACTIVE_STREAM = 14  # first word of the seeds of the episodes; gathering.py has the others
@@ -64,8 +65,6 @@ def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
     """
-    from joblib import Parallel, delayed
-
     about: dict[str, Any] = {
         "source": "lock-step, choices with the largest disagreement",
         "situations": len(active.situations),
@@ -75,14 +74,11 @@ def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]
     prepare_chosen(active, about, active.situations, resume)
     total = len(active.situations)
     missing = [first for first in range(0, total, CHUNK) if not _pool_path(active, first).exists()]
-    refined = Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_refine)(active, m) for m in missing)
     left = sum(min(CHUNK, total - first) for first in missing)
-    yield from counted("situations refined", refined, total, total - left)
+    yield from counted("situations refined", _refine_all(active, missing, jobs), total, total - left)
     for name, choices in selected(_pool(active), active.episodes).items():
         parts = [first for first in range(0, len(choices), gathering.PART) if not _part(active, name, first).exists()]
-        ran = Parallel(n_jobs=jobs, return_as="generator_unordered")(
-            delayed(_run)(active, name, first, choices[first : first + gathering.PART]) for first in parts
-        )
+        ran = _run_all(active, name, choices, parts, jobs)
         left = sum(min(gathering.PART, len(choices) - first) for first in parts)
         yield from counted(f"{name}: choices that models disagree on", ran, len(choices), len(choices) - left)
 
@@ -95,16 +91,28 @@ def selected(pool: Sequence[Choice], most: int) -> dict[str, list[Choice]]:
     return {name: [choice for choice in ranked if choice.data_set == name][:most] for name in names}
 
 
-def _refine(active: Active, first: int) -> int:
-    """Write the choices of some situations; returns their number."""
-    some = active.situations[first : first + CHUNK]
+def _refine_all(active: Active, missing: Sequence[int], jobs: int) -> Iterator[int]:
+    """Write the choices of the missing situations; yields numbers of situations."""
+    for number, rows in completed(_refine, [(active, first) for first in missing], jobs):
+        path = _pool_path(active, missing[number])
+        temporary = path.with_suffix(".tmp")
+        temporary.write_text(json.dumps([[c.data_set, c.action, c.arguments, c.std_s] for c in rows]))
+        temporary.replace(path)
+        yield len(_some(active, missing[number]))
+
+
+def _refine(active: Active, first: int) -> list[Choice]:
+    """The choices of some situations."""
     body = action_run.new_body(domains.load(active.domain))
-    rows = [c for scenario, seed in some for c in refined_choices(active.domain, scenario, seed, active.zoo, body)]
-    path = _pool_path(active, first)
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text(json.dumps([[c.data_set, c.action, c.arguments, c.std_s] for c in rows]))
-    temporary.replace(path)
-    return len(some)
+    return [
+        choice
+        for scenario, seed in _some(active, first)
+        for choice in refined_choices(active.domain, scenario, seed, active.zoo, body)
+    ]
+
+
+def _some(active: Active, first: int) -> list[tuple[str, int]]:
+    return active.situations[first : first + CHUNK]
 
 
 def _pool_path(active: Active, first: int) -> Path:
@@ -121,8 +129,19 @@ def _part(active: Active, data_set: str, first: int) -> Path:
     return active.folder / data_set / f"part-{first:06d}.parquet"
 
 
-def _run(active: Active, data_set: str, first: int, choices: Sequence[Choice]) -> int:
-    """Run some choices, each from the state in which its action begins; returns their number."""
+def _run_all(
+    active: Active, data_set: str, choices: Sequence[Choice], missing: Sequence[int], jobs: int
+) -> Iterator[int]:
+    """Write the episodes of the missing parts; yields numbers of episodes."""
+    names = gathering.argument_names(domains.load(active.domain), data_set)
+    calls = [(active, data_set, first, choices[first : first + gathering.PART]) for first in missing]
+    for number, episodes in completed(_run, calls, jobs):
+        write_part(_part(active, data_set, missing[number]), episodes, names)
+        yield len(episodes)
+
+
+def _run(active: Active, data_set: str, first: int, choices: Sequence[Choice]) -> list[Episode]:
+    """Run some choices, each from the state in which its action begins."""
     domain = domains.load(active.domain)
     body = action_run.new_body(domain)
     episodes = []
@@ -133,5 +152,4 @@ def _run(active: Active, data_set: str, first: int, choices: Sequence[Choice]) -
         episodes.append(
             Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
         )
-    write_part(_part(active, data_set, first), episodes, gathering.argument_names(domain, data_set))
-    return len(episodes)
+    return episodes

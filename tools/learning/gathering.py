@@ -29,6 +29,7 @@ from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning.object_gathering import runs_beside_objects
 from tailor.tools.lockstep import action_run
+from tailor.tools.parallel.pool import completed
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
 PART = 20  # episodes in a part: the most that a kill -9 loses, per process
@@ -96,12 +97,8 @@ def _draw(spec: DataSetSpec, domain: Domain, rng: np.random.Generator) -> NDArra
     return action_run.with_object(domain, spec.action, arguments, rng) if spec.beside else arguments
 
 
-def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
-    """Gather the part that starts with episode `first`.
-
-    Returns:
-      Number of episodes, simulated seconds and wall seconds.
-    """
+def part_of(spec: DataSetSpec, first: int) -> tuple[list[Episode], float, float]:
+    """The part that starts with episode `first`: its episodes, simulated seconds and wall seconds."""
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
     numbers = range(first, min(first + PART, spec.episodes))
@@ -110,8 +107,7 @@ def run_part(spec: DataSetSpec, first: int) -> tuple[int, float, float]:
     else:
         episodes = [run_one(spec, domain, body, number) for number in numbers]
         simulated_s = sum(episode.duration_s for episode in episodes)
-    write_part(part_path(spec, first), episodes, [entry["name"] for entry in _columns(spec, domain)])
-    return len(numbers), simulated_s, time.perf_counter() - started
+    return episodes, simulated_s, time.perf_counter() - started
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
@@ -218,7 +214,13 @@ def _columns(spec: DataSetSpec, domain: Domain) -> list[dict[str, str]]:
 
 
 def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple[int, float, float]]:
-    """Gather parts in parallel on the active joblib backend; yields the results of `run_part` as they complete."""
-    from joblib import Parallel, delayed
+    """Gather parts in parallel and write each as it completes.
 
-    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(run_part)(spec, p) for p in parts)
+    Yields:
+      Of each written part: number of its draws, simulated seconds and wall seconds.
+    """
+    names = [entry["name"] for entry in _columns(spec, domains.load(spec.domain))]
+    for number, (episodes, simulated_s, wall_s) in completed(part_of, [(spec, first) for first in parts], jobs):
+        first = parts[number]
+        write_part(part_path(spec, first), episodes, names)
+        yield min(PART, spec.episodes - first), simulated_s, wall_s

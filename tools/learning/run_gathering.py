@@ -5,7 +5,6 @@ Refinement prefers arguments where models err. On-policy episodes come from ther
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -28,6 +27,8 @@ from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
+from tailor.tools.parallel.pool import completed
+from tailor.tools.parallel.software import models_sha256
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; disjoint from the seeds of evaluations
 CHUNK = 10  # runs whose episodes are written together
@@ -60,19 +61,18 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
     """
-    from joblib import Parallel, delayed
-
     prepare_chosen(policy, {"source": "lock-step, refined choices", "episodes": policy.runs}, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
-    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_chunk)(policy, m) for m in missing)
+    for number, cut in completed(_chunk, [(policy, first) for first in missing], jobs):
+        first = missing[number]
+        write(policy.domain, policy.folder, f"{first:06d}", cut)
+        _marker(policy, first).touch()
+        yield len(policy.jobs[first : first + CHUNK])
 
 
 def models_hash(robot: str, zoo: str) -> str:
     """SHA-256 over the models that choose the arguments: other models give other episodes."""
-    loaded: Any = cached_models(robot, zoo)
-    models = {**loaded.durations, **loaded.successes}
-    entries = [f"{name} {model.card['sha256']}" for name, model in sorted(models.items())]
-    return hashlib.sha256("\n".join(entries).encode()).hexdigest()
+    return models_sha256(cached_models(robot, zoo))
 
 
 class Chosen(Protocol):
@@ -211,15 +211,13 @@ def _marker(policy: Policy, first: int) -> Path:
     return policy.folder / f"runs-{first:06d}-{min(first + CHUNK, len(policy.jobs)):06d}.done"
 
 
-def _chunk(policy: Policy, first: int) -> int:
-    some = policy.jobs[first : first + CHUNK]
+def _chunk(policy: Policy, first: int) -> list[tuple[str, Episode]]:
+    """Episodes of some runs, from number `first`, with the names of their actions."""
     cut = []
-    for k, (scenario, seed) in enumerate(some):
+    for k, (scenario, seed) in enumerate(policy.jobs[first : first + CHUNK]):
         base = MAX_ACTIONS * (first + k)
         cut += [(a, replace(e, number=base + i)) for i, (a, e) in enumerate(_run(policy, scenario, seed))]
-    write(policy.domain, policy.folder, f"{first:06d}", cut)
-    _marker(policy, first).touch()
-    return len(some)
+    return cut
 
 
 def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:

@@ -37,7 +37,7 @@ def parts(folder: Path) -> dict[str, bytes]:
 def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -> None:
     spec = DataSetSpec("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
     gathering.prepare(spec, resume=False)
-    gathering.run_part(spec, PART)  # the second part first, and then the process dies in the midst of the first
+    list(gathering.gather(spec, [PART], jobs=1))  # the second part first; the process dies in the midst of the first
     (tmp_path / "goToPose" / "part-000000-000020.1234.tmp").write_bytes(b"half a part")
     assert gather(tmp_path, "--resume") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
@@ -140,14 +140,6 @@ def test_another_joblib_backend_gives_the_same_bits(gathered: Path, tmp_path: Pa
     with joblib.parallel_config(far_backend.NAME):
         assert gather(tmp_path, "--jobs", "2") == 0
     assert far_backend.FarBackend.sent == sent + 2  # both parts were made elsewhere
-    assert parts(tmp_path / "goToPose") == parts(gathered)
-
-
-def test_dask_gives_the_same_bits(gathered: Path, tmp_path: Path) -> None:
-    distributed = pytest.importorskip("distributed", reason="pip install 'dask[distributed]' to test it")
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-    with cluster, distributed.Client(cluster), joblib.parallel_config("dask"):
-        assert gather(tmp_path, "--jobs", "2") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
 
 

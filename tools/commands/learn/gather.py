@@ -19,6 +19,8 @@ from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.steps import Step, counted, show
+from tailor.tools.parallel.cluster import configure_cluster, working_on
+from tailor.tools.parallel.software import Work
 
 EPILOG = """\
 examples:
@@ -28,10 +30,11 @@ examples:
   tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
+  tailor gather agilo --episodes 30000 --on tcp://lab-7:8786 --out data/agilo   (on a cluster: docs/cluster.md)
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
 
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
-seed gives the same bits for any number of jobs."""
+seed gives the same bits for any number of jobs, here and on a cluster."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -43,6 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
     parser.add_argument("--episodes", type=count, default=1000, help="number per action (default: %(default)s)")
     parser.add_argument("--jobs", type=processes, default=2, help="number of processes (default: %(default)s)")
+    configure_cluster(parser)
     parser.add_argument("--seed", type=seed, default=7, help="random seed (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
     other = parser.add_mutually_exclusive_group()
@@ -86,8 +90,17 @@ def run(arguments: argparse.Namespace) -> int:
     name = gathering.domain_of(arguments.robot)
     check_package(name)
     out = arguments.out or Path("data") / arguments.robot
-    if arguments.recordings or arguments.on_policy or arguments.active:
-        return _from_runs(arguments, name, out)
+    chosen = arguments.on_policy or arguments.active
+    if arguments.on and arguments.zoo:
+        arguments.zoo = str(Path(arguments.zoo).resolve())  # workers have another working directory
+    with working_on(arguments.on, Work((name,), arguments.zoo if chosen else None)):
+        if chosen or arguments.recordings:
+            return _from_runs(arguments, name, out)
+        return _random(arguments, name, out)
+
+
+def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
+    """Gather episodes with random arguments."""
     beside = arguments.beside_object or arguments.beside_objects > 0
     specs = [
         DataSetSpec(

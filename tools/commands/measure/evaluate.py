@@ -6,11 +6,14 @@ import argparse
 import importlib
 import itertools
 import sys
+from pathlib import Path
 from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.overview import page_is_there, write_overview
+from tailor.tools.parallel.cluster import working_on
+from tailor.tools.parallel.software import Work
 
 # name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
 EVALUATIONS: dict[str, tuple[str, str]] = {
@@ -79,6 +82,7 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
 }
 FOR_ANY_DOMAIN = ("refinement", "models", "learning-curves", "ablations")  # those that the paper's tables are names for
 ALL = "all"
+Chosen = tuple[str, Any, argparse.Namespace]  # an evaluation: name, module, settings
 RESUME = "--resume"
 STOPPED = 130
 EPILOG = """
@@ -89,6 +93,7 @@ examples:
   tailor evaluate refinement --domain soccer --scenario approach-dribble --json
   tailor evaluate table3 table4 figure16 --domain soccer --report out/report
   tailor evaluate all --report out/report --resume
+  tailor evaluate table3 --on tcp://lab-7:8786 --report out/report   (on a cluster: docs/cluster.md)
 """
 
 
@@ -109,9 +114,21 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = _chosen(
         names, [flag for flag in flags if flag != RESUME], everything
     )  # raises on a wrong flag before anything runs
+    with working_on(chosen[0][2].on if chosen else None, _work_of(chosen)):
+        return _run_all(chosen, RESUME in flags, everything)
+
+
+def _work_of(chosen: list[Chosen]) -> Work:
+    """Domains and models of the evaluations, all of which take the same flags."""
+    named = [(settings.domain,) if settings.domain else _domains_of(module) for _, module, settings in chosen]
+    return Work(tuple(sorted(set(itertools.chain(*named)))), chosen[0][2].zoo if chosen else "")
+
+
+def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
+    """Run each evaluation; returns the maximum of their exit codes."""
     code = 0
     for name, module, settings in chosen:
-        if RESUME in flags and settings.report is not None and page_is_there(settings.report, name):
+        if resume and settings.report is not None and page_is_there(settings.report, name):
             continue
         done = _run_one(name, module, settings, everything)
         if settings.report is not None:
@@ -143,7 +160,12 @@ def _names_and_flags(words: list[str]) -> tuple[list[str], list[str]]:
     return names, words[len(leading) :]
 
 
-def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[str, Any, argparse.Namespace]]:
+def _domains_of(module: Any) -> tuple[str, ...]:
+    """Domains that an evaluation is for unless --domain names another one."""
+    return tuple(getattr(module, "DOMAINS", ("soccer",)))
+
+
+def _chosen(names: list[str], flags: list[str], everything: bool) -> list[Chosen]:
     """Evaluations with their modules and settings; with `all`, those of another domain are omitted."""
     parsed = [(name, *_parsed(name, flags)) for name in names]
     unknown = [rest for *_, rest in parsed]
@@ -155,11 +177,11 @@ def _chosen(names: list[str], flags: list[str], everything: bool) -> list[tuple[
         )
     chosen = []
     for name, module, settings, _ in parsed:
-        domains_of = getattr(module, "DOMAINS", ("soccer",))
-        if not settings.domain or name in FOR_ANY_DOMAIN or settings.domain in domains_of:
+        has = _domains_of(module)
+        if not settings.domain or name in FOR_ANY_DOMAIN or settings.domain in has:
             chosen.append((name, module, settings))
         elif not everything:
-            raise UsageError(f"--domain {settings.domain}: {name} has: {', '.join(domains_of)}")
+            raise UsageError(f"--domain {settings.domain}: {name} has: {', '.join(has)}")
     return chosen
 
 
@@ -177,6 +199,8 @@ def _parsed(name: str, flags: list[str]) -> tuple[Any, argparse.Namespace, list[
     groups = _groups(flags)
     unknown = [group[0] for group in groups if group[0] in parser.parse_known_args(group)[1]]
     settings = parser.parse_args([word for group in groups if group[0] not in unknown for word in group])
+    if settings.on and settings.zoo:
+        settings.zoo = str(Path(settings.zoo).resolve())  # workers have another working directory
     if settings.domain and hasattr(settings, "robot"):
         settings.robot = domains.load(settings.domain).robot
     return module, settings, unknown

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from joblib import Parallel, delayed
 from rich.progress import track
 
 from tailor.executive import domains
@@ -19,6 +18,7 @@ from tailor.tools.evaluations.arm.perfect_greedy import greedy_velocities
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.parallel.pool import completed, in_order
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
 from tailor.tools.writing.writing_mode import WritingMode
 from tailor.tools.writing.writing_run import RecordedBody, run_writing
@@ -61,14 +61,11 @@ def measure_letters(modes: Sequence[WritingMode], keys: Sequence[Key], zoo: str,
     """Write every letter in every mode; equal keys have equal starts and noise."""
     wanted = [(mode, key) for key in keys for mode in modes]
     found: dict[str, dict[Key, Figures]] = {mode.name: {} for mode in modes}
-    for (mode, key), figures in zip(wanted, _measured(wanted, zoo, jobs), strict=True):
+    running = completed(_figures, [(mode, key, zoo) for mode, key in wanted], jobs)
+    measured = in_order(track(running, "letters", total=len(wanted), transient=True))
+    for (mode, key), figures in zip(wanted, measured, strict=True):
         found[mode.name][key] = figures
     return found
-
-
-def _measured(wanted: Sequence[tuple[WritingMode, Key]], zoo: str, jobs: int) -> Iterator[Figures]:
-    done = Parallel(n_jobs=jobs, return_as="generator")(delayed(_figures)(mode, key, zoo) for mode, key in wanted)
-    yield from track(done, "letters", total=len(wanted), transient=True)
 
 
 def _figures(mode: WritingMode, key: Key, zoo: str) -> Figures:

@@ -14,6 +14,7 @@ from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import EVALUATION_STREAM, NOISE_STREAM, TRAINING_STREAM, DataSetSpec
 from tailor.tools.lockstep import action_run
+from tailor.tools.parallel.pool import completed, in_order
 
 REPEATS = 8  # runs of the same task with other noise
 REPEATED_TASKS = 60
@@ -53,9 +54,7 @@ def noise_floor(robot: str, action: str, seed: int, jobs: int) -> dict[str, floa
       `mae_s`: mean distance of a duration to the median of its task's; `accuracy_pct`: how often a task ends as it
       mostly does.
     """
-    from joblib import Parallel, delayed
-
-    runs = Parallel(n_jobs=jobs)(delayed(_repeated)(robot, action, seed, task) for task in range(REPEATED_TASKS))
+    runs = in_order(completed(_repeated, [(robot, action, seed, task) for task in range(REPEATED_TASKS)], jobs))
     durations, successes = (np.array(column) for column in zip(*runs, strict=True))
     mae = np.abs(durations - np.median(durations, axis=1, keepdims=True)).mean() * REPEATS / (REPEATS - 1)
     share = successes.mean(axis=1)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -22,6 +21,7 @@ from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.parallel.pool import completed, in_order
 
 WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with
 
@@ -53,9 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--weights {arguments.weights}: expected at least two, the first to compare with")
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
     seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    jobs = [(weight, seed) for seed in seeds for weight in arguments.weights]
-    costs = Parallel(n_jobs=arguments.jobs)(delayed(cost_of)(task, weight, seed) for weight, seed in jobs)
-    found = dict(zip(jobs, costs, strict=True))
+    wanted = [(weight, seed) for seed in seeds for weight in arguments.weights]
+    costs = in_order(completed(cost_of, [(task, weight, seed) for weight, seed in wanted], arguments.jobs))
+    found = dict(zip(wanted, costs, strict=True))
     rows = [_row(weight, arguments.weights[0], seeds, found) for weight in arguments.weights]
     remarks = [f"{arguments.scenario}: paired with weight {arguments.weights[0]:g}; energy is the work of the wheels"]
     publish_report(

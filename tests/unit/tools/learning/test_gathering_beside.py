@@ -60,8 +60,7 @@ def beside(tmp_path_factory: pytest.TempPathFactory):
     ]
     for spec in specs:
         gathering.prepare(spec, resume=False)
-        for first in gathering.missing_parts(spec):
-            gathering.run_part(spec, first)
+        list(gathering.gather(spec, gathering.missing_parts(spec), jobs=1))
     yield tuple(spec.folder for spec in specs)
     patch.undo()
 

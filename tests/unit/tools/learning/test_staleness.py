@@ -25,7 +25,7 @@ REACH = "executive/actions/reach.py"
 def gather(folder: Path, seed: int) -> Path:
     spec = DataSetSpec("arm", "reach", 8, seed, folder)
     gathering.prepare(spec, resume=False)
-    gathering.run_part(spec, 0)
+    list(gathering.gather(spec, [0], jobs=1))
     return folder
 
 

@@ -1,0 +1,70 @@
+"""Runs the parts of a work in parallel, on whatever pool is in use: by default, processes of this machine.
+
+A part is a call of a module's function; it returns its result and writes nothing, so it may run on another machine, and
+again if a worker is killed. Whoever iterates over the results writes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from operator import itemgetter
+from typing import Any, Protocol
+
+Part = Callable[..., Any]  # can be pickled
+Numbered = tuple[int, Any]  # index of a call, and its result
+
+
+class Pool(Protocol):
+    """A place where parts run."""
+
+    def completed(self, part: Part, calls: Sequence[tuple[Any, ...]], jobs: int) -> Iterator[Numbered]:
+        """Results of `part(*call)` as they complete, each with the index of its call.
+
+        Args:
+          part: Function of a module.
+          calls: Arguments of each call.
+          jobs: Number of processes, -1 for one per core; a pool with a size of its own ignores it.
+        """
+        ...
+
+
+class Processes:
+    """Processes of this machine."""
+
+    def completed(self, part: Part, calls: Sequence[tuple[Any, ...]], jobs: int) -> Iterator[Numbered]:
+        """See `Pool.completed`; runs on the active joblib backend."""
+        from joblib import Parallel, delayed
+
+        # in batches of one: a result that waits for others of its batch is lost with the process
+        parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
+        running: Iterator[Numbered] = parallel(delayed(_numbered)(k, part, call) for k, call in enumerate(calls))
+        return running
+
+
+_IN_USE: ContextVar[Pool] = ContextVar("pool", default=Processes())  # noqa: B039 (immutable: it has no state)
+
+
+@contextmanager
+def using(pool: Pool) -> Iterator[None]:
+    """Within the context, parts run on this pool."""
+    token = _IN_USE.set(pool)
+    try:
+        yield
+    finally:
+        _IN_USE.reset(token)
+
+
+def completed(part: Part, calls: Sequence[tuple[Any, ...]], jobs: int) -> Iterator[Numbered]:
+    """Results on the pool in use; see `Pool.completed`."""
+    return _IN_USE.get().completed(part, calls, jobs)
+
+
+def in_order(results: Iterable[Numbered]) -> list[Any]:
+    """All results in the order of their calls."""
+    return [result for _, result in sorted(results, key=itemgetter(0))]
+
+
+def _numbered(number: int, part: Part, call: tuple[Any, ...]) -> Numbered:
+    return number, part(*call)
