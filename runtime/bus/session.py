@@ -12,6 +12,7 @@ from typing import Any
 import zenoh
 
 from tailor.runtime.bus.attachment import SENDER_BYTES
+from tailor.runtime.bus.graph_view import GraphView
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
@@ -20,7 +21,7 @@ from tailor.runtime.bus.ros_wires import Announcer, as_plain, ros_request
 from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
-from tailor.schemas.ros2.graph import Kind, parsed_key
+from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
 from tailor.schemas.ros2.profiles import BARE, COPY, PLAIN, KeyProfile, ros_topic, topic_at
 from tailor.schemas.services import SERVICES
 from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
@@ -73,7 +74,7 @@ class Session:
         self.sender = sender or secrets.token_hex(SENDER_BYTES)
         self.keys = keys
         self._zenoh = opened
-        self._latches: list[Any] = []  # subscriptions that live as long as the session
+        self._kept: list[Any] = []  # subscriptions that live as long as the session
         self._graph = Announcer(str(opened.info.zid()), f"tailor_{node}", opened.liveliness().declare_token)
 
     @property
@@ -141,6 +142,18 @@ class Session:
         """Raw messages of a topic of ours, one source for each of its keys in this session's profile."""
         return [self._ring(each) for each, _ in self._keys_of(TOPICS[name], key_of(name, robot))]
 
+    def graph_view(self, domain: int) -> GraphView:
+        """What ROS 2 nodes of a domain announce, from now on and as long as the session lives."""
+        view = GraphView()
+
+        def note(sample: zenoh.Sample) -> None:
+            view.note(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+
+        handler: Any = zenoh.handlers.Callback(note, indirect=False)
+        tokens = self._zenoh.liveliness().declare_subscriber(f"{ADMIN_SPACE}/{domain}/**", handler, history=True)
+        self._kept.append(tokens)
+        return view
+
     def _announce_key(self, kind: Kind, key: str) -> None:
         """Show ROS 2 what this session has at a key, if it is one of rmw_zenoh's."""
         parsed = parsed_key(key)
@@ -176,7 +189,7 @@ class Session:
             if raw is not None:
                 latch.offer(raw)
 
-        self._latches.append(self._zenoh.declare_subscriber(at, zenoh.handlers.Callback(offer, indirect=False)))
+        self._kept.append(self._zenoh.declare_subscriber(at, zenoh.handlers.Callback(offer, indirect=False)))
         return latch
 
     def service_server(self, key: str) -> ServiceServer:

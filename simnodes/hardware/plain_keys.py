@@ -7,15 +7,18 @@ from tailor.schemas.typesystem import hash_of
 from tailor.simnodes.hardware.plain_settings import RobotBus
 
 
-def address(bus: RobotBus, topic: str, ros_type: str) -> tuple[str, str]:
-    """Key and encoding of a topic.
+def named(topic: str, ros_type: str) -> Named:
+    """A topic as ROS 2 names it.
 
     Args:
-      bus: Profile, and the ROS domain.
       topic: Name in ROS, e.g. "/base/odom".
       ros_type: Its type, e.g. "nav_msgs/msg/Odometry".
     """
-    name = topic.strip("/")
+    return Named(topic.strip("/"), ros_type, hash_of(ros_type))
+
+
+def address(bus: RobotBus, topic: Named) -> tuple[str, str]:
+    """Key and encoding of a topic under the profile and in the ROS domain of the robot's bus."""
     if bus.profile == "rmw_zenoh":
-        return Named(name, ros_type, hash_of(ros_type)).key(bus.domain_id), "application/cdr"
-    return name, f"application/cdr;{ros_type}"  # as zenoh-bridge-ros2dds routes it
+        return topic.key(bus.domain_id), "application/cdr"
+    return topic.name, f"application/cdr;{topic.type}"  # as zenoh-bridge-ros2dds routes it

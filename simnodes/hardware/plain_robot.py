@@ -16,10 +16,12 @@ from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message, Odometry, PoseEstimate
+from tailor.schemas.ros2.graph import Kind
 from tailor.schemas.ros2.plain import frame_in, twist_bytes
+from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.interface import Hardware
-from tailor.simnodes.hardware.plain_keys import address
+from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker
 
@@ -54,18 +56,24 @@ class PlainRobot(Hardware):
         start = settings.pose.start
         self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift)
         self._stamps, self._pose_due_ns = {}, 0
-        self._command = session.plain_publisher(*address(settings.bus, names.cmd_vel, TYPES[settings.command]))
+        command = named(names.cmd_vel, TYPES[settings.command])
+        self._command = session.plain_publisher(*address(settings.bus, command))
+        self._ends = [(Kind.PUBLISHER, command)]
         self._sources: list[tuple[Source, type[Message], str]] = []
         for name, kind, frame in (
             (names.odom, Odometry, settings.frames.odom),
             (names.pose, PoseEstimate, settings.frames.pose),
         ):
             if name:
-                source = session.plain_source(address(settings.bus, name, ros_type(kind))[0])
+                topic = named(name, ros_type(kind))
+                source = session.plain_source(address(settings.bus, topic)[0])
                 self._sources.append((source, kind, frame))
+                self._ends.append((Kind.SUBSCRIPTION, topic))
+        self._graph = session.graph_view(settings.bus.domain_id) if settings.bus.profile == "rmw_zenoh" else None
 
     def read(self) -> dict[str, Message]:
         """The newest odometry, and at its rate the pose that follows from it."""
+        self._check_types()
         until_s = time.monotonic() + WAIT_S
         while time.monotonic() < until_s:
             moved = [message for message in self._received() if isinstance(message, Odometry)]
@@ -83,6 +91,13 @@ class PlainRobot(Hardware):
     def close(self) -> None:
         """Disconnect; the driver has published zero before."""
         self._stack.close()
+
+    def _check_types(self) -> None:
+        """Raise ValueError if the robot's nodes have other types on our topics: ROS 2 reports it to nobody."""
+        for found in mismatches(self._ends, self._graph.announced()) if self._graph else ():
+            settings = [name for name, kind in TYPES.items() if kind == found.theirs.type]
+            is_command = found.kind is Kind.PUBLISHER
+            raise ValueError(f"{found}; set command = '{settings[0]}'" if is_command and settings else str(found))
 
     def _received(self) -> Iterator[Message]:
         """New messages, taken into account for the pose; a message repeated with the same stamp is none."""

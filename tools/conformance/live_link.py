@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tailor.runtime.bus.attachment import Origin, unpack
 from tailor.runtime.bus.inbox import Source
@@ -11,7 +11,10 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
+from tailor.schemas.ros2.graph import Kind
 from tailor.schemas.ros2.plain import frame_in
+from tailor.schemas.ros2.profiles import ros_topic
+from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.topics import TOPICS
 from tailor.tools.conformance.bench import Heard
 
@@ -28,13 +31,14 @@ class LiveLink:
     """Publishes as an executive and as people; hears what the driver publishes."""
 
     def __init__(
-        self, executive: Session, people: Session, robot: str, commands: Iterable[str], sensors: Iterable[str]
+        self, executive: Session, people: Session, robot: str, commands: Sequence[str], sensors: Iterable[str]
     ) -> None:
         """Subscribe, and wait for the driver.
 
         Raises:
-          NoDriverError: There is none within MATCH_S.
+          NoDriverError: There is none within MATCH_S, or under rmw_zenoh one of other types.
         """
+        graph = executive.graph_view(executive.keys.domain) if executive.keys.announces else None
         names = ("driver", *sensors)
         self._sources = [(name, source) for name in names for source in executive.raw_sources(name, robot)]
         self._publishers = {name: executive.publisher(name, robot) for name in commands}
@@ -43,7 +47,12 @@ class LiveLink:
         until_s = time.monotonic() + MATCH_S
         while not all(publisher.matched() for publisher in self._publishers.values()):
             if time.monotonic() > until_s:
-                raise NoDriverError(f"no driver of {robot} within {MATCH_S:g} s")
+                ours = [(Kind.PUBLISHER, ros_topic(TOPICS[name], robot)) for name in commands]
+                others = "; ".join(map(str, mismatches(ours, graph.announced()))) if graph else ""
+                nobody = (
+                    f"no driver of {robot} within {MATCH_S:g} s, expected one on the bus, e.g. `tailor sim {robot}`"
+                )
+                raise NoDriverError(others or nobody)
             time.sleep(POLL_S)
 
     def now_s(self) -> float:

@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             link = LiveLink(executive, people, arguments.robot, spec.command_topics, sensors)
         except NoDriverError as error:
-            raise UsageError(f"{error}, expected one on the bus, e.g. `tailor sim {arguments.robot}`") from error
+            raise UsageError(str(error)) from error
         bench = Bench(link, domain, spec, arguments.speed)
         _check_free(bench, arguments.robot)
         simulated = _is_simulator(people, arguments.robot)

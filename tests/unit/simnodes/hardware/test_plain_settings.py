@@ -5,7 +5,7 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.plain import frame_in, twist_bytes
 from tailor.schemas.typesystem import from_bytes
-from tailor.simnodes.hardware.plain_keys import address
+from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import RobotBus, read_plain_settings
 
 WRONG = {
@@ -45,11 +45,11 @@ def test_a_turtlebot_needs_three_lines(tmp_path):
 
 
 def test_keys_of_both_profiles():
-    assert address(RobotBus(), "/base/cmd_vel", "geometry_msgs/msg/Twist") == (
+    assert address(RobotBus(), named("/base/cmd_vel", "geometry_msgs/msg/Twist")) == (
         "base/cmd_vel",
         "application/cdr;geometry_msgs/msg/Twist",
     )
-    key, encoding = address(RobotBus(profile="rmw_zenoh", domain_id=3), "/odom", "nav_msgs/msg/Odometry")
+    key, encoding = address(RobotBus(profile="rmw_zenoh", domain_id=3), named("/odom", "nav_msgs/msg/Odometry"))
     assert key.startswith("3/odom/nav_msgs::msg::dds_::Odometry_/RIHS01_3cc97dc7")
     assert encoding == "application/cdr"
 
