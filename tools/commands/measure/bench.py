@@ -27,10 +27,12 @@ BENCHMARKS = {
 # of `planning`, after its table
 PLANNERS = ("planners.improvement", "planners.tours", "planners.tick_share", "planners.configurations")
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
-SOAK, GROWTH = "soak", "growth"
+SOAK, GROWTH, CLUSTER = "soak", "growth", "cluster"
+ROOMS = {GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}
 ON_REQUEST = {
     SOAK: "whole systems under one random fault a minute: invariants, memory; only if named",
     GROWTH: "curves: how costs grow with plans, free parameters, episodes, recordings, opponents; only if named",
+    CLUSTER: "simulated speed-up of gathering by 2 to 64 workers, from measured parts and overheads; only if named",
 }
 
 
@@ -38,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor bench`."""
     rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, **ON_REQUEST}.items())
     parser.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but the last two). {rows}"
+        "names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but the last three). {rows}"
     )
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
     parser.add_argument("--scale", action="store_true", help="planning: times of planning and of ticks as steps grow")
@@ -82,7 +84,7 @@ def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool
         for module_name in SCALE:
             importlib.import_module(f"tailor.tools.benchmarks.{module_name}").run(console, arguments.quick)
         return True
-    module = importlib.import_module(f"tailor.tools.benchmarks.{'growth.growth' if name == GROWTH else name}")
+    module = importlib.import_module(f"tailor.tools.benchmarks.{ROOMS.get(name, name)}")
     output = arguments.output or Path(f"out/{name}.json")
     if name == GROWTH:
         module.run(console, arguments.quick, output)

@@ -1,0 +1,92 @@
+"""What workers of a cluster gain in gathering: simulated from measured times of parts, and overheads of Dask.
+
+Parts and writing are measured in CPU time. The overheads are measured in wall time, on a scheduler and a worker of this
+machine; a network adds its latency to each part.
+"""
+
+from __future__ import annotations
+
+import itertools
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from tailor.executive import domains
+from tailor.models.episodes.episodes import write_part
+from tailor.schemas.installed import domain_names
+from tailor.tools.benchmarks.scaling.simulation import Overheads, speedup
+from tailor.tools.learning import gathering
+from tailor.tools.learning.run_gathering import modelled_actions
+from tailor.tools.parallel.cluster import working_on
+from tailor.tools.parallel.pool import completed
+from tailor.tools.parallel.software import Work
+
+WORKERS = (2, 4, 8, 16, 32, 64)
+WORK_PARTS = 1500  # parts of the simulated work: 30000 episodes
+ROUNDS = 40  # empty parts, by which the overheads are measured
+
+
+def run(console: Console, quick: bool) -> None:
+    """Print one row for each action."""
+    table = Table("action", "part", *(f"{count} workers" for count in WORKERS), title=f"speed-up, {WORK_PARTS} parts")
+    lines = []
+    for name in domain_names():
+        for action in modelled_actions(name):
+            parts, sizes_s = _measured(name, action, 2 if quick else 8)
+            overheads = Overheads(*_overheads_s(name, parts[0]), _write_s(name, action, parts[0]))
+            work = list(itertools.islice(itertools.cycle(sizes_s), WORK_PARTS))
+            gains = (speedup(work, count, overheads) for count in WORKERS)
+            title = f"{domains.load(name).robot}/{action}"
+            table.add_row(title, f"{sum(sizes_s) / len(sizes_s):.2f} s", *(f"{gain:.1f}" for gain in gains))
+            lines.append(
+                f"{title}: start of a worker {overheads.start_s:.1f} s, each part {1e3 * overheads.part_s:.0f} ms, "
+                f"writing {1e3 * overheads.write_s:.1f} ms"
+            )
+    console.print(table)
+    for line in lines:
+        console.print(line)
+
+
+def _measured(domain: str, action: str, count: int) -> tuple[list[Any], list[float]]:
+    """Parts of a data set, and the CPU time of each."""
+    spec = gathering.DataSetSpec(domain, action, count * gathering.PART, 1, Path())
+    gathering.part_of(spec, 0)  # loads what any worker loads once
+    parts, times_s = [], []
+    for first in range(0, spec.episodes, gathering.PART):
+        started = time.process_time()
+        parts.append(gathering.part_of(spec, first)[0])
+        times_s.append(time.process_time() - started)
+    return parts, times_s
+
+
+def _overheads_s(domain: str, part: Sequence[Any]) -> tuple[float, float]:
+    """Start of a worker, and what a part costs beside its work: its result is sent there and back."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0") as cluster:
+        started = time.perf_counter()
+        with working_on(cluster.scheduler_address, Work((domain,))):
+            ready = time.perf_counter()
+            for _ in completed(_same, [(part,)] * ROUNDS, 1):
+                pass
+            ended = time.perf_counter()
+    return ready - started, (ended - ready) / ROUNDS
+
+
+def _same(part: Sequence[Any]) -> Sequence[Any]:
+    return part
+
+
+def _write_s(domain: str, action: str, part: Sequence[Any]) -> float:
+    """CPU time of writing a part."""
+    names = gathering.argument_names(domains.load(domain), action)
+    with tempfile.TemporaryDirectory() as folder:
+        started = time.process_time()
+        for number in range(ROUNDS):
+            write_part(Path(folder) / f"part-{number}.parquet", part, names)
+        return (time.process_time() - started) / ROUNDS
