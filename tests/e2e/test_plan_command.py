@@ -15,7 +15,7 @@ from tailor.tools.benchmarks.planning_scale import problem_text
 from tailor.tools.cli import plan_limits
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own, printed
-from tests.unit.executive.planning.test_language import LAMPS, SWITCHES
+from tests.unit.executive.planning.pddl.test_language import LAMPS, SWITCHES
 
 OWN = DATA / "own"
 SVG = "{http://www.w3.org/2000/svg}"

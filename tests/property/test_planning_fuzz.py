@@ -21,7 +21,7 @@ from tailor.executive.planning import (
 from tests.support.cpu_time import min_cpu_s
 from tests.support.pddl_mutations import mutated, regrown
 from tests.support.planning_problems import DATA, OWN, read, solve
-from tests.unit.executive.planning.test_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
+from tests.unit.executive.planning.pddl.test_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
 
 RICH = SWITCHES.replace("{unlock}", "(or (on a) (not (on b)))").replace("{finish}", "(exists (?l - lamp) (on ?l))")
 PAIRS = [

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from tailor.executive.planning.pddl.action_reader import read_action
+from tailor.executive.planning.pddl.derived_reader import with_derived
 from tailor.executive.planning.pddl.language import Domain, Typed
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
 from tailor.executive.planning.pddl.typed_lists import read_typed, variables_of
@@ -17,20 +18,19 @@ SUPPORTED = frozenset(
         ":strips", ":typing", ":equality", ":negative-preconditions", ":disjunctive-preconditions",
         ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
         ":conditional-effects", ":adl", ":durative-actions", ":duration-inequalities", ":time",
-        ":timed-initial-literals", ":action-costs", ":fluents", ":numeric-fluents",
+        ":timed-initial-literals", ":action-costs", ":derived-predicates", ":fluents", ":numeric-fluents",
     }
 )  # fmt: skip
 _FIRST = (":types", ":constants", ":predicates", ":functions")
 _ACTIONS = frozenset({":action", ":durative-action"})
 _OTHER_PARTS = {
-    ":derived": "a derived predicate",
     ":axiom": "a derived predicate (axiom)",
     ":constraints": "a trajectory constraint",
     ":process": "a process",
     ":event": "an event",
     ":safety": "a safety constraint",
 }
-_REPEATED = _ACTIONS | {":requirements", *_OTHER_PARTS}  # the last are rejected by name
+_REPEATED = _ACTIONS | {":requirements", ":derived", *_OTHER_PARTS}  # the last are rejected by name
 
 
 def parse_domain(text: str, source: str = "domain") -> Domain:
@@ -52,6 +52,7 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     parts = parts_in_order(form, "a part such as (:action ...)", _FIRST, _REPEATED)
     for part in parts:
         domain = _declare(part, domain)
+    domain = with_derived(domain, [part for part in parts if part.head == ":derived"])
     actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
     _reject_duplicates([part for part in parts if part.head in _ACTIONS])
     return replace(domain, actions=actions)
@@ -68,7 +69,7 @@ def define_name(form: Form, kind: str) -> str:
 
 
 def _declare(form: Form, domain: Domain) -> Domain:
-    """The domain with one more declaration; actions are read after all declarations."""
+    """The domain with one more declaration; derived predicates and actions are read after all declarations."""
     rest = form.items[1:]
     match form.head:
         case ":requirements":
@@ -84,7 +85,7 @@ def _declare(form: Form, domain: Domain) -> Domain:
             return replace(domain, predicates=_signatures(rest, domain))
         case ":functions":
             return replace(domain, functions=_signatures(_without_types(rest), domain))
-        case head if head in _ACTIONS:
+        case head if head in _ACTIONS or head == ":derived":
             return domain
         case head if head in _OTHER_PARTS:
             raise form.place.unsupported(_OTHER_PARTS[head])

@@ -19,6 +19,7 @@ from tailor.executive.planning.pddl.language import (
     When,
 )
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Place, form_of, word_of
+from tailor.executive.planning.pddl.substitution import substituted
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 COMPARISONS = frozenset({"<", ">", "<=", ">="})
@@ -77,7 +78,7 @@ def read_formula(node: Node, scope: Scope) -> Formula:
         case _ if head in COMPARISONS:
             raise form.place.unsupported(f"a numeric condition ({head} ...)")
         case _:
-            return read_atom(form, scope)
+            return _defined(_atom(form, scope), scope.domain)
 
 
 def _quantified(form: Form, scope: Scope) -> Formula:
@@ -103,8 +104,23 @@ def _term(node: Node, scope: Scope) -> str:
     return term
 
 
+def _defined(atom: Atom, domain: Domain) -> Formula:
+    """The atom, or the definition of its predicate."""
+    definition = domain.derived.get(atom.predicate)
+    if definition is None:
+        return atom
+    return substituted(definition.formula, dict(zip(definition.parameters, atom.terms, strict=True)))
+
+
 def read_atom(form: Form, scope: Scope) -> Atom:
-    """An atom over a declared predicate and terms of its parameter types."""
+    """An atom of a fact or an effect, over a declared predicate and terms of its parameter types."""
+    atom = _atom(form, scope)
+    if atom.predicate in scope.domain.derived:
+        raise form.place.error(f"'{atom.predicate}' is derived, so it can be neither a fact nor an effect")
+    return atom
+
+
+def _atom(form: Form, scope: Scope) -> Atom:
     name = word_of(form.items[0], "a predicate") if form.items else ""
     parameters = scope.domain.predicates.get(name)
     if parameters is None:

@@ -6,7 +6,7 @@ Neither reads nor plans. Names are in lower case; a term that begins with "?" is
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
@@ -153,11 +153,20 @@ class Action:
 
 # --- domains -------------------------------------------------------------------------------------
 @dataclass(frozen=True, slots=True)
+class Definition:
+    """The formula by which a derived predicate holds, over its parameters; it names no derived predicate."""
+
+    parameters: tuple[str, ...]
+    formula: Formula
+
+
+@dataclass(frozen=True, slots=True)
 class Domain:
     """A planning domain.
 
     `types` maps each type to its parents ("object" has none), `ancestors` to itself and all types above it;
-    `predicates` and `functions` map names to parameters.
+    `predicates` and `functions` map names to parameters. Conditions name no predicate of `derived`: the readers put
+    its definition in its place.
     """
 
     name: str
@@ -167,6 +176,7 @@ class Domain:
     predicates: Mapping[str, tuple[Typed, ...]]
     functions: Mapping[str, tuple[Typed, ...]]
     actions: tuple[Action, ...]
+    derived: Mapping[str, Definition] = field(default_factory=dict)
 
     @property
     def durative(self) -> bool:

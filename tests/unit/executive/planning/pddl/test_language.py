@@ -279,7 +279,7 @@ def domain_with(part):
     ("part", "place", "feature"),
     [
         ("(:action a :effect (increase (f) 1))", "4:21", "a numeric effect (increase ...)"),
-        ("(:derived (p) (exists (?x) (q ?x)))", "4:2", "a derived predicate"),
+        ("(:axiom (p))", "4:2", "a derived predicate (axiom)"),
         ("(:action a :precondition (preference x (p)) :effect (p))", "4:27", "a preference"),
         ("(:action a :precondition (> (f) 1) :effect (p))", "4:27", "a numeric condition (> ...)"),
         ("(:action a :precondition (= (f) 1) :effect (p))", "4:27", "a numeric condition (= ...)"),
@@ -315,7 +315,6 @@ def test_what_is_not_supported_is_refused_by_name_with_its_place(part, place, fe
         ("(:action a :effect (p)) (:action a :effect (p))", "my.pddl:4:35: the action 'a' is declared twice"),
         ("(:rules)", "my.pddl:4:2: unknown part ':rules' of a domain"),
         ("(:predicates (r))", "my.pddl:4:2: ':predicates' is given twice"),
-        ("(:derived (p) (q)) (:derived (q) (p))", "my.pddl:4:2: a derived predicate is not supported"),
     ],
 )
 def test_errors_point_at_line_and_column(part, message):

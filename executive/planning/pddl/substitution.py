@@ -1,0 +1,54 @@
+"""Formulas with other terms in place of their variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified
+
+
+def substituted(formula: Formula, terms: Mapping[str, str]) -> Formula:
+    """The formula with a term for each free variable; bound ones are renamed where they would capture such a term.
+
+    Args:
+      formula: Its free variables are keys of `terms`.
+      terms: By variable, the term that replaces it.
+    """
+    match formula:
+        case Atom(predicate, names):
+            return Atom(predicate, tuple(terms.get(name, name) for name in names))
+        case Equal(left, right):
+            return Equal(terms.get(left, left), terms.get(right, right))
+        case Not(part):
+            return Not(substituted(part, terms))
+        case And(parts):
+            return And(tuple(substituted(part, terms) for part in parts))
+        case Or(parts):
+            return Or(tuple(substituted(part, terms) for part in parts))
+        case Quantified(every, variables, part):
+            inner = {name: term for name, term in terms.items() if name not in {v.name for v in variables}}
+            renamed = []
+            for variable in variables:
+                inner[variable.name] = fresh(variable.name, inner.values())
+                renamed.append(replace(variable, name=inner[variable.name]))
+            return Quantified(every, tuple(renamed), substituted(part, inner))
+
+
+def fresh(name: str, taken: Iterable[str]) -> str:
+    """The name, with as many primes as make it differ from those taken."""
+    others = frozenset(taken)
+    while name in others:
+        name += "'"
+    return name
+
+
+def size(formula: Formula) -> int:
+    """The number of atoms, equalities and connectives."""
+    match formula:
+        case Not(part) | Quantified(_, _, part):
+            return 1 + size(part)
+        case And(parts) | Or(parts):
+            return 1 + sum(map(size, parts))
+        case _:
+            return 1
