@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from tailor.executive.planning.forward.deordering import deordered
-from tailor.executive.planning.forward.finished_plan import finished_plan
 from tailor.executive.planning.forward.forward_search import ForwardSearch
-from tailor.executive.planning.forward.justification import justified
-from tailor.executive.planning.forward.strips_task import NotClassical, StripsTask, strips_task
+from tailor.executive.planning.forward.strips_task import NotClassical, StripsAction, StripsTask, strips_task
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.plans.plan import Result
@@ -61,19 +58,27 @@ class ForwardEngine:
             if sequence is None:
                 yield None
                 continue
-            kept = justified(sequence, strips)
-            yield None
-            if len(kept) > self._step_limit:
-                reason = f"no plan of up to {self._step_limit} steps"
-                yield Result("limit", None, reason, search.generated, search.visited)
-                return
-            order = deordered(kept, strips)
-            yield None
-            plan = finished_plan(kept, order, self._task, self._world)
-            yield Result("solved", plan, "", search.generated, search.visited)
+            yield from self._finished(sequence, strips)
             return
         if search.limit_reached:
             yield Result("limit", None, f"{self._limit} states evaluated", search.generated, search.visited)
         else:
             reason = "no sequence of actions reaches the goal"
             yield Result("unsolvable", None, reason, search.generated, search.visited)
+
+    def _finished(self, sequence: Sequence[StripsAction], strips: StripsTask) -> Iterator[Result | None]:
+        """Makes a plan of a sequence that reaches the goal; yields None between its stages."""
+        # loaded here: most plans are found by partial-order search
+        from tailor.executive.planning.forward.deordering import deordered
+        from tailor.executive.planning.forward.finished_plan import finished_plan
+        from tailor.executive.planning.forward.justification import justified
+
+        kept = justified(sequence, strips)
+        yield None
+        if len(kept) > self._step_limit:
+            yield Result("limit", None, f"no plan of up to {self._step_limit} steps", self.generated, self.visited)
+            return
+        order = deordered(kept, strips)
+        yield None
+        plan = finished_plan(kept, order, self._task, self._world)
+        yield Result("solved", plan, "", self.generated, self.visited)

@@ -5,10 +5,14 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from tailor.executive.planning import AnytimeSearch, Domain, Problem, Result, Search, Settings
+from tailor.executive.planning import Domain, Problem, Result, Search, Settings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
+
+if TYPE_CHECKING:
+    from tailor.executive.planning import AnytimeSearch
 
 DURATIVE_HEAD_START = 250  # plans refined by the built-in search, 0.05 to 0.1 s: short problems keep its plans
 _POLL_S = 0.002  # period of polling an external planner

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import schema_bindings, without_static
@@ -23,10 +24,12 @@ from tailor.executive.planning.ground.ground_formula import (
     TooMuchToGround,
 )
 from tailor.executive.planning.ground.instances import instance
-from tailor.executive.planning.ground.reachability import Reachability, Reached
 from tailor.executive.planning.pddl.language import Action
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.random_source import RandomSource
+
+if TYPE_CHECKING:
+    from tailor.executive.planning.ground.reachability import Reached
 
 MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try some hundreds
 MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
@@ -98,6 +101,8 @@ def ground_actions(
         limit = GroundingLimit(steps)
     except TooMuchToGround:  # by formulas: no second chance for quantifiers that are a bomb
         limit = GroundingLimit(steps, small.quantified_left)
+    from tailor.executive.planning.ground.reachability import Reachability  # small problems start without it
+
     for reached in Reachability(world, _fluents(problem, world), limit).run():
         if reached is None:
             yield None

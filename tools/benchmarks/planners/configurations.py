@@ -27,7 +27,7 @@ CONFIGURATIONS = {
     "partial order, MW-Loc": _with("MW-Loc"),
     "partial order, LCFR-Loc-Conf": _with("LCFR-Loc-Conf"),
     "partial order, UCPOP": _with("UCPOP"),
-    "the same with variables (lifted)": replace(_with("MW-Loc"), ground=False),
+    "MW-Loc with variables (lifted)": replace(_with("MW-Loc"), ground=False),
     "through states": replace(DEFAULT, engine="forward"),
 }
 

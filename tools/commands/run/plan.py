@@ -14,7 +14,6 @@ import sys
 import time
 
 from tailor.executive.planning import (
-    AnytimeSearch,
     Domain,
     Problem,
     Result,
@@ -90,6 +89,8 @@ def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, prob
         return external(name, texts, domain, problem, limit_s + KAIROS_GRACE_S)
     settings, limits = settings_of(args), Limits(limit_s, args.memory_limit)
     if args.anytime:
+        from tailor.executive.planning import AnytimeSearch
+
         return anytime(AnytimeSearch(domain, problem, settings), limits)
     if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
         result, planner = with_kairos(texts, domain, problem, settings, limits)
