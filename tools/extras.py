@@ -17,6 +17,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "plots": ("matplotlib",),
     "cluster": ("distributed",),
     "kairos": ("kairos",),
+    "gym": ("gymnasium",),
     "up": ("unified_planning",),
 }
 # command -> extras without which it can do nothing; others are missed only where an option needs them

@@ -86,3 +86,13 @@ def test_a_package_that_raises_hinders_no_other_robot(site):
     assert "courier_robot:SPEC: cannot be loaded: SystemError: broken" in tailor(site, "up", "courier").stderr
     done = tailor(site, "sim", "hal")
     assert "no robot 'hal', expected one of: powercube, b21, agilo" in done.stderr
+
+
+def test_it_is_an_environment_of_gymnasium_without_any_model(site):
+    code = (
+        "import gymnasium; from gymnasium.utils.env_checker import check_env; import tailor.tools.gym\n"
+        "env = gymnasium.make('tailor-action/courier-v0'); check_env(env.unwrapped, skip_render_check=True)\n"
+        "print('tailor/courier-v0' in gymnasium.registry)"
+    )
+    done = run_with(site, "-c", code)
+    assert (done.returncode, done.stdout) == (0, "True\n"), done.stderr

@@ -6,7 +6,6 @@ Core, driver and guard are the same as in a live run over the bus.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -14,22 +13,16 @@ from tailor.executive.core.context import PERIOD_NS, Context
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.interfaces.domain import Domain
 from tailor.executive.replay import RecordedTick
-from tailor.schemas.messages import ActionFinished, ArmRequest, ExecStatus, Message, Sample, Subgoals
-from tailor.schemas.topics import TOPICS, key_of
-from tailor.simnodes.body import Body, Reading
-from tailor.simnodes.driver import Driver
-from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals
+from tailor.simnodes.body import Body
 from tailor.simnodes.world import Event, World
+from tailor.tools.lockstep.driver_link import DriverLink, Transport
 
 CHECKS_PER_TICK = 300  # about what an idle machine grants in 60 ms
 SENDER = "00" * 16
-DRIVER = "d1" * 16  # sender of the driver's messages
-EPOCH = 1
 
 TickObserver = Callable[[RecordedTick, tuple[Output, ...]], None]  # receives inputs and outputs of each tick
-Transport = Callable[[Message], Message]  # returns a reading as the core receives it
 
 
 @dataclass(slots=True)
@@ -83,9 +76,9 @@ def run_lockstep(
     Returns:
       Result, actions, subgoals, ground truth and all messages of the run.
     """
-    link = _Link(context.domain, World(body, start, seed, events), transport)
+    link = DriverLink(context.domain, World(body, start, seed, events), SENDER, transport)
     run, state = Run(), initial_state(context)
-    goal, samples = context.problem.goal_text, link.advance(0, run)
+    goal, samples = context.problem.goal_text, _advance(link, 0, run)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
         inputs, budget = Inputs(samples, goal), CheckBudget(checks)
@@ -98,53 +91,15 @@ def run_lockstep(
             run.result = state.task.result_text
             break
         link.send(outputs, now_ns, tick)
-        samples = link.advance(now_ns, run)
+        samples = _advance(link, now_ns, run)
     return run
 
 
-class _Link:
-    """Replaces the bus: carries commands to the driver and readings back, without delay or loss."""
-
-    def __init__(self, domain: Domain, world: World, transport: Transport | None) -> None:
-        self._robot, self._sensors, self._world, self._transport = domain.robot, domain.sensors, world, transport
-        self._spec = shipped_driver_spec(domain.robot)
-        self._driver = Driver(self._spec, EPOCH, leave=SENDER)
-        self._sequences: Counter[str] = Counter()  # by topic, as publishers count
-
-    def send(self, outputs: Sequence[Output], now_ns: int, tick: int) -> None:
-        """Pass the tick's commands and requests to the driver."""
-        received = (*self._spec.command_topics, "self_arm")
-        samples = [
-            Sample(key_of(o.topic, self._robot), o.message, now_ns, tick, SENDER)
-            for o in outputs
-            if o.topic in received
-        ]
-        self._driver.take(samples, {}, now_ns)
-        if any(not isinstance(sample.message, ArmRequest) for sample in samples):
-            self._world.begin()
-
-    def advance(self, now_ns: int, run: Run) -> tuple[Sample, ...]:
-        """Advance the world by one period; return the newest reading of each topic and the driver's state."""
-        self._world.body.command(self._driver.guard.output(now_ns))
-        newest: dict[str, Reading] = {}
-        for reading in self._world.advance(PERIOD_NS):
-            newest[reading.topic] = reading
-            self._sequences[reading.topic] += 1
-        for topic in [topic for topic in newest if TOPICS[topic].source == "simulator"]:
-            truth = newest.pop(topic).message
-            run.truth.append(truth)
-            run.messages.append(truth)
-        samples = [self._sample(r.topic, r.message, r.time_ns) for r in newest.values() if r.topic in self._sensors]
-        after_ns = now_ns + PERIOD_NS
-        driver = self._driver.state(after_ns, after_ns)
-        if driver is not None:
-            self._sequences["driver"] += 1
-            samples.append(self._sample("driver", driver, after_ns))
-        return tuple(sorted(samples, key=lambda sample: sample.arrival_ns))
-
-    def _sample(self, topic: str, message: Message, arrival_ns: int) -> Sample:
-        received = message if self._transport is None else self._transport(message)
-        return Sample(key_of(topic, self._robot), received, arrival_ns, self._sequences[topic], DRIVER)
+def _advance(link: DriverLink, now_ns: int, run: Run) -> tuple[Sample, ...]:
+    samples, truth = link.advance(now_ns)
+    run.truth.extend(truth)
+    run.messages.extend(truth)
+    return samples
 
 
 def _add(run: Run, state: State, outputs: tuple[Output, ...], now_s: float) -> None:
