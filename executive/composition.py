@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
 
+ModelLoader = Callable[[str, str], Models]  # of a robot, from a folder; empty: the shipped one
 PLACE_UNIT = "m"
 
 
@@ -36,20 +37,23 @@ class ExecutiveConfig:
     zoo: str = ""
 
 
-def build_context(config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0) -> Context:
+def build_context(
+    config: ExecutiveConfig, sender: str, stamp_offset_ns: int = 0, load: ModelLoader | None = None
+) -> Context:
     """Build the context of a configuration.
 
     Args:
       config: Names and settings.
       sender: Sender id of this executive, 32 hex digits.
       stamp_offset_ns: Added to the monotonic time for the stamps of messages.
+      load: Loads the models; None: `load_models`.
 
     Raises:
       UsageError: Unknown domain or scenario, a PDDL error, a missing or altered model.
     """
     domain = domains.load(config.domain)
     scenario, _ = domains.seeded_scenario(config.domain, config.scenario, config.settings.seed)
-    models = load_models(domain.robot, config.zoo)
+    models = (load or load_models)(domain.robot, config.zoo)
     return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns)
 
 
@@ -91,15 +95,19 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
     }
 
 
-def rebuild_context(recorded: Mapping[str, Any]) -> Context:
+def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None) -> Context:
     """Build the context that a recording's provenance describes.
+
+    Args:
+      recorded: The provenance.
+      load: Loads the models; None: `load_models`.
 
     Raises:
       UsageError: The provenance is incomplete, or a model here differs from the recorded one.
     """
     _check(recorded)
     config = from_table(ExecutiveConfig, recorded["config"], "recording's provenance")
-    context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"])
+    context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"], load)
     context = dataclasses.replace(context, driver_sender=str(recorded.get("driver_sender", "")))  # newer than others
     here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():

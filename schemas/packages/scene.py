@@ -125,8 +125,14 @@ def pose_of(placed: Shape | FrameTransform) -> Pose3:
 
 def on_map(frames: Iterable[FrameTransform]) -> dict[str, Pose3]:
     """Pose of every frame in "map"; a frame whose parent does not come before it is left out."""
-    known = {MAP: Pose3()}
+    return frames_below(frames, MAP)
+
+
+def frames_below(frames: Iterable[FrameTransform], root: str) -> dict[str, Pose3]:
+    """Pose in the frame `root` of it and of every frame that descends from it; parents come first."""
+    known = {root: UPRIGHT}
     for each in frames:
         if each.parent in known:
-            known[each.child] = known[each.parent].then(pose_of(each))
+            parent = known[each.parent]
+            known[each.child] = pose_of(each) if parent is UPRIGHT else parent.then(pose_of(each))
     return known

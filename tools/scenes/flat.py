@@ -3,18 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import attrgetter
+from typing import NamedTuple
 
-from tailor.schemas.messages.scenes import ARROW, BOX, CYLINDER, LINE, SPHERE, TEXT, FrameTransform, Shape
+from tailor.schemas.messages.scenes import ARROW, BOX, CYLINDER, LINE, SPHERE, TEXT, Shape
 from tailor.schemas.packages.pose3 import Pose3, Vector
-from tailor.schemas.packages.scene import MAP, Scene, on_map, pose_of
+from tailor.schemas.packages.scene import MAP, Scene, frames_below, on_map, pose_of
 
 Point = tuple[float, float]
 
 RING = 24  # corners of a circle
 DIGITS = 9  # of metres and of quaternions
+
+
+class Looks(NamedTuple):
+    """A shape without its name and pose."""
+
+    kind: int
+    frame: str
+    length: float
+    width: float
+    height: float
+    red: float
+    green: float
+    blue: float
+    alpha: float
+    text: str
+    points: tuple[float, ...]
+
+
+_looks_of = attrgetter(*Looks._fields)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,20 +78,16 @@ def flat(scene: Scene, seen_from: str) -> FlatScene | None:
     above = seen_from != "behind"
     places: dict[str, tuple[float, float, float]] = {}
     outlines: dict[str, Outline] = {}
-    carried = {scene.tracer, *_descendants(scene.frames, scene.tracer)} if above else set()
+    carried = frames_below(scene.frames, scene.tracer) if above else {}
     for shape in scene.shapes:
-        if shape.frame not in frames:
-            continue
-        world = frames[shape.frame].then(pose_of(shape))
         if shape.frame in carried:
-            outlines[shape.name] = _outline(shape, _rounded(tracer.inverse().then(world)), seen_from, on_robot=True)
-            continue
-        x, y = projected((world.x, world.y, world.z), seen_from)
-        yaw = world.yaw if above else 0.0
-        back = Pose3(0.0, 0.0, 0.0, 0.0, 0.0, -math.sin(yaw / 2), math.cos(yaw / 2))
-        turn = back.then(Pose3(0.0, 0.0, 0.0, world.qx, world.qy, world.qz, world.qw))
-        places[shape.name] = (x, y, yaw)
-        outlines[shape.name] = _outline(shape, _rounded(turn), seen_from)
+            outlines[shape.name] = _carried(shape, carried[shape.frame], seen_from)
+        elif shape.frame in frames:
+            world = pose_of(shape) if shape.frame == MAP else frames[shape.frame].then(pose_of(shape))
+            x, y = projected((world.x, world.y, world.z), seen_from)
+            yaw, turn = _orientation((world.qx, world.qy, world.qz, world.qw), above)
+            places[shape.name] = (x, y, yaw)
+            outlines[shape.name] = _outline(Looks(*_looks_of(shape)), turn, seen_from)
     x, y = projected((tracer.x, tracer.y, tracer.z), seen_from)
     return FlatScene(x, y, tracer.yaw if above else None, scene.speed_mps, places, outlines)
 
@@ -80,22 +97,31 @@ def projected(point: Vector, seen_from: str) -> Point:
     return (-point[1], point[2]) if seen_from == "behind" else (point[0], point[1])
 
 
-def _descendants(frames: Iterable[FrameTransform], root: str) -> Iterator[str]:
-    known = {root}
-    for each in frames:  # parents come first
-        if each.parent in known:
-            known.add(each.child)
-            yield each.child
-
-
 def _rounded(pose: Pose3) -> Pose3:
     """Without the noise of rounding, by which a shape at rest would differ from sample to sample."""
     values = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
     return Pose3(*(round(value, DIGITS) for value in values))
 
 
-@lru_cache(maxsize=1024)  # the same few shapes in each of an hour's samples
-def _outline(shape: Shape, pose: Pose3, seen_from: str, on_robot: bool = False) -> Outline:
+# An hour's samples have the same few shapes, and things turn less often than they move: what does not depend on a
+# place is kept.
+@lru_cache(maxsize=1024)
+def _carried(shape: Shape, frame: Pose3, seen_from: str) -> Outline:
+    """Outline of a part of the robot; `frame` is relative to the robot."""
+    return _outline(Looks(*_looks_of(shape)), _rounded(frame.then(pose_of(shape))), seen_from, on_robot=True)
+
+
+@lru_cache(maxsize=1024)
+def _orientation(quaternion: tuple[float, float, float, float], above: bool) -> tuple[float, Pose3]:
+    """Heading on the plane, rad, and the rest of the turn."""
+    whole = Pose3(0.0, 0.0, 0.0, *quaternion)
+    yaw = whole.yaw if above else 0.0
+    back = Pose3(0.0, 0.0, 0.0, 0.0, 0.0, -math.sin(yaw / 2), math.cos(yaw / 2))
+    return yaw, _rounded(back.then(whole))
+
+
+@lru_cache(maxsize=1024)
+def _outline(shape: Looks, pose: Pose3, seen_from: str, on_robot: bool = False) -> Outline:
     points = [projected(pose.moved(point), seen_from) for point in _corners(shape)]
     if shape.kind == SPHERE:  # round from every side
         (x, y), radius = projected((pose.x, pose.y, pose.z), seen_from), shape.length / 2
@@ -114,7 +140,7 @@ def _outline(shape: Shape, pose: Pose3, seen_from: str, on_robot: bool = False) 
     )
 
 
-def _corners(shape: Shape) -> list[Vector]:
+def _corners(shape: Looks) -> list[Vector]:
     """Points of a shape, relative to its pose, whose projections bound it; in order along a line or an arrow."""
     x, y, z = shape.length / 2, shape.width / 2, shape.height / 2
     if shape.kind == BOX:

@@ -11,12 +11,11 @@ from contextlib import contextmanager
 from queue import Empty, Full, Queue
 from threading import Lock
 
-from tailor.tools.viewer.timeline import Event
+from tailor.tools.viewer.timeline import Event, is_sample
 
 KEEP_S = 600.0  # of samples; all other events are kept from the start
 MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
 OUTLINE = "outline "  # starts the kinds of outlines, which a moving arm sends as often as samples; the newest is kept
-SAMPLED = {"tick", "belief", "truth", "believed", "seen", "odom"}
 
 
 class Subscription:
@@ -98,7 +97,7 @@ class EventBroadcast:
             return
         oldest = now_s - self._keep_s
         newest = {e.kind: e for e in self._events if e.kind.startswith(OUTLINE)}
-        self._events = [e for e in self._events if e.at_s >= oldest or not _is_sample(e) or e is newest.get(e.kind)]
+        self._events = [e for e in self._events if e.at_s >= oldest or not _passes(e) or e is newest.get(e.kind)]
 
 
 def encoded(events: Sequence[Event]) -> str:
@@ -106,5 +105,5 @@ def encoded(events: Sequence[Event]) -> str:
     return json.dumps([event.json_value() for event in events], allow_nan=False, separators=(",", ":"))
 
 
-def _is_sample(event: Event) -> bool:
-    return event.kind in SAMPLED or event.kind.startswith(("series ", OUTLINE))
+def _passes(event: Event) -> bool:
+    return is_sample(event.kind) or event.kind.startswith(OUTLINE)

@@ -87,6 +87,15 @@ def refinement(message: m.RefinementReport) -> Fields:
     }
 
 
+def belief(message: m.ExecStatus) -> Fields:
+    """Values of the belief, and how long the action runs."""
+    return {
+        "elapsed": number(message.action_elapsed_s),
+        "predicted": number(message.action_predicted_s),
+        "values": [number(value) for value in message.belief],
+    }
+
+
 def finished(message: m.ActionFinished) -> Fields:
     """Outcome of an action."""
     return {

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from tailor.executive.composition import rebuild_context
+from tailor.executive.composition import ModelLoader, load_models, rebuild_context
 from tailor.executive.core.context import Context
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
@@ -26,9 +27,11 @@ class Explainer:
       missing: Why there are no explanations; empty if there are.
     """
 
-    def __init__(self, build_context: Callable[[Mapping[str, Any]], Context] = rebuild_context) -> None:
-        """`build_context` makes a context from a provenance, or raises UsageError."""
-        self._build_context = build_context
+    def __init__(self, build_context: Callable[[Mapping[str, Any]], Context] | None = None) -> None:
+        """`build_context` makes a context from a provenance, or raises UsageError; None: from the installed models."""
+        self._build_context = build_context or self._rebuild
+        self._hashes: Any = None  # of the loaded models
+        self._load: ModelLoader = load_models
         self._context: Context | None = None
         self._objects: Contexts | None = None  # the newest
         self.missing = "no provenance yet"
@@ -44,6 +47,12 @@ class Explainer:
         except (UsageError, KeyError, ValueError) as error:
             self._context = None
             self.missing = str(error)
+
+    def _rebuild(self, provenance: Mapping[str, Any]) -> Context:
+        """The context; models are loaded once, until a provenance names others."""
+        if provenance.get("models") != self._hashes:
+            self._hashes, self._load = provenance.get("models"), cache(load_models)
+        return rebuild_context(provenance, self._load)
 
     def note(self, objects: Contexts) -> None:
         """Keep the objects of the subgoals that have the same tick."""

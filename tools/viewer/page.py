@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from importlib import resources
 from typing import Any
 
+from tailor.tools.viewer.columns import packed
 from tailor.tools.viewer.timeline import Event
 
 STYLES = ("page.css", "controls.css", "drawing.css", "sidebyside.css")
@@ -16,6 +17,7 @@ STYLES = ("page.css", "controls.css", "drawing.css", "sidebyside.css")
 SCRIPTS = (
     "elements.js",
     "scales.js",
+    "columns.js",
     "run.js",
     "places.js",
     "subgoals.js",
@@ -46,8 +48,15 @@ def page(title: str, events: Iterable[Event], live: bool = False, stop_token: st
       stop_token: Of the server's stop button; empty: the page has no button.
       framed: Whether the page is a frame of another one, which has the player.
     """
-    rows = [event.json_value() for event in events]
-    data = {"title": title, "live": live, "stop": stop_token, "framed": framed, "rows": rows}
+    rows, samples = packed(events)
+    data = {
+        "title": title,
+        "live": live,
+        "stop": stop_token,
+        "framed": framed,
+        "rows": rows,
+        "samples": samples,
+    }
     return assembled("page.html", STYLES, SCRIPTS, {"TITLE": html.escape(title)}, data)
 
 
@@ -63,7 +72,7 @@ def assembled(
       texts: Text, as HTML, for other places by name.
       data: What the scripts read.
     """
-    embedded = json.dumps(data, allow_nan=False)
+    embedded = json.dumps(data, allow_nan=False, separators=(",", ":"))
     parts = {
         **texts,
         "STYLE": "\n".join(map(_asset, styles)),

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from tailor.runtime.recordings.recording import open_recording
+from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import Message
+from tailor.schemas.messages import Message, Odometry, PoseEstimate
+from tailor.schemas.typesystem import ros_type, type_of
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 EXECUTIVE = "exec/"
+BETTER = ("truth", "believed")  # sources of the robot's pose; with one of them the page draws no other
+SENSED = (Odometry, PoseEstimate)  # the others: most of a recording's messages, and the slowest to decode
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,28 +27,39 @@ class Timed:
     message: Message
 
 
-def timed(path: Path, sender: str = "") -> Iterator[Timed]:
+def timed(path: Path, sender: str = "", without: Collection[type] = ()) -> Iterator[Timed]:
     """Messages of a recording in the order of their reception, without damaged ones.
 
     Args:
       path: MCAP file.
       sender: Skip executives whose id does not begin with this.
+      without: Skip messages of these types, without decoding them.
 
     Raises:
       UsageError: The file is no recording, or has no readable message.
     """
     began_ns: int | None = None
-    for recorded, message in open_recording(path).decoded():
-        if isinstance(message, Rejected) or (
-            recorded.key.startswith(EXECUTIVE) and not recorded.sender.startswith(sender)
-        ):
+    skipped = {ros_type(kind) for kind in without}
+    for recorded in open_recording(path).messages():
+        kind = type_of(recorded.ros_type)
+        if kind is None or (recorded.key.startswith(EXECUTIVE) and not recorded.sender.startswith(sender)):
+            continue
+        message = None if recorded.ros_type in skipped else decode(kind, recorded.data)
+        if isinstance(message, Rejected):
             continue
         began_ns = recorded.log_ns if began_ns is None else began_ns
-        yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
+        if message is not None:
+            yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
     if began_ns is None:
         raise UsageError(f"{path}: no readable message, expected a recording of a run")
 
 
 def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:
-    """All events of a recording."""
-    return [event for t in timed(path, sender) for event in timeline.events_of(max(0.0, t.at_s), t.key, t.message)]
+    """All events of a recording that the page shows, on a time axis that starts with the first message."""
+    trial = RunTimeline(robot=timeline.robot)
+    better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
+    return [event for t in timed(path, sender, SENSED if better else ()) for event in _events_of(t, timeline)]
+
+
+def _events_of(t: Timed, timeline: RunTimeline) -> list[Event]:
+    return timeline.events_of(max(0.0, t.at_s), t.key, t.message)

@@ -12,7 +12,7 @@ from tailor.schemas import messages as m
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
-from tailor.tools.scenes.flat import flat, projected
+from tailor.tools.scenes.flat import Outline, flat, projected
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, planar_pose
 from tailor.tools.viewer import event_fields
 from tailor.tools.viewer.event_fields import Fields
@@ -23,6 +23,7 @@ from tailor.tools.viewer.run_facts import run_facts
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
 NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms, m.LogLine)
+SAMPLES = frozenset({"tick", "belief", "truth", "believed", "seen", "odom"})
 
 Rows = list[tuple[str, Fields]]  # kind and fields of events
 
@@ -40,20 +41,29 @@ class Event:
         return [round(self.at_s, 3), self.kind, self.fields]
 
 
+def is_sample(kind: str) -> bool:
+    """Whether events of a kind are numbers that arrive all the time, many a second."""
+    return kind in SAMPLES or kind.startswith("series ")
+
+
 class RunTimeline:
     """Converts messages, in order, into events.
 
     Args:
       explainer: Computes the alternatives of subgoals from the action models; None: they are not shown.
       robot: The only robot to show; empty: the one that the executive names, and any until then.
+
+    Attributes:
+      robot: The same, as known so far.
     """
 
     def __init__(self, explainer: Explainer | None = None, robot: str = "") -> None:
-        self._robot = robot
+        self.robot = robot
         self._explainer = explainer
         self._scenes = RobotScenes()
         self._action = (-1, "")
         self._last: dict[str, Any] = {}  # by kind: last fields of states
+        self._outlines: dict[str, Outline] = {}  # by kind: the last ones
         self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
 
     def events_of(self, at_s: float, key: str, message: m.Message) -> list[Event]:
@@ -65,7 +75,7 @@ class RunTimeline:
           message: Its value.
         """
         owner, _, topic = key.partition("/")
-        if topic and self._robot and owner not in ("exec", self._robot):
+        if topic and self.robot and owner not in ("exec", self.robot):
             return []
         return [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
 
@@ -105,7 +115,8 @@ class RunTimeline:
             self._scenes = RobotScenes(spec_of_robot(robot).name)
         if topic in TRUTH_KEYS and (scene := self._scenes.of_truth(message)):
             return self._path(at_s, "truth", scene)
-        return self._sampled(at_s, f"series {key.rpartition('/')[2]}", event_fields.numbers(message))
+        kind = f"series {key.rpartition('/')[2]}"
+        return self._sampled(at_s, kind, event_fields.numbers(message)) if self._due(at_s, kind) else []
 
     def _provenance(self, message: m.Provenance) -> Rows:
         if self._last.get("provenance") == message.json:
@@ -113,7 +124,7 @@ class RunTimeline:
         self._last["provenance"] = message.json
         facts = run_facts(message.json)
         self._scenes = RobotScenes(facts.get("domain", ""))
-        self._robot = self._robot or facts.get("robot", "")
+        self.robot = self.robot or facts.get("robot", "")
         if self._explainer is not None:
             self._explainer.load(message.json)
         return [("about", facts)]
@@ -132,12 +143,8 @@ class RunTimeline:
         if self._last.get("action") != action:
             self._last["action"] = action
             rows.append(("action", {"index": action[0], "action": action[1]}))
-        belief = {
-            "elapsed": event_fields.number(message.action_elapsed_s),
-            "predicted": event_fields.number(message.action_predicted_s),
-            "values": [event_fields.number(value) for value in message.belief],
-        }
-        rows += self._sampled(at_s, "belief", belief)
+        if self._due(at_s, "belief"):
+            rows += self._sampled(at_s, "belief", event_fields.belief(message))
         return rows + self._path(at_s, "believed", self._scenes.of_belief(message.belief))
 
     def _path(self, at_s: float, source: str, scene: Scene | None) -> Rows:
@@ -149,7 +156,13 @@ class RunTimeline:
         if not rows:
             return []
         outlines = ((f"outline {source} {name}", each) for name, each in shown.outlines.items())
-        return [row for kind, each in outlines for row in self._changed(kind, event_fields.outline(each))] + rows
+        return [row for kind, each in outlines for row in self._outline(kind, each)] + rows
+
+    def _outline(self, kind: str, outline: Outline) -> Rows:
+        if self._outlines.get(kind) is outline:
+            return []
+        self._outlines[kind] = outline
+        return self._changed(kind, event_fields.outline(outline))
 
     def _objects(self, message: m.Contexts) -> Rows:
         """Nothing to show yet: the objects belong to the subgoals that follow in the same tick."""

@@ -49,15 +49,16 @@ function actionLane(run, x, top) {
 function eventLane(run, x, top) {
   const y = top + 8;
   const mark = (row, shape, words) =>
-    x.shows(row.at) ? svg("g", {}, svg("title", { text: `${row.at.toFixed(1)} s: ${words}` }), shape(x(row.at))) : null;
+    svg("g", {}, svg("title", { text: `${row.at.toFixed(1)} s: ${words}` }), shape(x(row.at)));
   const diamond = (px) => svg("path", { d: `M${px} ${y - 4}l4 4l-4 4l-4 -4z`, style: "fill:var(--good)" });
   const square = (px) => svg("rect", { x: px - 3.2, y: y - 3.2, width: 6.4, height: 6.4, style: "fill:var(--a0)" });
   const post = (px) => svg("line", { class: "event", x1: px, x2: px, y1: y - 6, y2: y + 6 });
+  const shown = (kind) => onePerPixel(run.all(kind), x);
   return [
-    ...run.all("state").map((row) => mark(row, post, [row.mode, row.reason, row.result].filter(Boolean).join(" · "))),
-    ...run.all("plan").map((row) => mark(row, square, `plan ${row.status} (${row.way})`)),
-    ...run.all("subgoals").map((row) => mark(row, diamond, "subgoals chosen")),
-  ].filter(Boolean);
+    ...shown("state").map((row) => mark(row, post, [row.mode, row.reason, row.result].filter(Boolean).join(" · "))),
+    ...shown("plan").map((row) => mark(row, square, `plan ${row.status} (${row.way})`)),
+    ...shown("subgoals").map((row) => mark(row, diamond, "subgoals chosen")),
+  ];
 }
 
 /** Curves with an axis: [{points: [[at, value]], kind}]. */
@@ -70,7 +71,7 @@ function curveLane(x, top, height, lines, [low, high], unit) {
   const curves = lines.map((line) =>
     svg("path", {
       class: line.kind,
-      d: through(line.points.filter((p) => x.shows(p[0])).map((p) => (p[1] === null ? null : [x(p[0]), y(p[1])]))),
+      d: through(outermost(line.points, x).map((p) => (p[1] === null ? null : [x(p[0]), y(p[1])]))),
     }),
   );
   return [...labels, svg("text", { x: x.high + 6, y: top + 14, text: unit }), ...curves];
@@ -79,7 +80,7 @@ function curveLane(x, top, height, lines, [low, high], unit) {
 /** Ticks: control (full) and the whole of the work (pale) in ms, the largest of each pixel; lateness above 1 ms; limits. */
 function tickLane(run, x, top, height, times) {
   const rows = run.all("tick").filter((row) => x.shows(row.at));
-  const high = Math.max(times.period * 1.05, ...rows.map((row) => Math.min(row.work, 2 * times.period)));
+  const high = rows.reduce((most, row) => Math.max(most, Math.min(row.work, 2 * times.period)), times.period * 1.05);
   const y = scale(0, high, top + height - 4, top + 6);
   const column = (value) =>
     columns(rows, x, value)
@@ -94,14 +95,17 @@ function tickLane(run, x, top, height, times) {
     svg("text", { x: x.high + 6, y: y(v) + 4, text: words }),
     svg("text", { x: x.low - 6, y: y(v) + 4, "text-anchor": "end", text: String(v) }),
   ]);
-  const late = rows
-    .filter((row) => row.late > 1)
-    .map((row) => svg("circle", { class: "late", cx: x(row.at), cy: y(Math.min(row.late, high)), r: 1.8 }));
-  const missed = rows
-    .filter((row) => row.skipped > 0)
-    .map((row) =>
-      svg("rect", { class: "late", x: x(row.at) - 1.5, y: top + 2, width: 3, height: height - 6, opacity: 0.35 }),
-    );
+  const late = onePerPixel(
+    rows.filter((row) => row.late > 1),
+    x,
+    (row) => row.late,
+  ).map((row) => svg("circle", { class: "late", cx: x(row.at), cy: y(Math.min(row.late, high)), r: 1.8 }));
+  const missed = onePerPixel(
+    rows.filter((row) => row.skipped > 0),
+    x,
+  ).map((row) =>
+    svg("rect", { class: "late", x: x(row.at) - 1.5, y: top + 2, width: 3, height: height - 6, opacity: 0.35 }),
+  );
   return [
     ...missed,
     svg("path", { style: `stroke:var(--a0);opacity:.4;stroke-width:${width}`, d: column((row) => row.work) }),

@@ -4,6 +4,7 @@ const given = JSON.parse(document.getElementById("data").textContent);
 const root = document.documentElement;
 const run = new Run();
 given.rows.forEach((row) => run.add(row));
+given.samples.forEach((block) => run.addSamples(block));
 
 const player = new Player(run, given.live);
 const timeline = new Timeline(run, panel("timeline"), player);

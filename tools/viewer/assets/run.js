@@ -21,21 +21,23 @@ class Run {
     this.version += 1;
   }
 
+  /** Add a block of samples. */
+  addSamples(block) {
+    const samples = unpacked(block);
+    if (!this.kinds.has(block.kind)) this.kinds.set(block.kind, []);
+    const rows = this.kinds.get(block.kind);
+    for (const row of samples) rows.push(row);
+    this.end = Math.max(this.end, rows[rows.length - 1].at);
+    this.version += samples.length;
+  }
+
   all(kind) {
     return this.kinds.get(kind) ?? [];
   }
 
   /** Number of events of a kind up to a time, inclusive. */
   count(kind, at) {
-    const rows = this.all(kind);
-    let low = 0;
-    let high = rows.length;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (rows[middle].at <= at) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    return countUpTo(this.all(kind), at, (row) => row.at);
   }
 
   /** The newest event of a kind at a time, or null. */
@@ -70,9 +72,7 @@ class Run {
     started.forEach((row, position) => {
       if (row.index < 0) return;
       const next = started[position + 1]?.at ?? Infinity;
-      const ended =
-        this.all("finished").find((end) => end.index === row.index && end.at >= row.at - 0.3 && end.at <= next + 0.3) ??
-        null;
+      const ended = this.between("finished", row.at - 0.3, next + 0.3).find((end) => end.index === row.index) ?? null;
       const first = this.all("belief")[this.count("belief", row.at - 1e-9)];
       const begin = first ? first.at - first.elapsed : row.at;
       const until = ended ? begin + ended.actual : Math.min(next, this.end);
@@ -92,10 +92,13 @@ class Run {
 
   /** Starts of the episodes: the start of the run, and each restart of the action count. */
   episodes() {
+    if (this.episodesOf === this.version) return this.starts;
     const starts = [this.start];
     this.actions().forEach((action, i, all) => {
       if (i > 0 && action.index <= all[i - 1].index) starts.push(action.begin);
     });
+    this.episodesOf = this.version;
+    this.starts = starts;
     return starts;
   }
 

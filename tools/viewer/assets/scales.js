@@ -43,3 +43,40 @@ function quantile(values, share) {
   const sorted = [...values].sort((a, b) => a - b);
   return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 }
+
+/** Of the shown events [{at}] that fall on one pixel, the one with the largest value: the eye cannot tell them apart. */
+function onePerPixel(rows, x, value = () => 0) {
+  const kept = new Map();
+  for (const row of rows) {
+    if (!x.shows(row.at)) continue;
+    const px = Math.round(x(row.at));
+    const other = kept.get(px);
+    if (!other || value(row) > value(other)) kept.set(px, row);
+  }
+  return [...kept.values()];
+}
+
+/** Of the shown points [at, value], at most four of each pixel: first, lowest, highest and last, so that no peak is lost. */
+function outermost(points, x) {
+  const kept = [];
+  let px = null;
+  let pixel = [];
+  const close = () => {
+    if (pixel.length <= 4) kept.push(...pixel);
+    else {
+      const by = (better) => pixel.reduce((a, b) => (b[1] !== null && (a[1] === null || better(b[1], a[1])) ? b : a));
+      const outer = new Set([pixel[0], by((b, a) => b < a), by((b, a) => b > a), pixel[pixel.length - 1]]);
+      kept.push(...pixel.filter((point) => outer.has(point)));
+    }
+    pixel = [];
+  };
+  for (const point of points) {
+    if (!x.shows(point[0])) continue;
+    const here = Math.round(x(point[0]));
+    if (here !== px) close();
+    px = here;
+    pixel.push(point);
+  }
+  close();
+  return kept;
+}

@@ -95,7 +95,7 @@ function plotGrid(plots) {
 function timePlot(line, [from, to]) {
   const seen = line.points.filter(([at, value]) => at >= from && at <= to && value !== null);
   const [low, high] = extent([...seen.map((p) => p[1]), ...line.goals.map((g) => g[1])], 0.1);
-  const x = scale(from, to, PLOT.left, PLOT.width - PLOT.right);
+  const x = Object.assign(scale(from, to, PLOT.left, PLOT.width - PLOT.right), { shows: () => true });
   const y = scale(low, high, PLOT.height - PLOT.bottom, PLOT.top);
   const cursor = svg("line", { class: "cursor", y1: PLOT.top, y2: PLOT.height - PLOT.bottom });
   const now = svg("text", { class: "ink", x: PLOT.width - PLOT.right, y: 10, "text-anchor": "end" });
@@ -106,7 +106,7 @@ function timePlot(line, [from, to]) {
       svg("line", { class: "grid", x1: PLOT.left, x2: PLOT.width - PLOT.right, y1: y(v), y2: y(v) }),
       svg("text", { x: PLOT.left - 4, y: y(v) + 3.5, "text-anchor": "end", text: String(v) }),
     ]),
-    svg("path", { class: "trace c0", d: through(seen.map(([at, value]) => [x(at), y(value)])) }),
+    svg("path", { class: "trace c0", d: through(outermost(seen, x).map(([at, value]) => [x(at), y(value)])) }),
     ...line.goals
       .filter(([at]) => at >= from && at <= to)
       .map(([at, value, bound]) => svg("circle", { class: bound ? "dot" : "dot lone", cx: x(at), cy: y(value), r: 3 })),
@@ -118,7 +118,7 @@ function timePlot(line, [from, to]) {
     const px = x(Math.min(to, Math.max(from, at)));
     cursor.setAttribute("x1", px);
     cursor.setAttribute("x2", px);
-    const last = seen.filter((p) => p[0] <= at).pop();
+    const last = seen[countUpTo(seen, at, (p) => p[0]) - 1];
     now.textContent = last ? last[1].toFixed(3) : "";
   };
   return { element, move };

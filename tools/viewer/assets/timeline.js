@@ -122,7 +122,7 @@ class Timeline {
     const [work, late] = [rows.map((row) => row.work), rows.map((row) => row.late)];
     const missed = rows.reduce((sum, row) => sum + row.skipped, 0);
     const ms = (value) => `${value.toFixed(value < 10 ? 1 : 0)} ms`;
-    return `${rows.length} ticks · work p50 ${ms(quantile(work, 0.5))}, p99 ${ms(quantile(work, 0.99))} · late p99 ${ms(quantile(late, 0.99))}, max ${ms(Math.max(...late))} · ${missed} missed`;
+    return `${rows.length} ticks · work p50 ${ms(quantile(work, 0.5))}, p99 ${ms(quantile(work, 0.99))} · late p99 ${ms(quantile(late, 0.99))}, max ${ms(quantile(late, 1))} · ${missed} missed`;
   }
 
   listen(drawing) {

@@ -82,7 +82,7 @@ def test_the_page_that_is_served_holds_the_token_and_a_recorded_one_no_button(li
     data = json.loads(re.search(r'id="data">(.*?)</script>', content.decode()).group(1))
     assert (data["stop"], data["live"]) == (token, True)
     assert len(token) >= 43, "256 bits"
-    assert '"stop": ""' in page("recorded", [])
+    assert '"stop":""' in page("recorded", [])
 
 
 @pytest.mark.promise("P45")

@@ -41,18 +41,19 @@ def run(command, *words) -> int:
     return command.run(parser.parse_args([str(word) for word in words]))
 
 
-def events_in(html: Path) -> list:
-    return json.loads(re.search(r'id="data">(.*?)</script>', html.read_text(), re.DOTALL)[1])["rows"]
+def data_in(html: Path) -> dict:
+    return json.loads(re.search(r'id="data">(.*?)</script>', html.read_text(), re.DOTALL)[1])
 
 
 def test_view_writes_the_whole_run_into_one_page(recording, tmp_path, capsys) -> None:
     output = tmp_path / "folder" / "page.html"
     assert run(view, recording, "--output", output, "--no-models") == 0
     assert capsys.readouterr().out.strip() == str(output)
-    events = events_in(output)
+    samples = data_in(output)["samples"]
     published = list(synthetic_run.soccer_run())
-    assert events[-1][0] == pytest.approx(published[-1].time_ns / 1e9)
-    assert sum(kind == "tick" for _, kind, _ in events) == sum("tick" in t.key for t in published)
+    assert max(sum(block["at"]) for block in samples) / 1e3 == pytest.approx(published[-1].time_ns / 1e9)
+    ticks = [block["length"] for block in samples if block["kind"] == "tick"]
+    assert sum(ticks) == sum("tick" in t.key for t in published)
 
 
 def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -> None:
@@ -64,7 +65,7 @@ def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -
 def test_view_shows_only_the_requested_executive(recording, tmp_path, capsys) -> None:
     output = tmp_path / "page.html"
     run(view, recording, "-o", output, "--no-models", "--sender", "cd")
-    kinds = {kind for _, kind, _ in events_in(output)}
+    kinds = {block["kind"] for block in data_in(output)["samples"]}
     assert "tick" not in kinds
     assert "truth" in kinds
     capsys.readouterr()

@@ -34,7 +34,7 @@ def test_strings_of_a_recording_cannot_end_the_data() -> None:
 
 
 def test_a_live_page_says_that_it_is_live() -> None:
-    assert '"live": true' in page("run", [], live=True)
+    assert '"live":true' in page("run", [], live=True)
 
 
 def test_a_page_of_several_runs_fetches_nothing_either() -> None:
