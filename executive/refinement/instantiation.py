@@ -159,5 +159,7 @@ def _narrow(variable: Variable, parameter: Parameter) -> Variable:
             f"{variable.quantity} of {variable.label} is restricted to [{variable.lower:g}, {variable.upper:g}] "
             f"but {parameter.name} has the range [{parameter.lower:g}, {parameter.upper:g}]"
         )
+    if (lower, upper) == (variable.lower, variable.upper) and lower < upper:
+        return variable
     narrowed = replace(variable, lower=lower, upper=upper)
     return narrowed.bound_to(lower) if lower == upper else narrowed

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, And, Atom, Domain, Equal, Formula, Literal, Not
-from tailor.executive.planning.plans.plan import Step
+from tailor.executive.planning.plans.plan import GOAL, Step
 from tailor.executive.planning.plans.state import Binding, Objects, fact_of
 
 
@@ -34,12 +34,18 @@ class Regression:
         self._unmet = 0  # of the needed ones
         self._consistent = True  # False: some step undoes what is needed after it
         self._applies = not objects.problem.timed
-        self._attempt(iter([objects.problem.goal]), {})
+        self.required: dict[int, dict[Literal, None]] = {}  # literals of each step's conditions, and of the goal's
+        self._attempt(GOAL, iter([objects.problem.goal]), {})
 
     @property
     def possible(self) -> bool:
         """Whether a longer suffix may reach the goal."""
         return self._consistent or not self._applies
+
+    @property
+    def exact(self) -> bool:
+        """Whether `reached` proves that the steps, one after another, are possible and reach the goal."""
+        return self._applies
 
     @property
     def reached(self) -> bool:
@@ -57,7 +63,7 @@ class Regression:
             self._applies = False
             return
         self._undo(action, binding)
-        self._attempt((condition.formula for condition in action.conditions), binding)
+        self._attempt(step.id, (condition.formula for condition in action.conditions), binding)
 
     def _undo(self, action: Action, binding: Binding) -> None:
         """Remove what the action makes true; what it makes false can no longer be had."""
@@ -69,11 +75,14 @@ class Regression:
             self._drop(Literal(fact, positive))
             self._consistent &= Literal(fact, not positive) not in self._needed
 
-    def _attempt(self, formulas: Iterator[Formula], binding: Binding) -> None:
+    def _attempt(self, consumer: int, formulas: Iterator[Formula], binding: Binding) -> None:
+        required = self.required.setdefault(consumer, {})
         try:
             for formula in formulas:
                 for literal in conjunction(formula, binding):
                     self._need(literal)
+                    if literal is not None:
+                        required[literal] = None
         except NotClassical:
             self._applies = False
 

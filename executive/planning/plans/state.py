@@ -50,6 +50,9 @@ class Objects:
 
     def bindings(self, variables: tuple[Typed, ...], binding: Binding) -> Iterator[Binding]:
         """All extensions of a binding by objects for the variables."""
+        if not variables:
+            yield binding
+            return
         names = [variable.name for variable in variables]
         for objects in itertools.product(*(self.of(variable) for variable in variables)):
             yield {**binding, **dict(zip(names, objects, strict=True))}

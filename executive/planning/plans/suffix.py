@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.links import linking, orderings_for
-from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.regression import Regression
 from tailor.executive.planning.plans.schedule import closure, scheduling
@@ -57,7 +57,11 @@ def shortest_suffix(plan: Plan, done: Collection[int], domain: Domain, problem: 
         if not needs.reached:
             continue
         bare = _located(_with_steps(plan, left[first:]), problem)
-        if not (yield from validation(bare, domain, objects)):
+        if needs.exact and left == plan.steps[len(plan.steps) - len(left) :]:
+            found = yield from _with_own_links(plan, bare, needs, domain, objects)
+            if found is not None:
+                return found
+        if needs.exact or not (yield from validation(bare, domain, objects)):
             found = yield from _linked(bare, plan.orderings, domain, objects)
             if found is not None:
                 return found
@@ -86,13 +90,38 @@ def relinking(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | None]
     return (yield from _linked(bare, plan.orderings, domain, objects))
 
 
+def _with_own_links(plan: Plan, bare: Plan, needs: Regression, domain: Domain, objects: Objects) -> Work[Plan | None]:
+    """The last steps of a plan with its own links, those from earlier steps from the initial state; None if unsound.
+
+    What protected a link still does, as no step that comes before its producer is left.
+    """
+    kept = {step.id for step in bare.steps}
+    producers = {(link.consumer, link.literal): link.producer for link in plan.links}
+    links: list[Link] = []
+    for consumer in (*(step.id for step in bare.steps), GOAL):
+        for literal in reversed(needs.required[consumer]):
+            producer = producers.get((consumer, literal))
+            if producer is None:
+                return None
+            links.append(Link(producer if producer in kept else 0, literal, consumer))
+        yield
+    return (yield from _scheduled(bare, tuple(links), plan.orderings, domain, objects))
+
+
 def _linked(bare: Plan, old: tuple[tuple[int, int], ...], domain: Domain, objects: Objects) -> Work[Plan | None]:
     """A sound plan with links, the old orderings of its steps and the required ones; None if that is unsound."""
     links = yield from linking(bare, domain, objects)
     required = yield from orderings_for(bare, links, domain, objects)
-    kept = {step.id for step in bare.steps}
-    pairs = [*((i, j) for i, j in old if i in kept and j in kept), *required]
+    return (yield from _scheduled(bare, links, [*old, *required], domain, objects))
+
+
+def _scheduled(
+    bare: Plan, links: tuple[Link, ...], pairs: Iterable[tuple[int, int]], domain: Domain, objects: Objects
+) -> Work[Plan | None]:
+    """The plan with links, and orderings of its steps, which get the levels that these require; None if unsound."""
     steps = bare.steps
+    kept = {step.id for step in steps}
+    pairs = [(i, j) for i, j in pairs if i in kept and j in kept]
     if bare.durative:
         orderings = closure(pairs)
     else:  # all pairs agree with the order of the steps

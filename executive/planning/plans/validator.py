@@ -228,6 +228,8 @@ def _check_interference(changes: list[_Change], state: State, objects: Objects, 
     The conditions of an event must hold after each other event alone, and after all others.
     Source: Fox & Long, PDDL 2.1, JAIR 20 (2003).
     """
+    if len(changes) == 1:
+        return
     for other, more, less in changes:
         others = [change for change in changes if change[0] is not other]
         for event, added, removed in others:

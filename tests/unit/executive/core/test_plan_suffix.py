@@ -6,7 +6,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.planning import Settings, format_excerpt, format_links, parse_plan, shortest_suffix, suffix
+from tailor.executive.planning import (
+    Settings,
+    apply_action,
+    format_excerpt,
+    format_links,
+    parse_plan,
+    shortest_suffix,
+    suffix,
+    validate_every_order,
+)
+from tailor.executive.planning.plans import suffix as plan_suffix
 from tailor.executive.planning.plans.portions import completed_work
 from tests.support.planning_problems import many_cups, own, solve
 
@@ -42,6 +52,21 @@ def test_it_is_the_one_that_trying_all_finds(name, data):
     done = data.draw(st.sets(st.sampled_from([step.id for step in plan.steps]), max_size=4))
     now = problem.with_initial(sorted(facts))
     assert completed_work(shortest_suffix(plan, done, domain, now)) == by_trial(plan, done, domain, now)
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_what_is_left_of_an_executed_plan_keeps_its_links_without_simulation(name, monkeypatch):
+    domain, problem, plan = solved(name)
+    facts = frozenset(problem.initial)
+    for count, step in enumerate(plan.steps, 1):
+        facts = apply_action(domain, problem, facts, step.action)
+        done, now = {step.id for step in plan.steps[:count]}, problem.with_initial(sorted(facts))
+        with monkeypatch.context() as without:
+            if not plan.durative:
+                without.delattr(plan_suffix, "linking")
+            rest = completed_work(shortest_suffix(plan, done, domain, now))
+        assert rest == by_trial(plan, done, domain, now)
+        assert rest.durative or validate_every_order(rest, domain, now) == ""
 
 
 def test_some_of_those_states_have_a_suffix_and_some_have_none():
