@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OLD := import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages goldens models ros2 lint types bench docs clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages test-new-robots goldens models ros2 lint types bench docs clean
 
 setup: .venv/.installed
 
@@ -43,8 +43,11 @@ test-faults: setup  # the promises of SAFETY.md; one test after another, or they
 test-mutants: setup  # hand-made mistakes in safety code, each of which a test must see
 	$(BIN)/python -m tests.mutants.runner
 
-test-packages: setup  # new robots, the tutorial and a foreign package, from the wheel to a verified run: 15 minutes
+test-packages: setup  # new robots, the tutorial and foreign packages, from the wheel to a verified run: 10 minutes
 	$(BIN)/python -m pytest tests/e2e/packages
+
+test-new-robots: setup  # of those a new robot of each kind and one foreign package: 4 minutes
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew

@@ -1,9 +1,10 @@
-"""A session's side of rmw_zenoh, without zenoh: its tokens, received keys as plain ones, requests of the service."""
+"""A session's side of rmw_zenoh, without zenoh: its and others' tokens, received keys as plain ones, requests."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from threading import Lock
 from typing import Any
 
 from tailor.runtime.bus.attachment import Origin, pack, unpack
@@ -11,7 +12,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.service import ServiceRequest
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import Rejected
-from tailor.schemas.ros2.graph import Kind, Named, Node, qos
+from tailor.schemas.ros2.graph import Announced, Kind, Named, Node, parsed_token, qos
 from tailor.schemas.ros2.profiles import BARE, COPY, KeyProfile
 from tailor.schemas.typesystem import ros_type
 
@@ -41,6 +42,28 @@ class Announcer:
             # Best effort: the one quality of service of a subscription that matches every publisher.
             quality = qos(reliable=kind is not Kind.SUBSCRIPTION)
             self._tokens[domain, kind, what] = self._declare(node.token_of(len(self._tokens), kind, what, quality))
+
+
+class GraphView:
+    """What nodes announce at the moment, by the tokens that live; zenoh's thread notes them, any thread reads them."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._tokens: dict[str, Announced] = {}
+
+    def note(self, token: str, lives: bool) -> None:
+        """A token appeared or disappeared; other texts than tokens are left out."""
+        announced = parsed_token(token)
+        with self._lock:
+            if lives and announced is not None:
+                self._tokens[token] = announced
+            else:
+                self._tokens.pop(token, None)
+
+    def announced(self) -> tuple[Announced, ...]:
+        """What is announced now."""
+        with self._lock:
+            return tuple(self._tokens.values())
 
 
 def as_plain(raw: Raw, keys: KeyProfile) -> Raw | None:

@@ -12,12 +12,11 @@ from typing import Any
 import zenoh
 
 from tailor.runtime.bus.attachment import SENDER_BYTES
-from tailor.runtime.bus.graph_view import GraphView
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.ros_wires import Announcer, as_plain, ros_request
+from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
 from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError

@@ -28,6 +28,12 @@ class LaunchConfig:
     deployment_file: str = ""  # passed on to the executive
     require_recording: bool = False  # end when the recording ends or lacks something
     scene: bool = False  # publish markers and transforms for viewers in 3D
+    hardware: str = ""  # FILE.toml or MODULE:CLASS of a real robot; empty: the simulator
+
+    @property
+    def driver(self) -> str:
+        """Name of the process that holds the robot's guard."""
+        return "driver" if self.hardware else "sim"
 
 
 def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
@@ -63,6 +69,14 @@ def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSp
     return ProcessSpec("sim", argv, silence_ns=SIM_SILENCE_NS, arguments=arguments)
 
 
+def hardware_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
+    """The driver of a real robot. It gets no leave, so a person arms it after every start."""
+    argv = tailor("driver", config.hardware, "--connect", config.bus.endpoint)
+    return ProcessSpec(
+        "driver", argv, silence_ns=SIM_SILENCE_NS, arguments=lambda start: senders.arguments("driver", start)
+    )
+
+
 def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The executive."""
     executive = config.executive
@@ -76,5 +90,5 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
         "executive",
         tailor("executive", executive.domain, *flags),
         silence_ns=EXECUTIVE_SILENCE_NS,
-        arguments=lambda start: ("--driver-sender", senders.of("sim"), *senders.arguments("executive", start)),
+        arguments=lambda start: ("--driver-sender", senders.of(config.driver), *senders.arguments("executive", start)),
     )

@@ -20,7 +20,14 @@ from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
-from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, scene_process, sim_process
+from tailor.tools.launch.processes import (
+    LaunchConfig,
+    executive_process,
+    hardware_process,
+    record_process,
+    scene_process,
+    sim_process,
+)
 from tailor.tools.launch.recording_watch import RecordingWatch
 from tailor.tools.launch.senders import Senders
 
@@ -67,7 +74,7 @@ class _System:
         self._senders = Senders()
         self._reports = ProcessReports(session.publisher("processes", robot), self._senders, screen)
         self._recording = RecordingWatch(config.require_recording, screen.report)
-        self._result = self._stopped = ""
+        self._result = self._stopped = self._reported = ""
 
     def run(self) -> str:
         """Start process after process, each once the one before is ready; then supervise them."""
@@ -78,8 +85,9 @@ class _System:
             return "failed: the recorder did not start"
         if config.scene:  # before the executive, so that it takes no time from its first ticks
             self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
-        if not self._start(sim_process(config, senders, self._robot)):
-            return "failed: the simulator did not start"
+        robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
+        if not self._start(robot):
+            return f"failed: the {'driver' if config.hardware else 'simulator'} did not start"
         self._supervisor.start(executive_process(config, senders), time.monotonic_ns())
         return self._supervise()
 
@@ -107,12 +115,21 @@ class _System:
         for sample in self._inbox.drain():
             message = sample.message
             if isinstance(message, DriverState):
-                if self._senders.sent(sample, "sim"):
+                if self._senders.sent(sample, self._config.driver):
                     self._stopped = _stopped(message)
+                    self._report_hardware(message)
             elif self._senders.sent(sample, "executive"):
                 self._screen.show(message)
                 if isinstance(message, ExecStatus):
                     self._take_result(message)
+
+    def _report_hardware(self, driver: DriverState) -> None:
+        """What a real robot waits for, on change: a person arms it."""
+        line = f"{self._robot} is {driver.mode}: {reason_text(driver.reason, driver.detail)}"
+        if self._config.hardware and line != self._reported:
+            self._reported = line
+            hint = "" if driver.mode == "armed" else f" (`tailor arm {self._robot}` arms it)"
+            self._screen.report(f"{line}{hint}")
 
     def _take_result(self, status: ExecStatus) -> None:
         result = result_text(status.result, status.result_reason, status.result_detail)
@@ -126,7 +143,7 @@ class _System:
 
     def _ended(self) -> str:
         """Failure if a required process has ended for good, or ""."""
-        for name in ("sim", "executive"):
+        for name in (self._config.driver, "executive"):
             if self._supervisor.state(name) is State.ENDED:
                 return f"failed: {name} ended"
         if self._config.record is None:

@@ -11,21 +11,17 @@ import secrets
 import sys
 
 from tailor.runtime import realtime
-from tailor.runtime.bus.run_folder import run_folder
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
-from tailor.simnodes.hardware.interface import Hardware
-from tailor.simnodes.hardware.loading import load_hardware
 from tailor.simnodes.hardware.node import HardwareNode
-from tailor.simnodes.hardware.plain_robot import PlainRobot
-from tailor.simnodes.hardware.plain_settings import PlainSettings, read_plain_settings
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.launch.hardware import hardware_of
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     notifier = Notifier.from_environment()
     if arguments.attempts < 0:
         raise UsageError(f"--attempts is {arguments.attempts}, expected at least 0")
-    hardware = _hardware(arguments)
+    hardware = hardware_of(arguments.hardware, bus_settings(arguments).endpoint)
     spec = shipped_driver_spec(hardware.robot)
     stop = stop_on_signals()
     with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
@@ -62,31 +58,3 @@ def run(arguments: argparse.Namespace) -> int:
             report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
         )
         return 0 if node.run(lambda: stop.requested, notifier) else 1
-
-
-def _hardware(arguments: argparse.Namespace) -> Hardware:
-    named: str = arguments.hardware
-    if not named.endswith(".toml"):
-        return load_hardware(named)
-    settings, endpoint = read_plain_settings(named), bus_settings(arguments).endpoint
-    _check_bus(named, settings, endpoint)
-    return PlainRobot(settings, endpoint)
-
-
-def _check_bus(file: str, settings: PlainSettings, endpoint: str) -> None:
-    """Raise UsageError if the robot's topics cannot be on the bus that is to carry them."""
-    if settings.bus.connect not in ("", endpoint):
-        return
-    ours = {f"{settings.robot}/{name}" for name in ("cmd_vel", "odom", "pose")}
-    names = {name.strip("/") for name in (settings.topics.cmd_vel, settings.topics.odom, settings.topics.pose)}
-    both = sorted(ours & names)
-    if both and settings.bus.profile == "plain":
-        raise UsageError(
-            f"{file}: {', '.join(both)} is Tailor's own, past whose guard nothing may drive; expected other names on "
-            "this bus, or bus.connect with a bus of the robot's own"
-        )
-    if run_folder(endpoint).secured:
-        raise UsageError(
-            f"{file}: the bus at {endpoint} lets only Tailor's processes publish; expected bus.connect with a bus of "
-            "the robot's own, or `tailor bus --security open`"
-        )

@@ -16,6 +16,7 @@ from tailor.tools.cli.terminal import table_console
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and beside CPU burners; delay from percept to command",
+    "driver": "delay from percept to command through `tailor driver`, and without a driver",
     "planning": "steps, counts and CPU time of each problem; solved by configuration; anytime plans; share of a tick",
     "refine": "gap to the best known value over CPU time for each solver; time of proofs",
     "models": "time of a prediction and of a fit",

@@ -1,4 +1,7 @@
-"""Start a whole system and watch it: bus router, simulator, recorder, scene, executive. Ctrl-C stops it in order."""
+"""Start a whole system and watch it: bus router, simulator, recorder, scene, executive. Ctrl-C stops it in order.
+
+With --hardware a real robot takes the simulator's place. Then people arm it, after every start: `tailor arm ROBOT`.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,12 @@ from pathlib import Path
 from tailor.runtime.malloc_arenas import HOST, limit_arenas
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of
 from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.launch.hardware import hardware_of
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.stale_models import stale_models_warning
@@ -23,6 +28,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
     configure_system(parser)
     configure_hosting(parser)
+    parser.add_argument(
+        "--hardware",
+        metavar="FILE.toml|MODULE:CLASS",
+        default="",
+        help="a real robot instead of the simulator, as for `tailor driver`; a person arms it",
+    )
     parser.add_argument("--record", metavar="FILE", type=Path, help="record all messages into an MCAP file")
     parser.add_argument(
         "--require-recording", action="store_true", help="end (1) when the recording ends or lacks a message"
@@ -58,9 +69,20 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.config,
         arguments.require_recording,
         not arguments.no_scene,
+        arguments.hardware,
     )
+    if config.hardware:
+        _check_hardware(config)
     with screen() as shown:
         result = run_system(config, shown, stop)
     print(result or "stopped")
     done = result == "achieved" if arguments.once else stop.requested
     return 0 if done else 1
+
+
+def _check_hardware(config: LaunchConfig) -> None:
+    """Raise UsageError if there is no such hardware, or it is another robot than the domain's."""
+    robot = hardware_of(config.hardware, config.bus.endpoint).robot
+    expected = spec_of(config.executive.domain).robot
+    if robot != expected:
+        raise UsageError(f"--hardware {config.hardware}: is of the robot '{robot}', expected '{expected}'")

@@ -8,7 +8,14 @@ from tailor.schemas.own import example
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.launch.process_reports import ProcessReports
-from tailor.tools.launch.processes import LaunchConfig, executive_process, record_process, scene_process, sim_process
+from tailor.tools.launch.processes import (
+    LaunchConfig,
+    executive_process,
+    hardware_process,
+    record_process,
+    scene_process,
+    sim_process,
+)
 from tailor.tools.launch.recording_watch import ENDED, RecordingWatch
 from tailor.tools.launch.senders import Senders
 
@@ -54,16 +61,28 @@ def test_only_the_first_start_of_a_driver_knows_who_has_leave():
     assert senders.leave not in executive.command_line(2)
 
 
+def test_hardware_takes_the_simulators_place_and_gets_no_leave():
+    senders = Senders()
+    assert (config().driver, config(hardware="robot.toml").driver) == ("sim", "driver")
+    hardware = hardware_process(config(hardware="robot.toml"), senders)
+    assert hardware.command_line(1)[-1:] == [senders.of("driver")]
+    assert "--leave" not in hardware.command_line(1)
+    executive = executive_process(config(hardware="robot.toml"), senders).command_line(1)
+    assert executive[executive.index("--driver-sender") + 1] == senders.of("driver")
+
+
 def test_every_child_is_missed_when_it_is_silent():
     senders = Senders()
     specs = (
         executive_process(config(), senders),
+        hardware_process(config(hardware="robot.toml"), senders),
         sim_process(config(), senders, "agilo"),
         record_process(config(), senders),
         scene_process(config(), senders),
     )
     assert [(spec.name, spec.silence_ns / S, spec.restarts) for spec in specs] == [
         ("executive", 1.0, True),
+        ("driver", 2.0, True),
         ("sim", 2.0, True),
         ("record", 10.0, False),
         ("scene", 10.0, True),

@@ -1,0 +1,46 @@
+"""The hardware behind `tailor driver` and `tailor up --hardware`, as people name it."""
+
+from __future__ import annotations
+
+from tailor.runtime.bus.run_folder import run_folder
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.loading import load_hardware
+from tailor.simnodes.hardware.plain_robot import PlainRobot
+from tailor.simnodes.hardware.plain_settings import PlainSettings, read_plain_settings
+
+
+def hardware_of(named: str, endpoint: str) -> Hardware:
+    """The hardware that a person names; nothing is opened.
+
+    Args:
+      named: FILE.toml of a robot with plain topics, or MODULE:CLASS.
+      endpoint: Tailor's bus.
+
+    Raises:
+      UsageError: There is no such hardware, or its topics cannot be on the bus that is to carry them.
+    """
+    if not named.endswith(".toml"):
+        return load_hardware(named)
+    settings = read_plain_settings(named)
+    _check_bus(named, settings, endpoint)
+    return PlainRobot(settings, endpoint)
+
+
+def _check_bus(file: str, settings: PlainSettings, endpoint: str) -> None:
+    """Raise UsageError if the robot's topics cannot be on the bus that is to carry them."""
+    if settings.bus.connect not in ("", endpoint):
+        return
+    ours = {f"{settings.robot}/{name}" for name in ("cmd_vel", "odom", "pose")}
+    names = {name.strip("/") for name in (settings.topics.cmd_vel, settings.topics.odom, settings.topics.pose)}
+    both = sorted(ours & names)
+    if both and settings.bus.profile == "plain":
+        raise UsageError(
+            f"{file}: {', '.join(both)} is Tailor's own, past whose guard nothing may drive; expected other names on "
+            "this bus, or bus.connect with a bus of the robot's own"
+        )
+    if run_folder(endpoint).secured:
+        raise UsageError(
+            f"{file}: the bus at {endpoint} lets only Tailor's processes publish; expected bus.connect with a bus of "
+            "the robot's own, or `tailor bus --security open`"
+        )
