@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from dataclasses import dataclass, replace
@@ -13,8 +14,11 @@ from tailor.tools.cli.plan_limits import Limits
 
 if TYPE_CHECKING:
     from tailor.executive.planning import AnytimeSearch
+    from tailor.runtime.processes.planner_process import PlannerProcess
 
 DURATIVE_HEAD_START = 250  # plans refined by the built-in search, 0.05 to 0.1 s: short problems keep its plans
+GRACE_S = 5.0  # of kairos-planner, beyond its own time limit
+INTERRUPTED = "interrupted"
 _POLL_S = 0.002  # period of polling an external planner
 
 
@@ -70,7 +74,7 @@ def anytime(search: AnytimeSearch, limits: Limits) -> Result:
                     file=sys.stderr,
                 )
     except KeyboardInterrupt:
-        limits.reason = "interrupted"
+        limits.reason = INTERRUPTED
     if search.best is None:
         return Result("limit", None, limits.reason, *search.counts)
     if search.best.plan is not None:
@@ -79,17 +83,56 @@ def anytime(search: AnytimeSearch, limits: Limits) -> Result:
     return search.best
 
 
+def anytime_beside_kairos(
+    texts: tuple[str, str], domain: Domain, problem: Problem, settings: Settings, limits: Limits
+) -> tuple[Result, str]:
+    """As `anytime`, while kairos-planner plans in its own process; the better plan by the metric.
+
+    Without a time limit Kairos' part is its first plan.
+
+    Returns:
+      The result, and the name of the planner that found it; "" for the built-in search.
+    """
+    from tailor.executive.planning import AnytimeSearch, quality
+    from tailor.runtime.processes.planner_process import PlannerProcess
+
+    search = AnytimeSearch(domain, problem, settings)
+    limited = math.isfinite(limits.limit_s)
+    child = PlannerProcess(f"kairos:{limits.limit_s:g}" if limited else "kairos", *texts, limits.limit_s + GRACE_S)
+    try:
+        ours = anytime(search, limits)
+        if search.ended == "proven" or ours.status == "unsolvable":
+            return ours, ""
+        while child.poll() is None and limits.reason != INTERRUPTED:
+            time.sleep(_POLL_S)
+    finally:
+        child.kill()
+    theirs = _linked(child, domain, problem)
+    if theirs.plan is None or quality(theirs.plan, problem) >= search.value:
+        return ours, ""
+    generated, visited = search.counts
+    return replace(theirs, generated=generated, visited=visited), "kairos"
+
+
 def external(command: str, texts: tuple[str, str], domain: Domain, problem: Problem, limit_s: float) -> Result:
     """The plan of an external planner, completed by the causal links that its text omits."""
-    from tailor.executive.planning import completed, parse_plan
     from tailor.runtime.processes.planner_process import PlannerProcess
 
     child = PlannerProcess(command, *texts, limit_s)
     try:
-        while (answer := child.poll()) is None:
+        while child.poll() is None:
             time.sleep(_POLL_S)
     finally:
         child.kill()
+    return _linked(child, domain, problem)
+
+
+def _linked(child: PlannerProcess, domain: Domain, problem: Problem) -> Result:
+    """The plan of an external planner that has ended."""
+    from tailor.executive.planning import completed, parse_plan
+
+    answer = child.poll()
+    assert answer is not None
     try:
         plan = completed(parse_plan(answer.output), domain, problem)
     except UsageError as error:

@@ -23,13 +23,12 @@ from tailor.executive.planning import (
     validate,
 )
 from tailor.tools.cli.plan_limits import Limits
-from tailor.tools.cli.plan_search import anytime, built_in, external, with_kairos
+from tailor.tools.cli.plan_search import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
 from tailor.tools.planning import options
 from tailor.tools.planning.options import MAX_PLANS, settings_of
 from tailor.tools.planning.output import as_json, print_result
 from tailor.tools.planning.pddl_files import read_texts
 
-KAIROS_GRACE_S = 5.0  # beyond its own time limit
 configure = options.configure
 
 
@@ -86,17 +85,18 @@ def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, prob
         return external(args.planner, texts, domain, problem, limit_s)
     if args.engine == "kairos":
         name = "kairos" if args.time_limit is None else f"kairos:{limit_s:g}"
-        return external(name, texts, domain, problem, limit_s + KAIROS_GRACE_S)
+        return external(name, texts, domain, problem, limit_s + GRACE_S)
     settings, limits = settings_of(args), Limits(limit_s, args.memory_limit)
+    if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
+        plan = anytime_beside_kairos if args.anytime else with_kairos
+        result, planner = plan(texts, domain, problem, settings, limits)
+        if planner and args.verbose:
+            print(f"the plan is by {planner}", file=sys.stderr)
+        return result
     if args.anytime:
         from tailor.executive.planning import AnytimeSearch
 
         return anytime(AnytimeSearch(domain, problem, settings), limits)
-    if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
-        result, planner = with_kairos(texts, domain, problem, settings, limits)
-        if planner and args.verbose:
-            print(f"the plan is by {planner}", file=sys.stderr)
-        return result
     return built_in(domain, problem, settings, limits)
 
 

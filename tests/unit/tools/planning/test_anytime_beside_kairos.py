@@ -1,0 +1,44 @@
+"""With durations an anytime search runs beside kairos-planner, and the better of both plans counts."""
+
+import time
+
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import Search, Settings, format_plan, validate
+from tailor.runtime.processes import planner_process
+from tailor.tools.benchmarks.execution.durative_plans import durative_problem_text
+from tailor.tools.benchmarks.planning import read, texts
+from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.cli.plan_search import anytime_beside_kairos
+
+
+def planned(problem_text, limit_s):
+    pair = (texts("kitchen-durative-s1")[0], problem_text)
+    problem = read(*pair)
+    result, planner = anytime_beside_kairos(pair, problem.domain, problem, Settings(), Limits(limit_s))
+    assert validate(result.plan, problem.domain, problem) == ""
+    return result.plan, planner
+
+
+def test_kairos_has_a_plan_of_eight_cups_where_the_search_has_none():
+    pytest.importorskip("kairos")
+    plan, planner = planned(durative_problem_text(8), 0.3)
+    assert planner == "kairos"
+    assert plan.makespan < 8 * 28
+
+
+def test_a_plan_that_is_no_better_does_not_count(monkeypatch, tmp_path):
+    domain_text, problem_text = texts("kitchen-durative-s3")
+    found = Search(read(domain_text, problem_text).domain, read(domain_text, problem_text)).advance(CheckBudget(10**5))
+    (tmp_path / "plan").write_text(format_plan(found.plan))
+    monkeypatch.setattr(planner_process, "named_planner", lambda _: ["sh", "-c", f"cat {tmp_path}/plan"])
+    assert planned(problem_text, 1.0)[1] == ""
+
+
+def test_nobody_waits_for_kairos_if_no_plan_is_better(monkeypatch):
+    monkeypatch.setattr(planner_process, "named_planner", lambda _: ["sh", "-c", "sleep 60"])
+    began = time.monotonic()
+    plan, planner = planned(texts("kitchen-durative-s1")[1], 30.0)
+    assert (len(plan.steps), planner) == (4, "")
+    assert time.monotonic() - began < 20
