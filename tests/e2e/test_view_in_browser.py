@@ -180,6 +180,66 @@ def test_the_timeline_shows_predicted_against_actual_and_every_tick(browser: Bro
     assert text(browser, "#timeline small").startswith(f"{ticks} ticks ")
 
 
+@pytest.mark.parametrize("size", [(390, 844), (1440, 900), (1920, 1080)], ids="{0[0]}x{0[1]}".format)
+def test_the_page_fits_a_phone_and_screens_with_its_timeline_above_the_fold(
+    browser: Browser, soccer: str, size
+) -> None:
+    width, height = size
+    browser.resize(width, height)
+    opened(browser, soccer, 4.0)
+    assert browser.value("document.documentElement.scrollWidth") == width
+    box = browser.value(BOX)
+    footer = browser.value("document.querySelector('footer').offsetHeight")
+    lanes = "[...document.querySelectorAll('#timeline [data-lane]')].map((lane) => lane.getBoundingClientRect().bottom)"
+    bottoms = browser.value(lanes)
+    seen = sum(bottom <= height - footer for bottom in bottoms)
+    assert seen >= (3 if width < 500 else len(bottoms)), "actions, events, speed; on a screen all lanes"
+    assert box[2] > 0.45 * width
+    letter = (
+        "Math.min(...[...document.querySelectorAll('#timeline svg text')].map((e) => e.getBoundingClientRect().height))"
+    )
+    assert browser.value(letter) > 9, "legible"
+    assert browser.errors == []
+    browser.send("Emulation.clearDeviceMetricsOverride")
+
+
+def test_a_heading_folds_its_panel_and_what_is_below_moves_up(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    before = browser.value(BOX)[1]
+    browser.value("document.querySelectorAll('#scene h2, #choice h2, #plan h2').forEach((heading) => heading.click())")
+    browser.frame()
+    assert browser.value(BOX)[1] < before - 100
+    assert text(browser, "#scene .fold") == ""
+    assert browser.value("document.querySelector('#scene .fold').ariaExpanded") == "false"
+    browser.value("document.querySelector('#scene h2').click()")
+    browser.frame()
+    assert browser.value("document.querySelector('#scene .layers').offsetHeight") > 100
+
+
+@pytest.mark.slow
+def test_an_hours_page_opens_fast_and_draws_what_a_pixel_can_show(browser: Browser, tmp_path) -> None:
+    hour = [
+        Event(0.1 * i, kind, fields)
+        for i in range(36_000)
+        for kind, fields in (
+            ("truth", {"x": i % 70 / 20, "y": 0.0, "phi": 0.01 * (i % 300), "v": i % 9 / 10, "index": i // 100 % 4}),
+            ("tick", {"tick": i, "late": 3.0, "control": 1.0, "work": 5.0, "skipped": i % 2, "checks": i % 40}),
+            ("belief", {"elapsed": 0.1 * (i % 100), "predicted": 10.0, "values": [0.1 * i, 0.0]}),
+        )
+    ]
+    hour += [Event(10.0 * i, "action", {"index": i % 4, "action": "go"}) for i in range(360)]
+    browser.send("Performance.enable", timeDomain="threadTicks")
+    opened(browser, written(tmp_path / "hour.html", hour))
+    metrics = {each["name"]: each["value"] for each in browser.send("Performance.getMetrics")["metrics"]}
+    browser.send("Performance.disable")
+    assert metrics["TaskDuration"] < 2.0, "seconds of the page's thread"
+    assert text(browser, "#timeline small").startswith("36000 ticks ")
+    drawn = browser.value("document.querySelector('[data-lane=checks] .trace').getAttribute('d').length")
+    assert drawn < 4 * 1500 * 15, "at most four points a pixel"
+    assert count(browser, "#timeline .late") < 2 * 1500
+    assert browser.errors == []
+
+
 def test_keys_move_play_and_jump(browser: Browser, soccer: str) -> None:
     opened(browser, soccer, 4.0)
     assert at(browser) == 4.0

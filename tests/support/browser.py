@@ -38,6 +38,7 @@ for pipe, number in zip(pipes, (3, 4)):
     os.dup2(pipe, number)
 os.execv(sys.argv[3], sys.argv[3:])
 """
+COMPLAINTS = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"}
 KEYS = {
     " ": ("Space", 32),
     "ArrowLeft": ("ArrowLeft", 37),
@@ -48,7 +49,7 @@ KEYS = {
 
 
 class Browser:
-    """One window. Everything is bounded in time; errors of the page's scripts are collected in `errors`."""
+    """One window. Everything is bounded in time; errors and messages of the page are collected in `errors`."""
 
     def __init__(self, width: int = 1500, height: int = 1250) -> None:
         assert PROGRAM is not None
@@ -72,6 +73,7 @@ class Browser:
         target = next(t for t in self.send("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self._session = self.send("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         self.send("Runtime.enable")
+        self.send("Log.enable")
         self.send("Page.enable")
 
     def __enter__(self) -> Browser:
@@ -96,8 +98,8 @@ class Browser:
             if answer.get("id") == self._number:
                 assert "error" not in answer, answer["error"]
                 return answer["result"]
-            if answer.get("method") == "Runtime.exceptionThrown":
-                self.errors.append(str(answer["params"]["exceptionDetails"]))
+            if answer.get("method") in COMPLAINTS:
+                self.errors.append(str(answer["params"]))
 
     def open(self, address: str) -> None:
         """Go to a page and wait until its scripts have run."""
@@ -135,6 +137,12 @@ class Browser:
     def frame(self) -> None:
         """Wait until what was asked for is painted."""
         self.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+
+    def resize(self, width: int, height: int) -> None:
+        """Show the page in a window, or on a phone, of that size."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+        self.send("Emulation.setDeviceMetricsOverride", **size)
+        self.frame()
 
     def dark(self, on: bool = True) -> None:
         """What the page is told of the user's taste."""

@@ -23,9 +23,16 @@ function html(name, attributes = {}, ...children) {
   return fill(document.createElement(name), attributes, children);
 }
 
-/** The panel with this id: its body to fill and a line beside its heading. */
+/** The panel with this id: its body to fill and a line beside its heading. Its heading folds it. */
 function panel(id) {
   const section = document.getElementById(id);
+  const fold = html("button", { type: "button", class: "fold", "aria-expanded": true, "aria-label": "fold" });
+  const heading = section.querySelector("h2");
+  heading.prepend(fold);
+  heading.addEventListener("click", () => {
+    fold.setAttribute("aria-expanded", !section.classList.toggle("folded"));
+    dispatchEvent(new Event("resize")); // what was hidden may be out of date
+  });
   return {
     section,
     title: section.querySelector("h2 span"),

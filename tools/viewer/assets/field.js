@@ -1,18 +1,20 @@
 // The scene on a plane: shapes that the robot's package draws, and its way. From above like the paper's Figure 1: lines
 // across the heading, whose length is the speed. A robot without a heading, such as an arm's pen, leaves a line.
 
+const MOST_PX = 760; // width of the drawing
 const LINE_S = 0.32; // metres of line for each metre a second: 0.9 m/s draws 0.29 m
 
 class Field {
   constructor(run, target) {
     this.run = run;
     this.panel = target;
-    this.drawn = -1;
+    this.drawn = "";
   }
 
-  /** Show a time. Static parts are redrawn only after new events or for another episode. */
+  /** Show a time. Static parts are redrawn only after new events, for another episode, or in another width. */
   show(at) {
-    if (this.drawn !== this.run.version) this.lay();
+    this.width = Math.min(MOST_PX, this.panel.body.clientWidth || this.width || MOST_PX); // a folded panel has none
+    if (this.drawn !== `${this.run.version} ${this.width}`) this.lay();
     const [from, to] = this.run.episode(at);
     if (from !== this.from) this.layEpisode(from, to);
     this.colourStrokes(at);
@@ -21,7 +23,7 @@ class Field {
 
   /** The frame of the run: two layers, so that moving parts do not repaint static ones. */
   lay() {
-    this.drawn = this.run.version;
+    this.drawn = `${this.run.version} ${this.width}`;
     this.from = null;
     const { map, width, height } = this.frame();
     this.map = map;
@@ -101,7 +103,7 @@ class Field {
       bottom -= more;
       top += more;
     }
-    const width = 760;
+    const width = this.width;
     const perMetre = width / (right - left);
     const height = (top - bottom) * perMetre;
     const map = (x, y) => [(x - left) * perMetre, (top - y) * perMetre];
@@ -112,14 +114,14 @@ class Field {
 
   gridLines(width, height) {
     const [left, right, bottom, top] = this.map.box;
-    const vertical = ticks(left, right, 8).flatMap((x) => {
+    const vertical = ticks(left, right, width / 95).flatMap((x) => {
       const [px] = this.map(x, 0);
       return [
         svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height }),
         svg("text", { x: px + 3, y: height - 4, text: String(x) }),
       ];
     });
-    const horizontal = ticks(bottom, top, 6).flatMap((y) => {
+    const horizontal = ticks(bottom, top, width / 125).flatMap((y) => {
       const [, py] = this.map(0, y);
       return [
         svg("line", { class: "grid", x1: 0, x2: width, y1: py, y2: py }),

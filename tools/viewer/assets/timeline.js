@@ -1,6 +1,6 @@
 // Everything over one axis of time: actions, events, speed, tick timing, granted checks; drag to move, wheel to zoom.
 
-const WIDE = { width: 1240, left: 92, right: 66 };
+const MARGINS = { left: 74, right: 54 }; // of the lanes, for words on both sides
 
 class Timeline {
   constructor(run, target, player) {
@@ -20,18 +20,20 @@ class Timeline {
 
   show(at) {
     const view = this.view();
-    const key = `${this.run.version} ${view}`;
+    this.width = this.panel.body.clientWidth || this.width || 1240; // a folded panel has none
+    const key = `${this.run.version} ${view} ${this.width}`;
     if (key !== this.drawn) {
       this.drawn = key;
       this.lay(view);
     }
     const px = this.x(Math.min(view[1], Math.max(view[0], at)));
-    this.hand.style.left = `${(100 * px) / WIDE.width}%`;
+    this.hand.style.left = `${(100 * px) / this.width}%`;
   }
 
   lay(view) {
-    const x = scale(view[0], view[1], WIDE.left, WIDE.width - WIDE.right);
-    Object.assign(x, { low: WIDE.left, high: WIDE.width - WIDE.right, shows: (at) => at >= view[0] && at <= view[1] });
+    const [low, high] = [MARGINS.left, this.width - MARGINS.right];
+    const x = scale(view[0], view[1], low, high);
+    Object.assign(x, { low, high, shows: (at) => at >= view[0] && at <= view[1] });
     this.x = x;
     let top = 4;
     const parts = [];
@@ -40,7 +42,7 @@ class Timeline {
       parts.push(svg("g", { "data-lane": lane.name }, ...lane.draw(x, top)));
       top += lane.height + 8;
     }
-    const axis = ticks(view[0], view[1], 12).flatMap((t) => [
+    const axis = ticks(view[0], view[1], Math.min(12, (high - low) / 60)).flatMap((t) => [
       svg("line", { class: "grid", x1: x(t), x2: x(t), y1: 0, y2: top }),
       svg("text", { x: x(t), y: top + 12, "text-anchor": "middle", text: `${t} s` }),
     ]);
@@ -48,7 +50,7 @@ class Timeline {
     const hit = svg("rect", { class: "hit", x: x.low, y: 0, width: x.high - x.low, height: top });
     const drawing = svg(
       "svg",
-      { viewBox: `0 0 ${WIDE.width} ${top + 16}`, role: "img", "aria-label": "the run over time" },
+      { viewBox: `0 0 ${this.width} ${top + 16}`, role: "img", "aria-label": "the run over time" },
       svg("g", {}, ...axis),
       hit,
       ...parts,
@@ -128,7 +130,7 @@ class Timeline {
   listen(drawing) {
     const at = (event) => {
       const box = drawing.getBoundingClientRect();
-      return this.x.invert(((event.clientX - box.left) / box.width) * WIDE.width);
+      return this.x.invert(((event.clientX - box.left) / box.width) * this.width);
     };
     drawing.addEventListener("pointerdown", (event) => {
       this.dragging = true;
