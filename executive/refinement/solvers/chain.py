@@ -27,6 +27,7 @@ from tailor.executive.refinement.solvers.chain_structure import (
 from tailor.executive.refinement.solvers.solver import Limits, Solver
 
 TURNS = 5  # checks: all subgoals, then every second one and the others, twice
+MAX_BATCHES, MAX_SINGLES = 5.5, 3  # model inputs of one check in batches: more subgoals have fewer candidates each
 
 
 class ChainSolver(Solver):
@@ -36,7 +37,7 @@ class ChainSolver(Solver):
       objective: Sum of stages in which every free parameter occurs only in neighbouring stages.
       rng: The only source of randomness.
       seeds: Initial candidates, shape (s, d).
-      batch: Pairs of candidates of neighbouring subgoals in one check.
+      batch: Pairs of candidates of two neighbouring subgoals in one check; fewer from seven subgoals on.
       limits: End of the search.
 
     Raises:
@@ -59,9 +60,12 @@ class ChainSolver(Solver):
         self._blocks = blocks
         self._links = links_of(objective.stages, blocks)
         self._coarse_links = links_of(objective.coarse_stages, blocks)
-        self._paired = any(len(a) and len(b) for a, b in pairwise(blocks))
-        self._n_single = 3 * batch // 8  # candidates of a subgoal if its neighbours stay
-        self._n_candidates = max(N_ELITE + 2, int(np.sqrt(batch))) if self._paired else batch // 2
+        n_pairs = sum(bool(len(a) and len(b)) for a, b in pairwise(blocks))
+        self._paired = n_pairs > 0
+        # candidates of a subgoal if its neighbours stay, and of all subgoals
+        self._n_single = min(3 * batch // 8, MAX_SINGLES * batch // (n_pairs + 1))
+        each = min(batch, MAX_BATCHES * batch / max(1, n_pairs))
+        self._n_candidates = max(N_ELITE + 2, int(np.sqrt(each))) if self._paired else batch // 2
         self._candidates = Candidates(objective.ranges, blocks, rng, self._seeds)
 
     def _check(self) -> None:

@@ -32,12 +32,12 @@ class Leg:
 class Legs:
     """Sum of the legs; the coarse stages have no waves."""
 
-    def __init__(self, seed):
-        rng, columns = np.random.default_rng(seed), np.arange(2 * SUBGOALS).reshape(SUBGOALS, 2)
+    def __init__(self, seed, count=SUBGOALS):
+        rng, columns = np.random.default_rng(seed), np.arange(2 * count).reshape(count, 2)
         pairs = [columns[0], *map(np.concatenate, pairwise(columns))]
         self.stages = [Leg(pair, rng.normal(0, 1.5, (6, 4))) for pair in pairs]
         self.coarse_stages = [Leg(leg.columns, leg.waves, 0.0) for leg in self.stages]
-        size = 2 * SUBGOALS
+        size = 2 * count
         self.ranges = Ranges(np.full(size, -1.0), np.full(size, 1.0), np.zeros(size, bool))
         self.evaluations = 0
 
@@ -45,6 +45,7 @@ class Legs:
         return sum(leg.cost(candidates[:, leg.columns]) for leg in self.stages)
 
     def costs(self, stages, samples):
+        self.evaluations += sum(map(len, samples))
         return [stage.cost(own) for stage, own in zip(stages, samples, strict=True)]
 
 
@@ -88,3 +89,15 @@ def test_a_valid_seed_is_an_answer_after_the_first_check():
     search = ChainSolver(objective, np.random.default_rng(0), seeds, 256, Limits(10**6, 10**6))
     search.advance(CheckBudget(1))
     assert search.value == objective(seeds)[0]
+
+
+@pytest.mark.parametrize("count", [6, 12, 20])
+def test_no_check_of_many_subgoals_takes_more_than_one_of_six(count):
+    objective = Legs(1, count)
+    search = ChainSolver(objective, np.random.default_rng(1), np.empty((0, 2 * count)), 256, Limits(10**6, 10**6))
+    inputs = []
+    for _ in range(11):
+        before = objective.evaluations
+        search.advance(CheckBudget(1))
+        inputs.append(objective.evaluations - before)
+    assert max(inputs) <= 1600
