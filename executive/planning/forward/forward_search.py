@@ -77,9 +77,7 @@ class ForwardSearch:
         if estimate.length < self._best:
             self._best = estimate.length
             self._queues[1].turns -= BOOST
-        lacking = ~state
-        applicable = [index for index, a in enumerate(self._strips.actions) if not a.needs_mask & lacking]
-        for queue, indices in zip(self._queues, (applicable, estimate.helpful), strict=True):
+        for queue, indices in zip(self._queues, (estimate.applicable, estimate.helpful), strict=True):
             for index in indices:
                 heapq.heappush(queue.entries, (estimate.length, self.generated, number, index))
                 self.generated += 1

@@ -29,7 +29,7 @@ def _without_first(actions: Sequence[StripsAction], state: int, goal_mask: int) 
     """The later actions that remain applicable without the first; None if they miss the goal."""
     kept = []
     for action in actions[1:]:
-        if not action.needs_mask & ~state:
+        if action.applies(state):
             kept.append(action)
             state = action.after(state)
     return None if goal_mask & ~state else kept

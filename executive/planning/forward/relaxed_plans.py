@@ -15,9 +15,13 @@ UNREACHED = 1 << 60  # cost of a literal
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Number of actions of a relaxed plan, and those of them that are applicable at once, by index."""
+    """Number of actions of a relaxed plan, and by index in ascending order those that are applicable at once.
+
+    `helpful` are the ones that belong to the relaxed plan.
+    """
 
     length: int
+    applicable: tuple[int, ...]
     helpful: tuple[int, ...]
 
 
@@ -35,7 +39,7 @@ class RelaxedPlans:
 
     def estimate(self, state: int) -> Estimate | None:
         """The estimate of a state; None if not even a relaxed plan reaches the goal."""
-        supporters = self._supporters(state)
+        applicable, supporters = self._supporters(state)
         if supporters is None:
             return None
         actions, chosen = self._strips.actions, set[int]()
@@ -45,11 +49,12 @@ class RelaxedPlans:
             if supporter >= 0 and supporter not in chosen:
                 chosen.add(supporter)
                 pending += actions[supporter].needs
-        helpful = sorted(index for index in chosen if actions[index].needs_mask & ~state == 0)
-        return Estimate(len(chosen), tuple(helpful))
+        return Estimate(len(chosen), applicable, tuple(index for index in applicable if index in chosen))
 
-    def _supporters(self, state: int) -> list[int] | None:
-        """The cheapest action that makes each literal true, -1 where it holds; None if a literal of the goal has none.
+    def _supporters(self, state: int) -> tuple[tuple[int, ...], list[int] | None]:
+        """The applicable actions, and the cheapest one that makes each literal true, -1 where it holds.
+
+        Instead of the latter None if a literal of the goal has none.
 
         Literals are closed in the order of their additive cost, bucket by bucket, until all of the goal are.
         """
@@ -60,6 +65,7 @@ class RelaxedPlans:
         for literal in buckets[0]:
             costs[literal] = 0
         unmet = self._strips.goal_mask & ~state
+        applicable: tuple[int, ...] = ()
 
         def fire(index: int) -> None:
             cost = sums[index]
@@ -82,6 +88,8 @@ class RelaxedPlans:
                     sums[index] += cost
                     if not missing[index]:
                         fire(index)
+            if cost == 0:  # what holds
+                applicable = tuple(index for index, number in enumerate(missing) if not number)
             if not unmet:
-                return supporters
-        return None
+                return applicable, supporters
+        return applicable, None

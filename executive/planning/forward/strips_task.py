@@ -1,6 +1,7 @@
-"""Ground actions and states as bit masks over literals, for search through states.
+"""Ground actions and states for search through states.
 
-Bit `l` of a state is set if literal `l` holds; of literals `2 * i` and `2 * i + 1` exactly one does.
+A state is a bit mask over literals: bit `l` is set if literal `l` holds; of literals `2 * i` and `2 * i + 1` exactly
+one does. An action lists its few literals: masks of its own would each be as long as a state.
 """
 
 from __future__ import annotations
@@ -25,13 +26,17 @@ class StripsAction:
     ground: GroundAction
     needs: tuple[int, ...]
     made: tuple[int, ...]
-    needs_mask: int
-    made_mask: int
-    kept_mask: int  # all literals but the negations of `made`
+
+    def applies(self, state: int) -> bool:
+        """Whether all that it needs holds."""
+        return all(state >> literal & 1 for literal in self.needs)
 
     def after(self, state: int) -> int:
         """The state after the action, which must be applicable."""
-        return state & self.kept_mask | self.made_mask
+        for literal in self.made:
+            if not state >> literal & 1:
+                state ^= 0b11 << (literal & ~1)  # the literal and its negation
+        return state
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +59,7 @@ def strips_task(task: GroundTask, actions: Sequence[GroundAction]) -> StripsTask
     if task.temporal:
         raise NotClassical("durations or timed literals")
     literals = len(task.names)
-    reached = tuple(_strips_action(actions[number], literals) for number in sorted(task.estimates.reached))
+    reached = tuple(_strips_action(actions[number]) for number in sorted(task.estimates.reached))
     goal = _literals(task.goal)
     return StripsTask(reached, literals, mask_of(task.initial), goal, mask_of(goal))
 
@@ -72,13 +77,12 @@ def bits_of(mask: int) -> list[int]:
     return [number for number, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
 
 
-def _strips_action(action: GroundAction, literals: int) -> StripsAction:
+def _strips_action(action: GroundAction) -> StripsAction:
     if not action.simple:
         raise NotClassical(f"conditional effects of {action}")
     needs = _literals([condition for condition, _ in action.conditions])
     made = tuple(dict.fromkeys(effect.literal for effect in action.effects))
-    kept = (1 << literals) - 1 & ~mask_of(literal ^ 1 for literal in made)
-    return StripsAction(action, needs, made, mask_of(needs), mask_of(made), kept)
+    return StripsAction(action, needs, made)
 
 
 def _literals(conditions: Iterable[GroundCondition]) -> tuple[int, ...]:
