@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from tailor.executive.core.context import PERIOD_NS, Context
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import step
-from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals
 from tailor.simnodes.body import Body
@@ -59,6 +59,7 @@ def run_lockstep(
     checks: int = CHECKS_PER_TICK,
     on_tick: TickObserver | None = None,
     transport: Transport | None = None,
+    new_budget: Callable[[], Budget] | None = None,
 ) -> Run:
     """Pursue the scenario's goal from `start` until it is achieved, has failed, or the time limit is reached.
 
@@ -72,6 +73,7 @@ def run_lockstep(
       checks: Budget of each tick's deliberation.
       on_tick: Called after each tick.
       transport: Passes readings on as the bus does; None: the core receives the very values.
+      new_budget: Called at the start of each tick; None: every budget is of `checks`.
 
     Returns:
       Result, actions, subgoals, ground truth and all messages of the run.
@@ -81,7 +83,7 @@ def run_lockstep(
     goal, samples = context.problem.goal_text, _advance(link, 0, run)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        inputs, budget = Inputs(samples, goal), CheckBudget(checks)
+        inputs, budget = Inputs(samples, goal), new_budget() if new_budget else CheckBudget(checks)
         state, outputs = step(context, state, now_ns, inputs, budget)
         if on_tick is not None:
             on_tick(RecordedTick(tick, now_ns, inputs, budget.granted), outputs)
