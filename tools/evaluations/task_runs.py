@@ -64,7 +64,8 @@ def run_all(
                 found[variant.name][seed] = known
     running = completed(run_one, [(task, variant, seed) for variant, seed in wanted], jobs)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, transient=True, console=Console(stderr=True)) as progress:
+    console = Console(stderr=True)
+    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
         for _, outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
             found[outcome.variant][outcome.seed] = outcome
             journals[outcome.variant].note(outcome)
