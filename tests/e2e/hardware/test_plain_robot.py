@@ -12,6 +12,10 @@ import pytest
 
 from tailor.executive import domains
 from tailor.runtime.bus.opening import open_client
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.schemas.typesystem import ros_type
+from tailor.simnodes.hardware.plain_keys import named
+from tailor.simnodes.hardware.plain_robot import TYPES
 from tailor.tools.launch.hosting import free_endpoint
 from tests.support.bus_system import accepts, answers, started
 from tests.support.patience import wait_until
@@ -33,29 +37,43 @@ class System(NamedTuple):
 
 
 @contextmanager
-def killable_bus():
+def killable_bus(profile="plain"):
     """A bus in its own process: yields (session, endpoint, start, bus)."""
     endpoint = free_endpoint()
     with started() as start:
-        bus = start("tailor.tools.main", "bus", "--security", "open", "--connect", endpoint)
+        bus = start("tailor.tools.main", "bus", "--security", "open", "--profile", profile, "--connect", endpoint)
         wait_until(lambda: accepts(endpoint) and answers(endpoint), "bus")
         with open_client(endpoint) as session:
             yield session, endpoint, start, bus
 
 
+def keys(profile, robot):
+    """The keys of the robot's own topics under rmw_zenoh; under the plain profile its names are its keys."""
+    types = {
+        "cmd_vel": TYPES[robot.get("command", "twist")],
+        "odom": ros_type(Odometry),
+        "amcl_pose": ros_type(PoseEstimate),
+    }
+    found = {name: named(name, each).key(0) for name, each in types.items()} if profile == "rmw_zenoh" else {}
+    return {("pose" if name == "amcl_pose" else name): key for name, key in found.items()}
+
+
 @contextmanager
-def driven(tmp_path, domain="soccer", scenario="waypoints", settings="", robot_name="agilo", **robot):
-    """A stand-in robot on a bus of its own behind `tailor driver`: yields a System."""
+def driven(tmp_path, domain="soccer", scenario="waypoints", profile="plain", robot_name="agilo", **robot):
+    """A stand-in robot on a bus of its own behind `tailor driver`, both buses of a key profile: yields a System."""
     start_pose = domains.seeded_scenario(domain, scenario, 0)[1]
     pose = [start_pose[name] for name in ("x", "y", "phi")]
     trace, file = tmp_path / "trace", tmp_path / "robot.toml"
-    with killable_bus() as (session, endpoint, start, bus), killable_bus() as (_, robots, start_robot, robots_bus):
-        options = {"endpoint": robots, "trace": str(trace), "start": pose, **robot}
+    with (
+        killable_bus(profile) as (session, endpoint, start, bus),
+        killable_bus() as (_, robots, start_robot, robots_bus),
+    ):
+        options = {"endpoint": robots, "trace": str(trace), "start": pose, **keys(profile, robot), **robot}
         base = start_robot("tests.support.stand_ins.plain_robot", json.dumps(options))
         command = options.get("command", "twist")
         file.write_text(
-            f'robot = "{robot_name}"\ncommand = "{command}"\n{settings}\n[bus]\nconnect = "{robots}"\n'
-            f'[topics]\npose = "{options.get("pose", "amcl_pose")}"\n[pose]\nstart = {pose}\n'
+            f'robot = "{robot_name}"\ncommand = "{command}"\n[bus]\nconnect = "{robots}"\nprofile = "{profile}"\n'
+            f'[topics]\npose = "{robot.get("pose", "amcl_pose")}"\n[pose]\nstart = {pose}\n'
         )
         driver = start("tailor.tools.main", "driver", file, "--connect", endpoint)
         yield System(session, endpoint, start, trace, driver, base, bus, robots_bus)
@@ -76,9 +94,12 @@ def at_rest(trace):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("command", "pose"), [("twist", "amcl_pose"), ("twist_stamped", "")])
-def test_a_plain_robot_drives_through_its_waypoints(tmp_path, command, pose):
-    with driven(tmp_path, command=command, pose=pose) as (session, endpoint, start, trace, *_):
+@pytest.mark.parametrize(
+    ("command", "robot"),
+    [("twist", {}), ("twist_stamped", {"pose": ""}), ("twist_stamped", {"profile": "rmw_zenoh"})],
+)
+def test_a_plain_robot_drives_through_its_waypoints(tmp_path, command, robot):
+    with driven(tmp_path, command=command, **robot) as (session, endpoint, start, trace, *_):
         ready(session, "agilo")
         executive = executive_on(start, endpoint, "soccer", "waypoints")
         arm(session, "agilo")

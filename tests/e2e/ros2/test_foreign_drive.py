@@ -2,10 +2,12 @@
 
 import itertools
 import math
+import subprocess
 
 import pytest
 
 from tailor.runtime.bus.opening import open_client
+from tailor.runtime.processes.child import tailor
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.ros2.profiles import KeyProfile
 from tests.support.bus_system import bus_system
@@ -49,3 +51,5 @@ def test_it_gives_a_goal_watches_and_stops_the_robot(tmp_path):
     keys = {recorded.key for recorded in open_recording(record).messages()}
     assert {"agilo/odom", "agilo/cmd_vel", "exec/tick", "estop"} <= keys
     assert not [key for key in keys if "RIHS01" in key], "recordings keep the plain keys"
+    verified = subprocess.run(tailor("verify", str(record)), capture_output=True, text=True, timeout=300)
+    assert (verified.returncode, "equal" in verified.stdout) == (0, True), verified.stdout + verified.stderr

@@ -1,0 +1,78 @@
+"""A robot with plain topics as Hardware, in this process: what counts as a measurement, and what is a fault."""
+
+import sys
+from contextlib import contextmanager
+from dataclasses import replace
+from io import StringIO
+
+import pytest
+
+from tailor.runtime.bus.opening import open_client, open_router
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Odometry
+from tailor.simnodes.hardware.plain_keys import address, named
+from tailor.simnodes.hardware.plain_robot import PlainRobot
+from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus
+from tailor.tools.commands.drivers.check_driver import _confirm
+from tailor.tools.launch.hardware import hardware_of
+from tests.support.bus_system import free_endpoint
+from tests.support.patience import wait_until
+
+ODOMETRY = Odometry(1_000_000_000, 1.0, 2.0, 0.5, 0.1, 0.2)
+
+
+@contextmanager
+def opened(profile):
+    """Yields (publisher of the robot's odometry, the driver's side of it)."""
+    codec.prime()
+    endpoint = free_endpoint()
+    bus = RobotBus(endpoint, profile=profile, domain_id=5)
+    robot = PlainRobot(PlainSettings("agilo", bus=bus, pose=PoseSettings((0.0, 0.0, 0.0))), endpoint)
+    with open_router(endpoint), open_client(endpoint) as base:
+        robot.open()
+        try:
+            odometry = base.plain_publisher(*address(bus, named("odom", "nav_msgs/msg/Odometry")))
+            wait_until(odometry.matched)
+            yield odometry, robot
+        finally:
+            robot.close()
+
+
+@pytest.mark.parametrize("profile", ["plain", "rmw_zenoh"])
+def test_odometry_that_repeats_itself_is_no_measurement(profile):
+    with opened(profile) as (odometry, robot):
+        odometry.publish_encoded(codec.encode(ODOMETRY))
+        assert wait_until(robot.read)["odom"] == ODOMETRY
+        odometry.publish_encoded(codec.encode(ODOMETRY))
+        assert [robot.read() for _ in range(5)] == [{}] * 5
+        later = replace(ODOMETRY, stamp_ns=2_000_000_000)
+        odometry.publish_encoded(codec.encode(later))
+        assert wait_until(robot.read)["odom"] == later
+
+
+def test_a_wrong_frame_is_a_fault():
+    with opened("plain") as (odometry, robot):
+        data = codec.encode(ODOMETRY)
+        odometry.publish_encoded(data.replace(b"odom\0", b"mood\0", 1))
+        with pytest.raises(ValueError, match="odom: its frame is 'mood', expected 'odom'"):
+            wait_until(robot.read)
+
+
+def test_tailors_own_topics_are_no_topics_of_a_robot(tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text('robot = "agilo"\n[topics]\ncmd_vel = "/agilo/cmd_vel"\n')
+    with pytest.raises(UsageError, match="agilo/cmd_vel is Tailor's own, past whose guard nothing may drive"):
+        hardware_of(str(file), free_endpoint())
+
+
+@pytest.mark.parametrize(("answer", "moves"), [("agilo", True), ("yes", False), (None, False)])
+def test_hardware_is_moved_only_after_its_name_was_typed(monkeypatch, answer, moves):
+    terminal = StringIO(f"{answer}\n")
+    terminal.isatty = lambda: answer is not None
+    monkeypatch.setattr(sys, "stdin", terminal)
+    if moves:
+        _confirm("agilo", agreed=False)
+        return
+    with pytest.raises(UsageError, match="confirm"):
+        _confirm("agilo", agreed=False)
