@@ -43,17 +43,21 @@ class Package:
 
 @cache
 def packages() -> tuple[Package, ...]:
-    """All installed packages in alphabetical order, read once a process."""
+    """All installed packages, ours first, each in alphabetical order; read once a process."""
     return read_packages(_declared())
 
 
 def read_packages(declared: Iterable[EntryPoint]) -> tuple[Package, ...]:
-    """The packages of entry points. One whose name or robot another one has already is at fault."""
+    """The packages of entry points. One whose name or robot another one has already is at fault; never one of ours."""
     read: list[Package] = []
-    for point in sorted(set(declared), key=lambda point: (point.name, point.value)):
+    for point in sorted(set(declared), key=lambda point: (not _is_ours(point), point.name, point.value)):
         package = _read(point)
         read.append(replace(package, faults=(*package.faults, *_taken(package, read))))
     return tuple(read)
+
+
+def _is_ours(point: EntryPoint) -> bool:
+    return point.value.startswith(f"{OURS}.")
 
 
 def _read(point: EntryPoint) -> Package:

@@ -47,7 +47,9 @@ def add_topics(known: Mapping[str, Topic], packages: Sequence[Package]) -> Packa
         except Exception as error:
             wrong: tuple[str, ...] = (f"topics = '{package.spec.topics}': {type(error).__name__}: {error}",)
         else:
-            wrong = tuple(f"topics = '{package.spec.topics}': {fault}" for fault in _faults(added, topics))
+            wrong = tuple(
+                f"topics = '{package.spec.topics}': {fault}" for fault in _faults(added, topics, package.spec.robot)
+            )
         if wrong:
             faults[package.name] = wrong
         else:
@@ -85,7 +87,7 @@ def _load(written: str) -> Any:
     return getattr(import_module(module), attribute)
 
 
-def _faults(added: Any, known: Mapping[str, Topic]) -> Iterator[str]:
+def _faults(added: Any, known: Mapping[str, Topic], robot: str) -> Iterator[str]:
     if not isinstance(added, Mapping):
         yield f"is a {type(added).__name__}, expected a table of Topics by name"
         return
@@ -96,7 +98,7 @@ def _faults(added: Any, known: Mapping[str, Topic]) -> Iterator[str]:
             yield f"'{name}' is a {type(topic).__name__}, expected a Topic"
             continue
         if name in known:
-            yield f"'{name}' is a topic already"
+            yield f"'{name}' is a topic already, expected a name of its own, such as '{robot}_{name}'"
         if topic.key in keys:
             yield f"'{name}' has the key {topic.key} of '{keys[topic.key]}'"
         yield from (f"'{name}': {fault}" for fault in (*_faults_of_row(topic), *_faults_of_type(topic.type, types)))

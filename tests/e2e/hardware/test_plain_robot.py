@@ -137,17 +137,22 @@ def test_a_plain_robot_stops_whoever_is_killed(tmp_path, dies, limit_s):
             assert (state.mode, state.reason) == ("stopped", "no valid command in time")
 
 
+def is_fault(state):
+    silent = state.detail.startswith("odom: silent for 0.5 s")
+    return (state.mode, state.reason, silent) == ("stopped", "driver fault", True)
+
+
 @pytest.mark.slow
 def test_a_robot_whose_odometry_repeats_itself_is_stopped(tmp_path):
     with driven(tmp_path) as (session, endpoint, start, trace, _, base, *_):
-        states = session.inbox(["driver"], "agilo")
+        states = session.inbox(["driver"], "agilo", newest_only=False)
         ready(session, "agilo")
         executive_on(start, endpoint, "soccer", "waypoints")
         arm(session, "agilo")
         wait_until(moving(trace), "motion")
         os.kill(base.pid, signal.SIGUSR1)
-        state = wait_until(lambda: newest(states, lambda m: m.mode == "stopped"), "stop")
-        assert (state.reason, state.detail.startswith("odom: silent for 0.5 s")) == ("driver fault", True)
+        # On a busy machine the guard may stop before, for want of commands, and the driver fail again 3 s later.
+        wait_until(lambda: newest(states, is_fault), "stop for silent odometry")
         wait_until(at_rest(trace), "rest")
 
 

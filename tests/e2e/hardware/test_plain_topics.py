@@ -66,10 +66,12 @@ def test_tailors_own_topics_are_no_topics_of_a_robot(tmp_path):
         hardware_of(str(file), free_endpoint())
 
 
-@pytest.mark.parametrize(("answer", "moves"), [("agilo", True), ("yes", False), (None, False)])
-def test_hardware_is_moved_only_after_its_name_was_typed(monkeypatch, answer, moves):
+@pytest.mark.parametrize(
+    ("answer", "is_terminal", "moves"), [("agilo", True, True), ("yes", True, False), ("agilo", False, False)]
+)
+def test_hardware_is_moved_only_after_its_name_was_typed(monkeypatch, answer, is_terminal, moves):
     terminal = StringIO(f"{answer}\n")
-    terminal.isatty = lambda: answer is not None
+    terminal.isatty = lambda: is_terminal
     monkeypatch.setattr(sys, "stdin", terminal)
     if moves:
         _confirm("agilo", agreed=False)

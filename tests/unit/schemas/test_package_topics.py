@@ -91,7 +91,7 @@ GOOD = Topic("{robot}/grip", Grip, 10, "driver")
 ROWS = {
     "is a int, expected a table": 7,
     "'grip' is a int, expected a Topic": {"grip": 7},
-    "'odom' is a topic already": {"odom": GOOD},
+    "'odom' is a topic already, expected a name of its own, such as 'pedelec_odom'": {"odom": GOOD},
     "'grip' has the key {robot}/odom of 'odom'": {"grip": replace(GOOD, key="{robot}/odom")},
     "'other' has the key {robot}/grip of 'grip'": {"grip": GOOD, "other": GOOD},
     "key is 'exec/status2'": {"grip": replace(GOOD, key="exec/status2")},

@@ -123,6 +123,18 @@ def test_one_robot_belongs_to_one_package(installs):
     assert installed.spec_of_robot("pedelec").name == "courier"
 
 
+def test_a_package_whose_name_comes_before_ours_takes_no_robot_of_ours(monkeypatch):
+    rival = DomainSpec("aaa", "agilo", "m:make", draw="m:draw")
+    monkeypatch.setattr(sys.modules[__name__], "OFFERED", rival, raising=False)
+    points = [
+        EntryPoint("aaa", f"{__name__}:OFFERED", discovery.GROUP),
+        EntryPoint("soccer", "tailor.robots.soccer:SPEC", discovery.GROUP),
+    ]
+    ours, theirs = discovery.read_packages(points)
+    assert (ours.name, ours.faults) == ("soccer", ())
+    assert "robot is 'agilo', which tailor.robots.soccer:SPEC has already" in theirs.faults
+
+
 def test_unknown_names_are_refused_with_the_known_ones(installs):
     installs(courier=":GOOD")
     with pytest.raises(UsageError, match="no domain 'chess', expected one of: courier"):
