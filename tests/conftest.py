@@ -1,10 +1,11 @@
 """Property tests draw the same examples in every run, and no clock judges them: a check fails for a reason or never.
 
-`pytest --hypothesis-profile explore` draws new ones.
+`pytest --hypothesis-profile explore` draws new ones. Tests that share a fixture of their module run on one worker.
 """
 
 import os
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 pytest_plugins = ["tests.support.safety.promises"]
@@ -13,3 +14,16 @@ os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onn
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeat", settings.get_profile("explore"), derandomize=True)
 settings.load_profile("repeat")
+
+
+@pytest.hookimpl(tryfirst=True)  # xdist reads the marks in its own
+def pytest_collection_modifyitems(config, items):
+    """With `--dist loadgroup`, run a group on one worker, and make each fixture of a module once."""
+    for item in items:
+        fixtures = (each for defs in item._fixtureinfo.name2fixturedefs.values() for each in defs)
+        if item.get_closest_marker("xdist_group") is None and any(each.scope == "module" for each in fixtures):
+            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
+        group = item.get_closest_marker("xdist_group")
+        # xdist up to 3.8 cannot name the group of an item to pytest from 9.2 on: pytest-dev/pytest-xdist#1386
+        if group is not None and getattr(config.option, "loadgroup", False) and hasattr(item, "_id"):
+            item._id = type(item._id).parse(f"{item.nodeid}@{group.args[0]}")

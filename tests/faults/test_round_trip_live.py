@@ -14,9 +14,15 @@ from tests.support.stalls import repeat_on_stall
 
 RAMP_S_PER_S = 0.2
 TRIES = [1, pytest.param(20, marks=pytest.mark.slow)]
-LATE = {"commands": (0.8, 0.0), "driver states": (0.0, 0.8), "both": (0.8, 0.8)}  # seconds; to and from the driver
+LATE = {"driver states": (0.0, 0.8), "commands": (0.8, 0.0), "both": (0.8, 0.8)}  # seconds; to and from the driver
 SETTLE_S = 3.0  # the last commands before the echo was too old have arrived
 IN_TIME = {"both": (0.25, 0.25), "driver states": (0.0, 0.6)}
+
+
+def first_fast(ways):
+    """One way among the fast tests, the others among the slow ones: the delays grow for seven seconds in each."""
+    first, *others = ways
+    return pytest.mark.parametrize("way", [first, *(pytest.param(way, marks=pytest.mark.slow) for way in others)])
 
 
 def creeps_up(robot, delays_s):
@@ -40,7 +46,7 @@ def set_points(robot, duration_s):
 @pytest.mark.promise("P13")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("tries", TRIES)
-@pytest.mark.parametrize("way", LATE)
+@first_fast(LATE)
 def test_at_a_delay_of_800_ms_the_robot_stands_although_it_is_armed(tmp_path, way, tries, measured):
     phases = random.Random(9)
     with robot_in(tmp_path) as robot:
@@ -62,7 +68,7 @@ def test_at_a_delay_of_800_ms_the_robot_stands_although_it_is_armed(tmp_path, wa
 @pytest.mark.promise("P13")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("tries", TRIES)
-@pytest.mark.parametrize("way", IN_TIME)
+@first_fast(IN_TIME)
 def test_a_round_trip_of_600_ms_holds_up_nobody(tmp_path, way, tries):
     with robot_in(tmp_path) as robot:
 

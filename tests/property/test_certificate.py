@@ -19,6 +19,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
+from tests.support.examples import examples
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints, within
 
@@ -66,16 +67,22 @@ def new_proof(
     return proof
 
 
-@settings(max_examples=40, deadline=None)
-@given(kinds, seeds, st.sampled_from([0.0, 1.0, 2.0]), st.booleans())
-def test_no_choice_costs_less_than_the_bound(kind, seed, k_std, spread):
-    proof = new_proof(kind, seed, k_std, spread)
-    proof.advance(CheckBudget(25))
-    cost, _ = objective(kind, seed, k_std, spread)
-    drawn = cost.ranges.draw(4000, np.random.default_rng(seed))
-    near = proof.best + 0.02 * cost.ranges.width * np.random.default_rng(seed).standard_normal((1000, len(proof.best)))
-    assert proof.bound <= cost(np.vstack([drawn, cost.ranges.confine(near)])).min()
-    assert proof.bound <= proof.value
+@examples(12, 40)
+def test_no_choice_costs_less_than_the_bound(count):
+    @settings(max_examples=count, deadline=None)
+    @given(kinds, seeds, st.sampled_from([0.0, 1.0, 2.0]), st.booleans())
+    def holds(kind, seed, k_std, spread):
+        proof = new_proof(kind, seed, k_std, spread)
+        proof.advance(CheckBudget(25))
+        cost, _ = objective(kind, seed, k_std, spread)
+        drawn = cost.ranges.draw(4000, np.random.default_rng(seed))
+        near = proof.best + 0.02 * cost.ranges.width * np.random.default_rng(seed).standard_normal(
+            (1000, len(proof.best))
+        )
+        assert proof.bound <= cost(np.vstack([drawn, cost.ranges.confine(near)])).min()
+        assert proof.bound <= proof.value
+
+    holds()
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -90,28 +97,36 @@ def test_one_subgoal_is_bounded_by_no_more_than_a_fine_grid_finds(seed):
         assert proof.bound > 0.9 * min(grid, proof.value)  # and by hardly less
 
 
-@settings(max_examples=25, deadline=None)
-@given(kinds, seeds)
-def test_bound_never_falls_and_choice_never_gets_worse(kind, seed):
-    proof = new_proof(kind, seed)
-    bounds, values = [proof.bound], [proof.value]
-    for _ in range(30):
-        proof.advance(CheckBudget(1))
-        bounds.append(proof.bound)
-        values.append(proof.value)
-    assert all(earlier <= later for earlier, later in pairwise(bounds))
-    assert all(later <= earlier for earlier, later in pairwise(values))
+@examples(8, 25)
+def test_bound_never_falls_and_choice_never_gets_worse(count):
+    @settings(max_examples=count, deadline=None)
+    @given(kinds, seeds)
+    def holds(kind, seed):
+        proof = new_proof(kind, seed)
+        bounds, values = [proof.bound], [proof.value]
+        for _ in range(30):
+            proof.advance(CheckBudget(1))
+            bounds.append(proof.bound)
+            values.append(proof.value)
+        assert all(earlier <= later for earlier, later in pairwise(bounds))
+        assert all(later <= earlier for earlier, later in pairwise(values))
+
+    holds()
 
 
-@settings(max_examples=25, deadline=None)
-@given(kinds, seeds, st.lists(st.integers(1, 8), min_size=1, max_size=6))
-def test_slices_equal_one_run_with_the_same_checks(kind, seed, slices):
-    whole, sliced = new_proof(kind, seed), new_proof(kind, seed)
-    whole.advance(CheckBudget(sum(slices)))
-    for checks in slices:
-        sliced.advance(CheckBudget(checks))
-    assert (whole.bound, whole.value, whole.checks) == (sliced.bound, sliced.value, sliced.checks)
-    assert np.array_equal(whole.best, sliced.best)
+@examples(8, 25)
+def test_slices_equal_one_run_with_the_same_checks(count):
+    @settings(max_examples=count, deadline=None)
+    @given(kinds, seeds, st.lists(st.integers(1, 8), min_size=1, max_size=6))
+    def holds(kind, seed, slices):
+        whole, sliced = new_proof(kind, seed), new_proof(kind, seed)
+        whole.advance(CheckBudget(sum(slices)))
+        for checks in slices:
+            sliced.advance(CheckBudget(checks))
+        assert (whole.bound, whole.value, whole.checks) == (sliced.bound, sliced.value, sliced.checks)
+        assert np.array_equal(whole.best, sliced.best)
+
+    holds()
 
 
 def test_gap_that_is_good_enough_is_proven_for_one_subgoal_and_for_three():

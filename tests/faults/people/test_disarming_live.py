@@ -18,6 +18,7 @@ from tests.support.patience import PATIENCE_S, wait_until
 
 pytestmark = pytest.mark.xdist_group("live")
 KILLS = 3  # of one executive: the launcher gives up a child that it starts five times in a minute
+SLOW = pytest.mark.slow
 
 
 def arm(endpoint, *flags):
@@ -36,7 +37,7 @@ def disarmed(robot):
 
 
 @pytest.mark.promise("P52")
-@pytest.mark.parametrize("tries", [2, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("tries", [1, pytest.param(20, marks=SLOW)])
 def test_disarming_is_confirmed_on_a_busy_machine(tmp_path, tries):
     with guarded_robot(tmp_path) as (session, endpoint, start, trace):
         robot = Driven(session, endpoint, start, trace)
@@ -46,8 +47,8 @@ def test_disarming_is_confirmed_on_a_busy_machine(tmp_path, tries):
 
 
 @pytest.mark.promise("P52")
-@pytest.mark.parametrize("number", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 7))])
-def test_disarming_is_confirmed_while_the_executive_restarts(number):
+@pytest.mark.parametrize(("number", "kills"), [(0, 1), *(pytest.param(n, KILLS, marks=SLOW) for n in range(7))])
+def test_disarming_is_confirmed_while_the_executive_restarts(number, kills):
     phases = random.Random(number)
     endpoint = free_endpoint()
     up = Child("up", tailor("up", "soccer", "--scenario", "waypoints", "--connect", endpoint), subprocess.DEVNULL)
@@ -57,7 +58,7 @@ def test_disarming_is_confirmed_while_the_executive_restarts(number):
             states = session.inbox(["driver"], "agilo")
             newest = partial(newest_state, states)
             wait_until(lambda: newest().mode == "armed", "armed by its executive")
-            for _ in range(KILLS):
+            for _ in range(kills):
                 os.kill(child_pid(up.pid, "executive"), signal.SIGKILL)
                 time.sleep(phases.uniform(0.0, 1.0))
                 done = arm(endpoint, "--off")

@@ -24,7 +24,7 @@ def tries(slow):
 
 @pytest.mark.promise("P2")
 @pytest.mark.xdist_group("live")
-@pytest.mark.parametrize("name", ["executive", "sim"])
+@pytest.mark.parametrize("name", ["executive", pytest.param("sim", marks=pytest.mark.slow)])
 @tries(20)
 def test_a_frozen_child_is_killed_and_started_again_and_the_robot_waits_for_people(name, number, tmp_path, measured):
     with launched(tmp_path) as system:

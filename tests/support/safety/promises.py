@@ -99,7 +99,7 @@ class Summary:
         promises = [number for name, value in properties if name == PROMISES for number in value]
         if not promises or (report.when != "call" and not report.failed):
             return
-        test = "::".join(report.nodeid.partition("[")[0].split("::")[:2])
+        test = "::".join(report.nodeid.partition("@")[0].partition("[")[0].split("::")[:2])
         outcome = self.outcomes.setdefault(test, Outcome(promises))
         outcome.passed += report.when == "call" and report.passed
         outcome.failed += report.failed

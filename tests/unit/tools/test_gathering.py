@@ -23,6 +23,14 @@ def gather(folder: Path, *more: str, seed: int = 7) -> int:
     return main(["gather", "agilo", "goToPose", "--out", str(folder), *settings, *more])
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_draws():
+    """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gathering, "RANGE_DRAWS", 64)
+        yield
+
+
 @pytest.fixture(scope="module")
 def gathered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("gathered")

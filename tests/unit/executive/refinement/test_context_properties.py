@@ -18,6 +18,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.executive.refinement.refinement import Refinement
 from tests.property.test_stage_bounds import assert_no_stage_costs_less
+from tests.support.examples import examples
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import DRIBBLE
 from tests.unit.executive.refinement.synthetic_context import APPROACH_AROUND, BESIDE, CONTEXT, GO_AROUND, beside
@@ -102,14 +103,18 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_the_bound_beside_objects(be
     assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
 
 
-@settings(max_examples=15, deadline=None)
-@given(discs, seeds)
-def test_no_choice_beside_objects_costs_less_than_the_certificate_proves(belief, seed):
-    cost, chosen = task(belief, seed)
-    drawn = cost.ranges.draw(3000, np.random.default_rng(seed))
-    best = drawn[int(np.argmin(cost(drawn)))]
-    proof = certificate(cost, best, chosen)
-    assert isinstance(proof, Certificate)
-    proof.advance(CheckBudget(40))
-    assert proof.bound <= cost(drawn).min()
-    assert len(CONTEXT.columns) == 3
+@examples(5, 15)
+def test_no_choice_beside_objects_costs_less_than_the_certificate_proves(count):
+    @settings(max_examples=count, deadline=None)
+    @given(discs, seeds)
+    def holds(belief, seed):
+        cost, chosen = task(belief, seed)
+        drawn = cost.ranges.draw(3000, np.random.default_rng(seed))
+        best = drawn[int(np.argmin(cost(drawn)))]
+        proof = certificate(cost, best, chosen)
+        assert isinstance(proof, Certificate)
+        proof.advance(CheckBudget(40))
+        assert proof.bound <= cost(drawn).min()
+        assert len(CONTEXT.columns) == 3
+
+    holds()

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tailor.models.episodes.episodes import read_data_set
-from tailor.tools.learning import active_gathering
+from tailor.tools.learning import active_gathering, gathering
 from tailor.tools.learning.active_gathering import Active, run_active, selected
 from tailor.tools.learning.refined_choices import Choice
 from tailor.tools.main import main
@@ -23,6 +23,14 @@ def test_the_choices_with_the_largest_disagreement_are_selected() -> None:
     chosen = selected(pool, 2)
     assert [each.std_s for each in chosen["a"]] == [0.3, 0.2]
     assert [each.std_s for each in chosen["b"]] == [9.0]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_draws():
+    """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gathering, "RANGE_DRAWS", 64)
+        yield
 
 
 @pytest.fixture(scope="module")

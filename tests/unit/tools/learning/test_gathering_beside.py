@@ -21,7 +21,7 @@ from tailor.tools.learning.training_run import train_action
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.samplers.soccer import SoccerSampler
 
-COUNT = 100
+COUNT, COUNT_ALONE = 100, 40
 RADIUS_M = 0.2
 COLUMNS = (
     ContextColumn("obstacle_x", "m", -3.5, 3.5, 0.1),
@@ -55,8 +55,8 @@ def beside(tmp_path_factory: pytest.TempPathFactory):
     patch.setattr(action_run, "sampler_of", lambda domain: AmongOpponents())
     root = tmp_path_factory.mktemp("beside")
     specs = [
-        DataSetSpec("soccer", "goToPose", COUNT, 7, root / name / "goToPose", beside=name == "beside")
-        for name in ("beside", "alone")
+        DataSetSpec("soccer", "goToPose", count, 7, root / name / "goToPose", beside=name == "beside")
+        for name, count in (("beside", COUNT), ("alone", COUNT_ALONE))
     ]
     for spec in specs:
         gathering.prepare(spec, resume=False)
@@ -93,7 +93,7 @@ def test_other_failures_do_not_count_against_the_object(beside) -> None:
 
 
 def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_path: Path) -> None:
-    request = TrainingRequest("agilo", tmp_path, seed=1)
+    request = TrainingRequest("agilo", tmp_path, seed=1, learner="m5")  # the default blends networks: 40 s
     (tmp_path / "agilo").mkdir()
     rows = {row["kind"]: row for row in train_action(list(beside), request)}
     assert set(rows) == {"duration", "energy", "clearance"}

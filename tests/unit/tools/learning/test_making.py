@@ -30,6 +30,7 @@ def trained(monkeypatch) -> list:
     monkeypatch.setattr(making_module, "_train", train)
     monkeypatch.setattr(making_module, "check_complete", lambda _: None)
     monkeypatch.setattr(making_module.run_gathering, "models_hash", lambda *_: "models")
+    monkeypatch.setattr(making_module.gathering, "RANGE_DRAWS", 64)
     monkeypatch.setattr(making_module.run_gathering, "_run", lambda *_: [])
     monkeypatch.setattr(making_module.gathering, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
     return requests
