@@ -18,6 +18,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "cluster": ("distributed",),
     "kairos": ("kairos",),
     "gym": ("gymnasium",),
+    "hub": ("huggingface_hub",),
     "up": ("unified_planning",),
 }
 # command -> extras without which it can do nothing; others are missed only where an option needs them

@@ -1,4 +1,4 @@
-"""List, show, explain, draw and check action models."""
+"""List, show, explain, draw and check action models; share them, and data sets, on the Hugging Face hub."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from tailor.models.runtime import ZOO, OnnxModel, load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.terminal import table_console
+from tailor.tools.hub import sharing
 
 EPILOG = """\
 examples:
@@ -27,32 +28,42 @@ examples:
   tailor models rules agilo/goToPose --of bag:3
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
+  tailor models push agilo --to USER/agilo-models         (a repository of the hub, private if it is new)
+  tailor models push agilo --to ./agilo-models            (the same as a folder, with README.md and checksums)
+  tailor models pull --from USER/agilo-models --zoo out/zoo
+  tailor models push --data data/agilo --to USER/agilo-episodes          (data sets instead of models)
+  tailor models pull --data data/theirs --from USER/agilo-episodes
 
 MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), energy or success. ROBOT alone stands for all its models; no
 MODEL stands for all models in the zoo."""
-VERBS = ("list", "show", "rules", "plot", "check")
+VERBS = ("list", "show", "rules", "plot", "check", "push", "pull")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    verbs = "one line per model; its card; its rules; pictures; run all checks (exit code 1 if any fails)"
+    checks = "run all checks (exit code 1 if any fails)"
+    verbs = f"one line per model; its card; its rules; pictures; {checks}; share; get and check"
     parser.add_argument("verb", choices=VERBS, help=verbs)
     parser.add_argument("models", nargs="*", metavar="MODEL", help="models (default: all)")
     parser.add_argument("--zoo", type=Path, help="folder of models (default: the one of the robot)")
-    parser.add_argument("--data", type=Path, help="plot, rules: folder with data sets (default: data/ROBOT)")
+    data = "plot, rules: folder with data sets (default: data/ROBOT); push, pull: data sets there instead of models"
+    parser.add_argument("--data", type=Path, metavar="DIR", help=data)
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--of", metavar="TREE", help="rules: a single tree of the model, as bag:3 or forest:1")
     which.add_argument(
         "--distilled", action="store_true", help="rules: a tree distilled from the model (default if it has several)"
     )
     parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
-    parser.add_argument("--json", action="store_true", help="list, show, check: print JSON")
+    parser.add_argument("--json", action="store_true", help="list, show, check, push, pull: print JSON")
+    sharing.configure(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; exit code 0, or 1 if a check fails."""
+    if arguments.verb in sharing.VERBS:
+        return sharing.run(arguments)
     arguments.zoo = arguments.zoo or _zoo_of(arguments.models)
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":

@@ -1,0 +1,217 @@
+"""Models and data sets go to a hub or a folder and come back unchanged; what is damaged or in the way is refused."""
+
+import filecmp
+import json
+import shutil
+
+import huggingface_hub.constants
+import numpy as np
+import pytest
+from huggingface_hub import DatasetCard, ModelCard
+
+from tailor.models.episodes.episodes import Episode, read_data_set, write_part
+from tailor.models.episodes.manifest import write_manifest
+from tailor.models.runtime import ZOO, load_model
+from tailor.tools.hub import transfer
+from tailor.tools.main import main
+from tests.support.standin_hub import TOKEN, running_hub
+
+ROBOT = "powercube"
+
+
+@pytest.fixture
+def hub(monkeypatch, tmp_path):
+    with running_hub() as hub:
+        files = f"{hub.url}/{{repo_id}}/resolve/{{revision}}/{{filename}}"  # both are read when the client is imported
+        monkeypatch.setattr(huggingface_hub.constants, "ENDPOINT", hub.url)
+        monkeypatch.setattr(huggingface_hub.constants, "HUGGINGFACE_CO_URL_TEMPLATE", files)
+        monkeypatch.setenv("HF_ENDPOINT", hub.url)
+        monkeypatch.setenv("HF_TOKEN", TOKEN)
+        monkeypatch.chdir(tmp_path)
+        yield hub
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Models as a folder of the hub."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["models", "push", ROBOT, "--to", "./pushed"]) == 0
+    return tmp_path / "pushed"
+
+
+def data_sets(folder):
+    """Two data sets of a robot."""
+    arguments = [{"name": name, "unit": "m", "lower": 0.0, "upper": 1.0} for name in ("x", "xg")]
+    for action in ("go", "turn"):
+        (folder / action).mkdir(parents=True)
+        rows = [np.array([[0.1, k / 10], [0.2, k / 10]]) for k in range(3)]
+        episodes = [Episode(k, row[0], row, 0.2, True, "") for k, row in enumerate(rows)]
+        write_part(folder / action / "part-00000.parquet", episodes, ["x", "xg"])
+        about = {"source": "lock-step", "seed": 3, "episodes": 3}
+        write_manifest(folder / action, {"robot": "rover", "action": action, "arguments": arguments, **about})
+    return folder
+
+
+def equal(one, other, names):
+    return filecmp.cmpfiles(one, other, names, shallow=False)[0] == names
+
+
+def refused(capsys, *arguments):
+    """The one line on stderr."""
+    capsys.readouterr()
+    assert main(["models", *map(str, arguments)]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    return captured.err
+
+
+FILES = [f"{ROBOT}/reach/{kind}.{end}" for kind in ("duration", "energy") for end in ("onnx", "card.json")]
+
+
+def test_models_come_back_from_the_hub_unchanged(hub, tmp_path, capsys):
+    assert main(["models", "push", ROBOT, "--to", "user/arm-models", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["pushed"].endswith("/user/arm-models/commit/1")
+    assert hub.visibility == {("model", "user/arm-models"): "private"}
+    assert main(["models", "pull", "--from", "user/arm-models", "--zoo", "zoo", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["pulled"]) == 2
+    assert equal(ZOO, tmp_path / "zoo", FILES)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["zoo"]
+
+
+def test_a_repository_is_public_only_on_request(hub):
+    assert main(["models", "push", ROBOT, "--to", "user/arm-models", "--public"]) == 0
+    assert hub.visibility == {("model", "user/arm-models"): "public"}
+
+
+def test_data_sets_come_back_from_the_hub_unchanged(hub, tmp_path, capsys):
+    data = data_sets(tmp_path / "data")
+    assert main(["models", "push", "--data", str(data), "--to", "user/episodes"]) == 0
+    assert main(["models", "pull", "--data", "theirs", "--from", "user/episodes"]) == 0
+    names = [f"{action}/{file}" for action in ("go", "turn") for file in ("manifest.json", "part-00000.parquet")]
+    assert equal(data, tmp_path / "theirs", names)
+    assert read_data_set(tmp_path / "theirs" / "go").sha256 == read_data_set(data / "go").sha256
+
+
+def test_the_card_of_models_has_the_hub_s_metadata_and_our_figures(folder):
+    card = ModelCard.load(folder / "README.md")
+    assert (card.data.license, card.data.library_name) == ("apache-2.0", "tailor")
+    assert {"robotics", "onnx", ROBOT} <= set(card.data.tags)
+    figures = {result.metric_name: result.metric_value for result in card.data.eval_results}
+    test = load_model("powercube/reach/duration").card["test"]
+    assert figures["reach: mean absolute error of the duration (s)"] == round(test["mae_s"], 4)
+    assert load_model("powercube/reach/duration").card["command"] in card.text
+
+
+def test_the_card_of_data_names_the_parts_of_each_configuration(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "data")
+    command = ["models", "push", "--data", "data", "--to", "./pushed", "--license", "cc-by-4.0"]
+    assert main(command) == 0
+    card = DatasetCard.load(tmp_path / "pushed" / "README.md")
+    assert (card.data.license, card.data.size_categories) == ("cc-by-4.0", ["n<1K"])
+    for each in card.data.configs:
+        (files,) = each["data_files"]
+        assert files["split"] == "train"
+        assert [p.parent.name for p in (tmp_path / "pushed").glob(files["path"])] == [each["config_name"]]
+    assert [each["config_name"] for each in card.data.configs] == ["go", "turn"]
+    for column in read_columns(tmp_path / "pushed" / "go" / "part-00000.parquet"):
+        assert f"| {column} |" in card.text
+
+
+def read_columns(part):
+    import pyarrow.parquet as pq
+
+    return pq.read_schema(part).names
+
+
+@pytest.mark.parametrize("file", [FILES[0], FILES[1]])
+def test_a_changed_file_is_refused_and_nothing_is_installed(folder, tmp_path, capsys, file):
+    content = (folder / file).read_bytes()
+    (folder / file).write_bytes(content[:-9] + b"_" + content[-8:])
+    assert "sha256 is" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["pushed"] or not list((tmp_path / "zoo").rglob("*.onnx"))
+
+
+def test_a_file_changed_on_the_way_is_refused(hub, tmp_path, capsys):
+    assert main(["models", "push", ROBOT, "--to", "user/arm-models"]) == 0
+    content = hub.files["model", "user/arm-models"][FILES[0]]
+    hub.answers[FILES[0]] = content[:-1] + bytes([content[-1] ^ 1])
+    assert f"{FILES[0]}: sha256 is" in refused(capsys, "pull", "--from", "user/arm-models", "--zoo", "zoo")
+
+
+def test_models_that_are_there_are_kept_without_replace(folder, tmp_path, capsys):
+    mine = tmp_path / "zoo" / ROBOT / "reach"
+    mine.mkdir(parents=True)
+    (mine / "duration.onnx").write_bytes(b"mine")
+    (mine / "success.onnx").write_bytes(b"old")
+    assert "exists, expected an empty place, or --replace" in refused(
+        capsys, "pull", "--from", "./pushed", "--zoo", "zoo"
+    )
+    assert (mine / "duration.onnx").read_bytes() == b"mine"
+    assert main(["models", "pull", "--from", "./pushed", "--zoo", "zoo", "--replace"]) == 0
+    assert equal(ZOO, tmp_path / "zoo", FILES)
+    assert not (mine / "success.onnx").exists()
+
+
+def test_an_interrupted_pull_leaves_what_was_there(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "data")
+    shutil.copytree(tmp_path / "data", tmp_path / "mine")
+    (tmp_path / "mine" / "go" / "part-00001.parquet").write_bytes(b"mine")
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(transfer, "read_manifest", interrupted)
+    assert main(["models", "pull", "--data", "mine", "--from", "./pushed", "--replace"]) == 130
+    assert (tmp_path / "mine" / "go" / "part-00001.parquet").read_bytes() == b"mine"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["data", "mine", "pushed"]
+
+
+def test_a_swap_that_was_killed_is_completed_by_the_next_one(tmp_path):
+    (tmp_path / ".old.replaced").mkdir()  # what was there; a kill came before the new one took its place
+    (tmp_path / ".old.replaced" / "kept").touch()
+    (tmp_path / "new").mkdir()
+    transfer._swap(tmp_path / "new", tmp_path / "old")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["old"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("push", ROBOT), "push needs --to USER/NAME"),
+        (("pull",), "pull needs --from USER/NAME"),
+        (("push", "--to", "./a"), "push: expected one ROBOT"),
+        (("push", ROBOT, "--to", "a b"), "'a b': expected USER/NAME, a repository of the hub, or a folder as ./NAME"),
+        (("push", ROBOT, "--to", "tests/arm"), "'tests/arm': there is a folder of that name here"),
+        (("push", ROBOT, "--to", "./a", "--replace"), "push takes no --replace"),
+        (("push", "hal", "--to", "./a"), "hal"),
+        (("pull", "--from", "./nothing"), "nothing: no such folder"),
+        (("pull", "--from", "./tests"), "there is no SHA256SUMS"),
+        (("push", "--data", "nowhere", "--to", "./a"), "nowhere: data sets of none"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(arguments, expected, tmp_path, monkeypatch, capsys):
+    (tmp_path / "tests").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert expected in refused(capsys, *arguments)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["tests"]
+
+
+def test_a_list_of_checksums_names_no_file_outside_of_its_folder(folder, capsys):
+    with (folder / "SHA256SUMS").open("a") as file:
+        file.write(f"{'0' * 64}  ../../secret\n")
+    assert "no list of checksums" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
+
+
+def test_what_the_hub_refuses_is_reported_in_one_line(hub, capsys, monkeypatch):
+    assert "user/none: no such repository" in refused(capsys, "pull", "--from", "user/none", "--zoo", "zoo")
+    hub.files["model", "user/empty"] = {}
+    assert "no such revision" in refused(capsys, "pull", "--from", "user/empty", "--revision", "v9", "--zoo", "zoo")
+    monkeypatch.setenv("HF_TOKEN", "hf_other")
+    assert "user/mine: the hub refuses with status 401" in refused(capsys, "push", ROBOT, "--to", "user/mine")
+    monkeypatch.setenv("HF_ENDPOINT", "http://127.0.0.1:9")
+    assert "user/mine: the hub cannot be reached" in refused(capsys, "pull", "--from", "user/mine", "--zoo", "zoo")
+    assert "user/mine: the hub cannot be reached" in refused(capsys, "push", ROBOT, "--to", "user/mine")

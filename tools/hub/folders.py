@@ -1,0 +1,70 @@
+"""Folders as the hub takes them: the files of a zoo or of data sets, a card, checksums."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from tailor.models.cards.card import card_path
+from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.runtime import load_model
+from tailor.schemas.errors import UsageError
+from tailor.tools.hub.checksums import CHECKSUMS, write_checksums
+from tailor.tools.hub.data_card import data_card
+from tailor.tools.hub.licence import licence_of
+from tailor.tools.hub.model_card import model_card
+
+README = "README.md"
+MODEL_FILES = ("*/*/*.onnx", "*/*/*.card.json", CHECKSUMS)
+DATA_FILES = ("*/part-*.parquet", f"*/{MANIFEST}", CHECKSUMS)
+
+
+def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> None:
+    """Write a robot's models, each checked, as a folder of the hub.
+
+    Args:
+      zoo: Folder of models.
+      robot: Name of the robot.
+      licence: SPDX id; None: that of the robot's package.
+      folder: An empty folder.
+
+    Raises:
+      UsageError: There are no models of the robot, or one is damaged.
+    """
+    models = sorted((zoo / robot).glob("*/*.onnx"))
+    if not models:
+        raise UsageError(f"{zoo / robot}: no action models, expected ACTION/duration.onnx (`tailor train` writes them)")
+    cards = [load_model(model).card for model in models]
+    files = [file.relative_to(zoo) for model in models for file in (model, card_path(model))]
+    _copy(zoo, files, folder)
+    (folder / README).write_text(model_card(robot, cards, licence or licence_of(robot)), encoding="utf-8")
+    write_checksums(folder, files)
+
+
+def write_data(data: Path, licence: str | None, folder: Path) -> None:
+    """Write the data sets in the sub-folders of a folder as a folder of the hub.
+
+    Raises:
+      UsageError: There are no data sets, or they are of several robots.
+    """
+    import pyarrow.parquet as pq  # here, so that models need no pyarrow
+
+    sets = sorted(manifest.parent for manifest in data.glob(f"*/{MANIFEST}"))
+    manifests = {each.name: read_manifest(each) for each in sets}
+    robots = sorted({manifest["robot"] for manifest in manifests.values()})
+    if len(robots) != 1:
+        found = ", ".join(robots) or "none"
+        raise UsageError(f"{data}: data sets of {found}, expected those of one robot (`tailor gather` writes them)")
+    parts = [part for each in sets for part in sorted(each.glob("part-*.parquet"))]
+    files = [file.relative_to(data) for file in (*parts, *(each / MANIFEST for each in sets))]
+    rows = sum(pq.read_metadata(part).num_rows for part in parts)
+    _copy(data, files, folder)
+    card = data_card(robots[0], manifests, rows, licence or licence_of(robots[0]))
+    (folder / README).write_text(card, encoding="utf-8")
+    write_checksums(folder, files)
+
+
+def _copy(source: Path, files: list[Path], target: Path) -> None:
+    for file in files:
+        (target / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source / file, target / file)

@@ -1,0 +1,163 @@
+"""Push and pull: models and data sets to and from a repository of the hub, or a folder of the same layout.
+
+Everything is written into a temporary folder first and then moved; whoever interrupts it keeps what he had.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from tailor.executive.composition import required_ranges
+from tailor.models.cards.card import card_path
+from tailor.models.cards.checks import check_ranges
+from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.runtime import load_model
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names
+from tailor.tools.hub.checksums import checked_files
+from tailor.tools.hub.client import download, upload
+from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
+from tailor.tools.hub.place import Place
+from tailor.tools.learning.target_zoo import target_zoo
+
+
+def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:
+    """Write a folder and move or upload it; returns where it is now.
+
+    Args:
+      write: Fills an empty folder.
+      place: A repository, or a folder that does not exist.
+      kind: "model" or "dataset".
+      public: Whether everyone may read a new repository.
+
+    Raises:
+      UsageError: Nothing to push, the folder exists, or the hub refuses.
+    """
+    if place.folder is not None and place.folder.exists():
+        raise UsageError(f"{place.folder}: exists, expected a new folder")
+    with _temporary_beside(place.folder or Path(tempfile.gettempdir()) / "push") as temporary:
+        write(temporary)
+        if place.folder is None:
+            return upload(temporary, str(place.repository), kind, public)
+        temporary.rename(place.folder)
+    return str(place.folder)
+
+
+def pull_models(place: Place, revision: str | None, zoo: Path | None, replace: bool) -> list[Path]:
+    """Get models, check each, and put them into a zoo; returns their paths there.
+
+    Args:
+      place: Where `push` put them.
+      revision: Branch, tag or commit of a repository; None: the newest.
+      zoo: Folder of models; None: as `tailor train` chooses it.
+      replace: Whether models of the robot in the zoo are replaced, and those removed that were not pulled.
+
+    Raises:
+      UsageError: Nothing there, a file differs from its checksum, a model is damaged or unsuitable, or the zoo has
+        models of that robot.
+    """
+    with _temporary_beside((zoo or Path(tempfile.gettempdir())) / "pull") as temporary:
+        files = _fetched(place, "model", revision, MODEL_FILES, temporary)
+        models = [file for file in files if file.suffix == ".onnx" and len(file.parts) == 3]
+        robots = {model.parts[0] for model in models}
+        if len(robots) != 1:
+            raise UsageError(f"{place}: models of {', '.join(sorted(robots)) or 'no robot'}, expected those of one")
+        robot = robots.pop()
+        for model in models:
+            _check(temporary / model)
+        target = target_zoo(zoo, robot)
+        _install(temporary, models, target, robot, replace)
+    return [target / model for model in models]
+
+
+def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> list[Path]:
+    """Get data sets and put them into a folder; returns their folders there.
+
+    Raises:
+      UsageError: Nothing there, a file differs from its checksum, or the folder has a data set of that name.
+    """
+    with _temporary_beside(data) as temporary:
+        files = _fetched(place, "dataset", revision, DATA_FILES, temporary)
+        names = sorted({file.parts[0] for file in files if file.name == MANIFEST and len(file.parts) == 2})
+        if not names:
+            raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
+        for name in names:
+            read_manifest(temporary / name)
+        _refuse([data / name for name in names if (data / name).exists() and not replace])
+        data.mkdir(parents=True, exist_ok=True)
+        for name in names:
+            _swap(temporary / name, data / name)
+    return [data / name for name in names]
+
+
+@contextmanager
+def _temporary_beside(target: Path) -> Iterator[Path]:
+    """A folder on the same disk as a target, from which moving is one step; removed at the end."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}-"))
+    folder.chmod(0o755)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[str], into: Path) -> list[Path]:
+    """Files of a place, as its checksums list them."""
+    if place.folder is None:
+        download(str(place.repository), kind, revision, patterns, into)
+    elif not place.folder.is_dir():
+        raise UsageError(f"{place}: no such folder, expected what `tailor models push --to {place}` wrote")
+    else:
+        for file in (file for pattern in patterns for file in place.folder.glob(pattern)):
+            target = into / file.relative_to(place.folder)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, target)
+    try:
+        return checked_files(into)
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from None
+
+
+def _check(model: Path) -> None:
+    """Raise UsageError if a model is damaged, or its robot's actions need a wider range."""
+    card, robot, action = load_model(model).card, model.parts[-3], model.parts[-2]
+    if robot in robot_names():
+        check_ranges(card, required_ranges(robot).get(action, {}), model)
+
+
+def _install(source: Path, models: list[Path], zoo: Path, robot: str, replace: bool) -> None:
+    """Move models with their cards into a zoo, file by file."""
+    old = {path.relative_to(zoo) for path in (zoo / robot).glob("*/*.onnx")}
+    _refuse([zoo / path for path in sorted(old) if not replace])
+    for model in models:
+        (zoo / model).parent.mkdir(parents=True, exist_ok=True)
+        for file in (model, card_path(model)):
+            beside = zoo / file.with_name(f".{file.name}.pulled")
+            shutil.copyfile(source / file, beside)
+            beside.replace(zoo / file)
+    for model in old - set(models):
+        (zoo / model).unlink()
+        card_path(zoo / model).unlink(missing_ok=True)
+
+
+def _refuse(existing: list[Path]) -> None:
+    if existing:
+        more = f" and {len(existing) - 1} more" if len(existing) > 1 else ""
+        raise UsageError(f"{existing[0]}{more}: exists, expected an empty place, or --replace")
+
+
+def _swap(new: Path, old: Path) -> None:
+    """Put a folder in the place of another one, which is removed last."""
+    aside = old.with_name(f".{old.name}.replaced")
+    if aside.exists() and not old.exists():
+        aside.rename(old)  # an earlier swap was killed here
+    shutil.rmtree(aside, ignore_errors=True)
+    if old.exists():
+        old.rename(aside)
+    new.rename(old)
+    shutil.rmtree(aside, ignore_errors=True)
