@@ -14,7 +14,7 @@ from tailor.models.episodes.manifest import write_manifest
 from tailor.models.runtime import ZOO, load_model
 from tailor.tools.hub import transfer
 from tailor.tools.main import main
-from tests.support.standin_hub import TOKEN, running_hub
+from tests.support.stand_ins.hub import TOKEN, running_hub
 
 ROBOT = "powercube"
 
