@@ -29,7 +29,7 @@ def draw_paths(tracks: list[Track], path: Path) -> None:
 
 def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
     """Draw one run an axis, all to one scale; the first shows the scale of the speed."""
-    limits = _limits(tracks)
+    limits = limits_of(tracks)
     headed = any(p.phi is not None for track in tracks for p in track.points)
     names = ("x (m)", "y (m)") if headed else ("right (m)", "up (m)")
     for axis, track in zip(axes, tracks, strict=True):
@@ -54,18 +54,18 @@ def draw_path(axis: Any, track: Track) -> None:
         points = [point for point in track.points if point.action == number]
         colour = COLOURS[len(names) % len(COLOURS)]
         if any(p.phi is not None for p in points):
-            axis.add_collection(mc.LineCollection([_across(p) for p in points], colors=colour, linewidths=1.4))
+            axis.add_collection(mc.LineCollection([across(p) for p in points], colors=colour, linewidths=1.4))
         else:
             axis.plot([p.x for p in points], [p.y for p in points], color=colour, linewidth=1.8)
         axis.plot([], [], color=colour, label=_label(track, number, points[0].name))
         names.append(points[0].name)
     _draw_objects(axis, track)
-    _draw_goals(axis, track)
+    draw_goals(axis, track)
     axis.set_title(f"{track.title}: {track.actual_s:.1f} s")
     axis.legend(loc="best", fontsize="small")
 
 
-def _across(point: TrackPoint) -> list[tuple[float, float]]:
+def across(point: TrackPoint) -> list[tuple[float, float]]:
     """The line across the heading, its length the speed."""
     half = HALF_WIDTH_PER_SPEED_S * abs(point.v) + 0.005
     phi = point.phi or 0.0
@@ -86,18 +86,18 @@ def _draw_objects(axis: Any, track: Track) -> None:
         places = [point.objects[name] for point in track.points if name in point.objects]
         outline, colour = track.outlines[name], track.outlines[name].colour[:3]
         axis.plot([p[0] for p in places], [p[1] for p in places], color=colour, linewidth=0.8, alpha=0.5, zorder=0)
-        axis.fill(*_corners(outline, places[0]), facecolor=colour, zorder=3)
-        axis.fill(*_corners(outline, places[-1]), fill=False, edgecolor=colour, zorder=3)
+        axis.fill(*corners(outline, places[0]), facecolor=colour, zorder=3)
+        axis.fill(*corners(outline, places[-1]), fill=False, edgecolor=colour, zorder=3)
 
 
-def _corners(outline: Outline, place: tuple[float, float, float]) -> tuple[list[float], list[float]]:
+def corners(outline: Outline, place: tuple[float, float, float]) -> tuple[list[float], list[float]]:
     """Coordinates of an outline at a place, x and y apart."""
     x, y, phi = place
     c, s = math.cos(phi), math.sin(phi)
     return [x + c * a - s * b for a, b in outline.points], [y + s * a + c * b for a, b in outline.points]
 
 
-def _draw_goals(axis: Any, track: Track) -> None:
+def draw_goals(axis: Any, track: Track) -> None:
     """A mark at every subgoal as last chosen for its action, an arrow if it has a heading; grey for free ones."""
     for goal in track.goals:
         (x, y), colour = goal.place, "dimgrey" if goal.free else "black"
@@ -108,7 +108,7 @@ def _draw_goals(axis: Any, track: Track) -> None:
         axis.plot([x], [y], marker="+" if goal.free else "*", color=colour, zorder=4)
 
 
-def _limits(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
+def limits_of(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Common limits with a margin, metres; a unit square without any motion."""
     points = [point for track in tracks for point in track.points]
     goals = [goal.place for track in tracks for goal in track.goals]

@@ -45,6 +45,7 @@ class Track:
     title: str
     points: list[TrackPoint] = field(default_factory=list)  # of the ground truth; without one of the belief
     outlines: dict[str, Outline] = field(default_factory=dict)  # of the objects
+    body: dict[str, Outline] = field(default_factory=dict)  # of the robot's parts, where they move as one
     goals: list[Goal] = field(default_factory=list)
     finished: list[ActionFinished] = field(default_factory=list)
     result: str = ""
@@ -109,6 +110,7 @@ def _points(
         return
     objects = {name: place for name, place in shown.places.items() if _is_object(shown.outlines[name])}
     track.outlines |= {name: shown.outlines[name] for name in objects}
+    track.body |= {name: outline for name, outline in shown.outlines.items() if outline.on_robot and outline.closed}
     yield TrackPoint(
         stamp_ns / 1e9, shown.x, shown.y, shown.phi, shown.speed_mps, objects, status.action_index, status.action
     )

@@ -1,6 +1,7 @@
 """Check a driver on the bus against its contract, clause by clause, then whether the robot moves as its models expect.
 
-The robot moves, slowly, and the e-stop of ALL drivers on the bus is pressed twice. Hardware needs a confirmation.
+The robot moves, slowly, and ALL drivers on the bus are e-stopped three times: twice by an e-stop, once by a dead man's
+switch that is let go. Hardware needs a confirmation.
 """
 
 from __future__ import annotations
@@ -131,7 +132,8 @@ def _confirm(robot: str, agreed: bool) -> None:
     if not sys.stdin.isatty():
         raise UsageError(f"{robot} is hardware that will move, expected --yes or a terminal to confirm")
     print(
-        f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped twice."
+        f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped three "
+        "times."
     )
     if input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ").strip() != robot:
         raise UsageError("not confirmed, so nothing was moved")

@@ -1,22 +1,40 @@
-"""Draw recorded runs like the paper's Figure 1: lines across the heading whose length is the speed."""
+"""Draw recorded runs like the paper's Figure 1: lines across the heading whose length is the speed.
+
+A picture whose name ends in .gif, .webp or .apng moves: the runs in step from their first actions, as fast as they were.
+"""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
+from tailor.schemas.errors import UsageError
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor picture`."""
     parser.add_argument("recording", type=Path, nargs="+", help="MCAP files, drawn side by side")
-    parser.add_argument("-o", "--output", type=Path, default=Path("paths.png"), help="PNG (default %(default)s)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=Path("paths.png"),
+        help="PNG, or GIF, WEBP or APNG for a picture that moves (default %(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the runs and print the path of the picture."""
+    from tailor.tools.figures.moving_paths import SUFFIXES, move_paths
     from tailor.tools.figures.paths import draw_paths
     from tailor.tools.figures.recorded_track import recorded_track
 
-    draw_paths([recorded_track(path.stem, path) for path in arguments.recording], arguments.output)
+    tracks = [recorded_track(path.stem, path) for path in arguments.recording]
+    if arguments.output.suffix not in SUFFIXES:
+        draw_paths(tracks, arguments.output)
+    else:
+        if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
+            raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
+        move_paths(tracks, arguments.output)
     print(arguments.output)
     return 0
