@@ -1,6 +1,6 @@
 """Draw recorded runs like the paper's Figure 1: lines across the heading whose length is the speed.
 
-A picture whose name ends in .gif, .webp or .apng moves: the runs in step from their first actions, as fast as they were.
+If its name ends in .gif, .webp or .apng, the picture moves: the runs in step from their first actions, in real time.
 """
 
 from __future__ import annotations

@@ -7,7 +7,9 @@ it ends. Any key, Ctrl-C or closing the terminal ends it.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 
+from tailor.schemas.messages import DriverState
 from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.stop_button import StopButton, all_stopped, summary
 
@@ -15,6 +17,7 @@ from tailor.tools.cli.stop_button import StopButton, all_stopped, summary
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor estop`."""
     parser.add_argument("--hold", action="store_true", help="hold a dead man's switch instead: releasing it stops")
+    parser.add_argument("--json", action="store_true", help="print each driver's mode as JSON")
     configure_bus(parser)
 
 
@@ -29,5 +32,12 @@ def run(arguments: argparse.Namespace) -> int:
                 hold_in_terminal(session)
         finally:  # whatever ended it
             states = button.press()
-    print(summary(states))
+    print(_json(states) if arguments.json else summary(states))
     return 0 if all_stopped(states) else 1
+
+
+def _json(states: Mapping[str, DriverState]) -> str:
+    import json  # after the e-stop
+
+    modes = {robot: state.mode for robot, state in sorted(states.items())}
+    return json.dumps({"stopped": all_stopped(states), "drivers": modes})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 
 from tailor.tools.cli.endpoint import configure_bus, open_bus
@@ -11,6 +12,7 @@ from tailor.tools.cli.endpoint import configure_bus, open_bus
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor goal`."""
     parser.add_argument("goal", nargs="?", default="", help="PDDL goal (default: the goal of the scenario)")
+    parser.add_argument("--json", action="store_true", help="print whether it was accepted, and the answer, as JSON")
     configure_bus(parser)
 
 
@@ -18,5 +20,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Send the goal; 0 if the executive accepted it, 2 with the reason if not."""
     with open_bus(arguments, "people") as session:
         accepted, answer = session.call("exec/goal", arguments.goal)
-    print(answer, file=sys.stdout if accepted else sys.stderr)
+    if arguments.json:
+        print(json.dumps({"accepted": accepted, "answer": answer}))
+    else:
+        print(answer, file=sys.stdout if accepted else sys.stderr)
     return 0 if accepted else 2

@@ -7,6 +7,8 @@ its own names alone: tailor-keys/NAME. `tailor up --secure` and `tailor bus --se
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import get_args
 
@@ -36,14 +38,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--days", type=int, default=DAYS, help="days for which the key is valid (default %(default)s)")
     parser.add_argument("--keys", metavar="DIR", default=KEYS, help="folder of the keys (default %(default)s)")
+    parser.add_argument(
+        "--json", action="store_true", help="print the roles, the new folder or the revoked name as JSON"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if done."""
     roles = registered_roles(arguments.keys)
     if arguments.action == "list":
-        for name, role in sorted(roles.items()):
-            print(f"{name}: {role}")
+        lines = "\n".join(f"{name}: {role}" for name, role in sorted(roles.items()))
+        _report(arguments, lines, roles)
     elif arguments.action == "revoke":
         _revoke(arguments, roles)
     else:
@@ -73,11 +78,20 @@ def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
             (folder / SESSION).chmod(0o600)
     except OSError as error:
         raise UsageError(f"{error.filename}: {error.strerror}, expected a place for keys") from error
-    print(folder)
+    _report(arguments, str(folder), {"folder": str(folder)})
 
 
 def _revoke(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
     if arguments.name not in roles:
         raise UsageError(f"name {arguments.name!r}: no such key, expected one of: {', '.join(sorted(roles)) or 'none'}")
     write_roles(arguments.keys, {name: role for name, role in roles.items() if name != arguments.name})
-    print(f"{arguments.name} may do nothing from the next start of the bus on")
+    words = f"{arguments.name} may do nothing from the next start of the bus on"
+    _report(arguments, words, {"revoked": arguments.name})
+
+
+def _report(arguments: argparse.Namespace, words: str, value: Mapping[str, str]) -> None:
+    """Print the words, if any, or the value as JSON."""
+    if arguments.json:
+        print(json.dumps(value, sort_keys=True))
+    elif words:
+        print(words)

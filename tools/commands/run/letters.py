@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -45,6 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--lockstep", action="store_true", help="run without the bus, as fast as possible; nothing is recorded"
     )
+    parser.add_argument("--json", action="store_true", help="print the row of each mode as JSON at the end")
     parser.add_argument("--output", type=Path, default=Path("out/letters"), help="output folder (default %(default)s)")
 
 
@@ -57,15 +60,17 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
     modes = [mode for mode in MODES if arguments.greedy or mode.name != "greedy"]
     arguments.output.mkdir(parents=True, exist_ok=True)
-    if arguments.lockstep:
-        tracks = _in_lockstep(text, modes, arguments.seed)
-    else:
-        tracks = _live(text, modes, arguments.seed, arguments.output)
+    lockstep = arguments.lockstep
+    tracks = _in_lockstep(text, modes, arguments.seed) if lockstep else _live(text, modes, arguments)
     if len(tracks) < len(modes):
         return 130
-    console = Console()
-    console.print(summary(tracks))
-    console.print(*_draw(tracks, arguments.output), highlight=False)
+    pictures = _draw(tracks, arguments.output)
+    if arguments.json:
+        print(json.dumps([_row(track) for track in tracks]))
+    else:
+        console = Console()
+        console.print(summary(tracks))
+        console.print(*pictures, highlight=False)
     return 0 if all(track.result == "achieved" for track in tracks) else 1
 
 
@@ -75,18 +80,31 @@ def summary(tracks: Sequence[WritingTrack]) -> Table:
     for column in ("mode", "took", "predicted", "worst waypoint", "current", "roughness", "result"):
         table.add_column(column, justify="left" if column in ("mode", "result") else "right")
     for track in tracks:
+        row = _row(track)
         table.add_row(
-            track.title,
-            f"{track.duration_s:.1f} s",
-            f"{track.predicted_s.sum() + PERIOD_S * len(track.predicted_s):.1f} s",
-            f"{1e3 * waypoint_errors_rad(track).max():.1f} mrad",
-            f"{track.peak_current_a:.1f} A",
-            f"{roughness(track):.1f}",
-            track.result,
+            row["mode"],
+            f"{row['took_s']:.1f} s",
+            f"{row['predicted_s']:.1f} s",
+            f"{1e3 * row['worst_waypoint_rad']:.1f} mrad",
+            f"{row['peak_current_a']:.1f} A",
+            f"{row['roughness']:.1f}",
+            row["result"],
         )
     gain = 100 * (1 - tracks[-1].duration_s / tracks[0].duration_s)
     table.caption = f"{tracks[-1].title} against {tracks[0].title}: {gain:.1f} % faster"
     return table
+
+
+def _row(track: WritingTrack) -> dict[str, Any]:
+    return {
+        "mode": track.title,
+        "took_s": float(track.duration_s),
+        "predicted_s": float(track.predicted_s.sum() + PERIOD_S * len(track.predicted_s)),
+        "worst_waypoint_rad": float(waypoint_errors_rad(track).max()),
+        "peak_current_a": float(track.peak_current_a),
+        "roughness": float(roughness(track)),
+        "result": track.result,
+    }
 
 
 def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[WritingTrack]:
@@ -98,25 +116,25 @@ def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[Wri
     return [write(text, mode, models, seed, body) for mode in modes]
 
 
-def _live(text: str, modes: Sequence[WritingMode], seed: int, folder: Path) -> list[WritingTrack]:
+def _live(text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace) -> list[WritingTrack]:
     """Tracks of the modes that ran before an interruption."""
     stop, tracks = stop_on_signals(), []
     for mode in modes:
-        recording = folder / f"{text}-{mode.name}.mcap"
+        recording = arguments.output / f"{text}-{mode.name}.mcap"
         recording.unlink(missing_ok=True)
-        _run_once(text, mode, seed, recording, stop)
+        _run_once(text, mode, arguments, recording, stop)
         if stop.requested:
             break
         tracks.append(recorded_track(mode.name, text, recording))
     return tracks
 
 
-def _run_once(text: str, mode: WritingMode, seed: int, recording: Path, stop: Stop) -> None:
+def _run_once(text: str, mode: WritingMode, arguments: argparse.Namespace, recording: Path, stop: Stop) -> None:
     scenario = f"{'stops' if mode.stops else 'word'}-{text}"
     config = executive_config("arm", Deployment(scenario=scenario))
-    config = replace(config, settings=replace(config.settings, seed=seed, refinement=mode.refinement))
-    with screen() as shown:
-        shown.report(f"{mode.name}: {text}, seed {seed}")
+    config = replace(config, settings=replace(config.settings, seed=arguments.seed, refinement=mode.refinement))
+    with screen(quiet=arguments.json) as shown:
+        shown.report(f"{mode.name}: {text}, seed {arguments.seed}")
         run_system(LaunchConfig(config, private_bus(), recording, once=True), shown, stop)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 from tailor.tools.new_robot.templates import kinds, write_robot
@@ -30,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--into", type=Path, default=Path(), metavar="DIR", help="folder in which NAME/ is made (default: this one)"
     )
+    parser.add_argument("--json", action="store_true", help="print the folder and its number of files as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -37,5 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     name = arguments.name
     folder = write_robot(name, arguments.kind, arguments.into)
     count = sum(path.is_file() for path in folder.rglob("*"))
+    if arguments.json:
+        print(json.dumps({"folder": str(folder), "files": count}))
+        return 0
     print(f"{folder}: {count} files. Next: cd {folder} && pip install -e . && tailor gather {name}")
     return 0

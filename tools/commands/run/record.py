@@ -7,12 +7,14 @@ Ctrl-C or SIGTERM closes the file; kill -9 loses at most the last second. With -
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from contextlib import nullcontext
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.live import Live
@@ -63,6 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--write", action="store_true", help="request that a running `tailor record --snapshot` writes its file now")
     add("--quiet", action="store_true", help="print nothing unless something is lost")
+    add("--json", action="store_true", help="print the files and numbers of messages as JSON at the end")
     configure_sender(parser)
     configure_bus(parser)
 
@@ -75,7 +78,10 @@ def run(arguments: argparse.Namespace) -> int:
     with open_bus(arguments, "people" if arguments.write else "recorder", sender=sender_of(arguments)) as session:
         if arguments.write:
             accepted, response = session.call(SNAPSHOT_KEY, "requested")
-            print(response, file=sys.stdout if accepted else sys.stderr)
+            if arguments.json:
+                print(json.dumps({"accepted": accepted, "answer": response}))
+            else:
+                print(response, file=sys.stdout if accepted else sys.stderr)
             return 0 if accepted else 1
         queue, subscription = session.subscribe_all("**")
         recorder = _recorder(arguments, queue)
@@ -87,7 +93,9 @@ def run(arguments: argparse.Namespace) -> int:
         notifier.stopping()
         subscription.undeclare()
         health = recorder.close()
-    if not arguments.quiet or health.drops or health.mixed or health.disk_error:
+    if arguments.json:
+        print(json.dumps(_json_value(health)), flush=True)
+    elif not arguments.quiet or health.drops or health.mixed or health.disk_error:
         print(_line(health), file=sys.stderr)
     return 1 if health.drops or health.disk_error else 0
 
@@ -159,6 +167,17 @@ def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:
 def _beginning(arguments: argparse.Namespace) -> str:
     what = f"the last {arguments.snapshot:g} s, in memory" if arguments.snapshot else "into a file"
     return f"recording {what}, waiting for messages on {bus_settings(arguments).endpoint}; Ctrl-C ends it"
+
+
+def _json_value(health: Health) -> dict[str, Any]:
+    return {
+        "files": [str(path) for path in health.files],
+        "messages": health.messages,
+        "bytes": health.bytes,
+        "dropped": health.drops.total(),
+        "without_sender": health.mixed.total(),
+        "disk_error": health.disk_error or None,
+    }
 
 
 def _line(health: Health) -> str:

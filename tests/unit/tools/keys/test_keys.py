@@ -91,3 +91,13 @@ def test_a_key_is_not_written_over_another_one(keys, capsys):
     before = (keys / "driving" / "key.pem").read_bytes()
     assert main(["keys", "new", "driving", "--role", "executive", "--keys", str(keys)]) == 2
     assert (keys / "driving" / "key.pem").read_bytes() == before
+
+
+def test_json_for_scripts(tmp_path, capsys):
+    keys = str(tmp_path / "keys")
+    assert main(["keys", "new", "driving", "--role", "driver", "--keys", keys, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"folder": f"{keys}/driving"}
+    assert main(["keys", "list", "--keys", keys, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"driving": "driver"}
+    assert main(["keys", "revoke", "driving", "--keys", keys, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"revoked": "driving"}

@@ -1,5 +1,6 @@
 """`tailor new robot` writes a complete package, refuses names that cannot be used, and overwrites nothing."""
 
+import json
 import subprocess
 import sys
 import tomllib
@@ -46,6 +47,13 @@ def test_a_package_stays_small(kind: str) -> None:
     files = rendered("cart", kind)
     assert {path: text.count("\n") for path, text in files.items() if text.count("\n") > 130} == {}
     assert sum(text.count("\n") for text in files.values()) < 700
+
+
+def test_a_script_reads_where_the_package_lies(tmp_path: Path, capsys) -> None:
+    assert main(["new", "robot", "cart", "--into", str(tmp_path), "--json"]) == 0
+    written = json.loads(capsys.readouterr().out)
+    assert written["folder"] == str(tmp_path / "cart")
+    assert written["files"] == sum(path.is_file() for path in (tmp_path / "cart").rglob("*"))
 
 
 @pytest.mark.parametrize(
