@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from rich.console import Console
@@ -21,9 +22,10 @@ ROUTES = " ".join(f"(route {a} {b})" for a in ("home", *PLACES) for b in PLACES 
 PROBLEM = f"""(define (problem tour) (:domain soccer) (:objects home {" ".join(PLACES)}) (:init (robot home) {ROUTES})
   (:goal (and {" ".join(f"(visited {place})" for place in PLACES)})))"""
 RUNS, QUICK_RUNS = 17, 2
+Costs = Literal["steps", "models"]
 
 
-def driven(seed: int, costs: Literal["steps", "models"]) -> Run:
+def driven(seed: int, costs: Costs) -> Run:
     """One tour through the places of the scenario, in an order of the planner's choice."""
     context = build_context(ExecutiveConfig(DOMAIN, SCENARIO, Settings(seed=seed, plan_costs=costs)), SENDER)
     _, start = domains.seeded_scenario(DOMAIN, SCENARIO, seed)
@@ -34,13 +36,18 @@ def driven(seed: int, costs: Literal["steps", "models"]) -> Run:
 
 def run(console: Console, quick: bool) -> None:
     """Print one row for each way to choose."""
-    seeds = range(QUICK_RUNS if quick else RUNS)
-    runs = {costs: [driven(seed, costs) for seed in seeds] for costs in ("steps", "models")}
-    table = Table(title=f"tours of four places, {len(seeds)} starts", box=None)
+    console.print(compared("tours of four places", driven, QUICK_RUNS if quick else RUNS))
+
+
+def compared(title: str, driven: Callable[[int, Costs], Run], count: int) -> Table:
+    """Runs with plans by steps and by models from so many starts; times are means over pairs that both achieve."""
+    runs = {costs: [driven(seed, costs) for seed in range(count)] for costs in get_args(Costs)}
+    table = Table(title=f"{title}, {count} starts", box=None)
     for column in ("plans by", "achieved", "first action after", "mean duration", "faster than by steps"):
         table.add_column(column, justify="left" if column == "plans by" else "right")
+    both = [n for n in range(count) if all(rows[n].achieved for rows in runs.values())]
     for costs, rows in runs.items():
-        faster = sum(row.duration_s < other.duration_s for row, other in zip(rows, runs["steps"], strict=True))
-        times = (np.mean([row.started_s for row in rows]), np.mean([row.duration_s for row in rows]))
+        faster = sum(rows[n].duration_s < runs["steps"][n].duration_s for n in both)
+        times = (np.mean([rows[n].started_s for n in both]), np.mean([rows[n].duration_s for n in both]))
         table.add_row(costs, str(sum(row.achieved for row in rows)), *(f"{s:.2f} s" for s in times), str(faster))
-    console.print(table)
+    return table

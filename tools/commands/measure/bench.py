@@ -26,7 +26,7 @@ BENCHMARKS = {
 }
 
 # of `planning`, after its table
-PLANNERS = ("planners.improvement", "planners.tours", "planners.tick_share", "planners.configurations")
+PLANNERS = ("planners.improvement", "planners.tours", "planners.cups", "planners.tick_share", "planners.configurations")
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH, CLUSTER = "soak", "growth", "cluster"
 ROOMS = {GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}

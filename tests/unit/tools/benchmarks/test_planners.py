@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.planning import DEFAULT, MATCHING
-from tailor.tools.benchmarks.planners import configurations, improvement, tick_share, tours
+from tailor.tools.benchmarks.planners import configurations, cups, improvement, tick_share, tours
 from tailor.tools.benchmarks.planning import texts
 
 
@@ -36,6 +36,22 @@ def test_planning_takes_its_share_of_the_first_ticks_and_the_method_is_restored(
     assert len(shared) > 20
     assert max(shared) > 0
     assert sorted(shared)[len(shared) // 2] == pytest.approx(0, abs=2), "most ticks plan nothing"
+
+
+def test_errands_take_each_cup_from_its_table_on_the_map_to_another():
+    drawn = [cups.errands(seed) for seed in range(40)]
+    assert all(spots["from1"] == ("table1", 0) and spots["from2"] == ("table3", 2) for spots in drawn)
+    assert {(spots["to1"][0], spots["to2"][0]) for spots in drawn} == {
+        (one, other) for one in ("table2", "table3") for other in ("table1", "table2")
+    }
+    assert all(len(set(spots.values())) == 4 for spots in drawn), "each place is another slot"
+
+
+@pytest.mark.slow
+def test_two_errands_in_the_kitchen_are_done_in_the_order_that_the_models_choose():
+    run = cups.driven(1, "models")
+    assert run.achieved
+    assert len(run.finished) == 12
 
 
 @pytest.mark.slow
