@@ -16,7 +16,7 @@ class Faulty(Hardware):
     def __init__(self):
         self.raises, self.stalls, self.calls, self.written = set(), set(), Counter(), []
         self.released = threading.Event()
-        self.silent, self.odometry, self.order = False, {}, []
+        self.silent, self.odometry, self.order, self.freed = False, {}, [], False
 
     def _called(self, name):
         self.calls[name] += 1
@@ -24,7 +24,7 @@ class Faulty(Hardware):
         if name in self.raises:
             raise OSError(f"no {name}")
         if name in self.stalls:
-            self.released.wait(5)
+            self.freed = self.released.wait(5)
 
     def open(self):
         self._called("open")

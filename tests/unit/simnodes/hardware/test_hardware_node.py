@@ -134,7 +134,8 @@ def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot
     driven.drive()
     driven.hardware.stalls = {"read", "close frees"}
     stopped_for(driven, "read: stalled")
-    wait_until(lambda: driven.hardware.calls["open"] > 1, "open again", 5)
+    wait_until(lambda: driven.hardware.calls["open"] > 1, "open again", 10)
+    assert driven.hardware.freed, "the read waited until it gave up by itself"
     before_close = driven.hardware.order[: driven.hardware.order.index("close")]
     assert "write" in before_close[len(before_close) - before_close[::-1].index("read") :]
 
