@@ -139,8 +139,8 @@ def test_probabilities_agree(learner, episodes) -> None:
 def test_every_feature_space_gives_the_same_bits_in_the_graph(name, examples) -> None:
     """A tree with a leaf every few rows shows any difference of a single bit."""
     space = feature_spaces()[name]
-    rows = awkward(20000)
-    rest = np.random.default_rng(6).uniform(-2, 2, (20000, max(0, len(space.arguments) - 8)))
+    rows = awkward(8000)
+    rest = np.random.default_rng(6).uniform(-2, 2, (len(rows), max(0, len(space.arguments) - 8)))
     rows = np.hstack([rows, rest])[:, : len(space.arguments)]
     features = space(rows)
     tree = ModelTreeRegressor(min_rows=20, held_out=0.0, ridge=1e-3).fit(features, np.sin(9 * features).sum(axis=1))

@@ -18,6 +18,7 @@ from tailor.tools.parallel.software import Work, differences, software_for
 
 ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d+")
 CONNECT_S = 5.0  # limit for the scheduler's answer, for its first worker, and for a lost scheduler to come back
+ANSWER_S = 60.0  # limit for a worker to load its software, which takes seconds
 KEPT = "finished parts are kept, --resume continues"
 
 
@@ -38,8 +39,8 @@ def working_on(address: str | None, work: Work) -> Iterator[None]:
 
     Raises:
       ModuleNotFoundError: The extra `cluster` is missing.
-      UsageError: No scheduler or no worker answers, or workers have other software. Or the
-        scheduler goes away within the context.
+      UsageError: No scheduler or no worker answers, or workers have other software; or the scheduler goes away within
+        the context.
     """
     if not address:
         yield
@@ -143,7 +144,10 @@ def _faults(asked: Any, worker: Mapping[str, Any], work: Work) -> list[str]:
     """What a worker differs in."""
     threads = worker["nthreads"]
     wrong = [f"runs {threads} parts in one process, expected --nthreads 1"] if threads != 1 else []
-    error = asked.exception()
+    try:
+        error = asked.exception(timeout=ANSWER_S)
+    except TimeoutError:
+        return [*wrong, f"does not answer within {ANSWER_S:g} s"]
     if error is not None:
         return [*wrong, f"has no Tailor that can be used ({_first_line(error)})"]
     return [*wrong, *differences(asked.result(), software_for(work))]

@@ -45,9 +45,8 @@ def forbidden(importer: str, imported: str) -> Arrow | None:
     return arrow
 
 
-@pytest.mark.parametrize("path", PROJECT_FILES)
-def test_every_import_follows_an_arrow_of_the_table(path: str) -> None:
-    assert {(str(arrow), other) for other in imported_modules(path) if (arrow := forbidden(path, other))} == set()
+def test_every_import_follows_an_arrow_of_the_table() -> None:
+    assert {(str(arrow), path, other) for path, other in all_imports() if (arrow := forbidden(path, other))} == set()
 
 
 @pytest.mark.parametrize("folder", ROOMS)
@@ -95,17 +94,16 @@ def test_folders_of_unit_tests_mirror_the_code() -> None:
     assert {folder for folder in folders - {"house"} if not (ROOT / folder / "__init__.py").exists()} == set()
 
 
-@pytest.mark.parametrize("path", PROJECT_FILES)
-def test_no_import_is_bare(path: str) -> None:
+def test_no_import_is_bare() -> None:
     """`import executive` would load a second copy of the module: the checkout is on the path under pytest."""
-    assert top_names(path) & OURS == set()
+    assert {path: bare for path in PROJECT_FILES if (bare := top_names(path) & OURS)} == {}
 
 
-@pytest.mark.parametrize("path", [p for p in PROJECT_FILES if p.startswith("executive/")])
-def test_the_core_is_pure(path: str) -> None:
-    assert {p for p in imported_modules(path) if p.startswith("models/")} <= {"models/runtime.py"}
-    if path != SHELL:
-        assert not top_names(path) & IMPURE
+def test_the_core_is_pure() -> None:
+    core = [path for path in PROJECT_FILES if path.startswith("executive/")]
+    models = {(path, p) for path in core for p in imported_modules(path) if p.startswith("models/")}
+    assert {imported for _, imported in models} == {"models/runtime.py"}, models
+    assert {path: impure for path in core if path != SHELL and (impure := top_names(path) & IMPURE)} == {}
 
 
 @pytest.mark.parametrize("path", STANDARD_ONLY)

@@ -34,22 +34,20 @@ ROUNDS = 40  # empty parts, by which the overheads are measured
 def run(console: Console, quick: bool) -> None:
     """Print one row for each action."""
     table = Table("action", "part", *(f"{count} workers" for count in WORKERS), title=f"speed-up, {WORK_PARTS} parts")
-    lines = []
     for name in domain_names():
-        for action in modelled_actions(name):
-            parts, sizes_s = _measured(name, action, 2 if quick else 8)
-            overheads = Overheads(*_overheads_s(name, parts[0]), _write_s(name, action, parts[0]))
+        measured = {action: _measured(name, action, 2 if quick else 8) for action in modelled_actions(name)}
+        first, (parts, _) = next(iter(measured.items()))
+        overheads = Overheads(*_overheads_s(name, parts[0]), _write_s(name, first, parts[0]))
+        robot = domains.load(name).robot
+        for action, (_, sizes_s) in measured.items():
             work = list(itertools.islice(itertools.cycle(sizes_s), WORK_PARTS))
-            gains = (speedup(work, count, overheads) for count in WORKERS)
-            title = f"{domains.load(name).robot}/{action}"
-            table.add_row(title, f"{sum(sizes_s) / len(sizes_s):.2f} s", *(f"{gain:.1f}" for gain in gains))
-            lines.append(
-                f"{title}: start of a worker {overheads.start_s:.1f} s, each part {1e3 * overheads.part_s:.0f} ms, "
-                f"writing {1e3 * overheads.write_s:.1f} ms"
-            )
+            gains = (f"{speedup(work, count, overheads):.1f}" for count in WORKERS)
+            table.add_row(f"{robot}/{action}", f"{sum(sizes_s) / len(sizes_s):.2f} s", *gains)
+        console.print(
+            f"{robot}: start of a worker {overheads.start_s:.1f} s; beside its work, each part takes "
+            f"{1e3 * overheads.part_s:.0f} ms on a worker and {1e3 * overheads.write_s:.1f} ms to be written"
+        )
     console.print(table)
-    for line in lines:
-        console.print(line)
 
 
 def _measured(domain: str, action: str, count: int) -> tuple[list[Any], list[float]]:

@@ -16,7 +16,7 @@ NOTHING = Work(())
 
 def cluster_of(threads: int) -> distributed.LocalCluster:
     sizes = {"n_workers": 1, "threads_per_worker": threads}
-    return distributed.LocalCluster(**sizes, processes=False, protocol="tcp://", dashboard_address=None)
+    return distributed.LocalCluster(**sizes, processes=False, protocol="tcp://", dashboard_address=":0")
 
 
 @pytest.fixture(scope="module")
