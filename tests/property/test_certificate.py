@@ -19,7 +19,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
-from tests.support.examples import examples
+from tests.property import examples
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints, within
 

@@ -17,8 +17,8 @@ from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.executive.refinement.refinement import Refinement
+from tests.property import examples
 from tests.property.test_stage_bounds import assert_no_stage_costs_less
-from tests.support.examples import examples
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import DRIBBLE
 from tests.unit.executive.refinement.synthetic_context import APPROACH_AROUND, BESIDE, CONTEXT, GO_AROUND, beside
