@@ -64,4 +64,6 @@ def drawn(marker: Any) -> Any:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: python show_in_rerun.py RECORDING.mcap TARGET.rrd")
     main(*sys.argv[1:])

@@ -24,11 +24,21 @@ from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
 from tailor.tools.scenes.recorded_scenes import add_scenes
 
+EPILOG = """\
+examples:
+  tailor scene run.mcap                          (writes run-scene.mcap; tailor up records scenes itself)
+  tailor scene --live                            (beside a robot of your own, on the bus)
+  tailor scene --layout soccer -o soccer.json    (Foxglove: Layouts, Import from file)
+
+rerun reads the transforms of a recording by itself, and the markers by examples/rerun/show_in_rerun.py:
+  python show_in_rerun.py run.mcap run.rrd && rerun run.rrd"""
 NICENESS = 10  # the executive has priority
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor scene`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     parser.add_argument("recording", type=Path, nargs="?", help="MCAP file")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="new file (default: NAME-scene.mcap)")
     parser.add_argument("--live", action="store_true", help="publish on the bus until interrupted")

@@ -13,8 +13,8 @@ from tailor.tools.main import main
 from tailor.tools.scenes.foxglove_layout import layout
 
 ROOT = Path(__file__).resolve().parents[4]
-ROBOTS = {"soccer": "agilo", "arm": "powercube"}
-TOPIC = re.compile(r"/[a-z_/]+")
+ROBOTS = {"soccer": "agilo", "arm": "powercube", "kitchen": "b21"}
+TOPIC = re.compile(r"/[a-z0-9_/]+")
 
 
 def strings(value):
