@@ -17,7 +17,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 GRACE_S = 2.0  # beyond the planner's own limit; after that the process that runs it must be gone
-REUSE_FREE_PORTIONS = 256  # plans of some twenty steps
+REUSE_FREE_PORTIONS = 128  # plans of some twenty steps
 
 Way = Literal["searched", "suffix", "improved", "external"]
 
