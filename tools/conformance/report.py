@@ -19,6 +19,7 @@ class Report:
       verdicts: One of each clause.
       responses: Of this robot; `models`: of the robot that the models were learned on; empty if not compared.
       misfits: Differences between both that matter.
+      not_compared: Why the comparison was not possible; empty if it was, or was not wanted.
     """
 
     robot: str
@@ -27,6 +28,7 @@ class Report:
     responses: Sequence[Response] = ()
     models: Sequence[Response] = ()
     misfits: Sequence[str] = ()
+    not_compared: str = ""
 
     @property
     def kept(self) -> bool:
@@ -79,6 +81,8 @@ def markdown(report: Report) -> str:
             ]
         parts += ["", *(f"- {each}" for each in report.misfits or ["It moves as the models' robot does."])]
         parts += ["", advice(report)] if report.misfits else []
+    if report.not_compared:
+        parts += ["", f"Step responses: not tried: {report.not_compared}"]
     return "\n".join([*parts, ""])
 
 

@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.report.write_text(reports.markdown(report), encoding="utf-8")
     if arguments.json:
         print(json.dumps(reports.values(report)))
-    return 0 if report.kept and not report.misfits else 1
+    return 0 if report.kept and not (report.misfits or report.not_compared) else 1
 
 
 def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind: str) -> Report:
@@ -100,7 +100,7 @@ def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind
         real, models = _fit(bench, 1.0 if arguments.top_speed else arguments.speed)
     except NotPossible as error:
         show(f"fit: not tried: {error}")
-        return Report(robot, kind, found)
+        return Report(robot, kind, found, not_compared=str(error))
     report = Report(robot, kind, found, real, models, list(differences(real, models)))
     for misfit in report.misfits or ["it moves as the models' robot does"]:
         show(f"fit: {misfit}")

@@ -89,3 +89,8 @@ def test_a_misfit_comes_with_the_command_that_gathers_anew():
     assert "tailor gather agilo && tailor train agilo" in advice(report)
     assert "v accelerates with 1" in markdown(report)
     assert not advice(Report("agilo", "hardware", []))
+
+
+def test_a_comparison_that_was_not_possible_is_reported():
+    report = Report("agilo", "hardware", [], not_compared="measurements of v are missing")
+    assert "Step responses: not tried: measurements of v are missing" in markdown(report)
