@@ -21,6 +21,7 @@ from tailor.executive.planning import (
 from tests.support.cpu_time import min_cpu_s
 from tests.support.pddl_mutations import mutated, regrown
 from tests.support.planning_problems import DATA, OWN, read, solve
+from tests.unit.executive.planning.pddl.test_derived import BLOCKS, SWAP
 from tests.unit.executive.planning.pddl.test_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
 
 RICH = SWITCHES.replace("{unlock}", "(or (on a) (not (on b)))").replace("{finish}", "(exists (?l - lamp) (on ?l))")
@@ -28,6 +29,7 @@ PAIRS = [
     (RICH.replace("{effect}", "(forall (?l - lamp) (when (on ?l) (not (on ?l))))"), LAMPS.replace("{goal}", "(done)")),
     (WORKSHOP, IRON.replace("{more}", "")),
     (WORKSHOP, TIMED),
+    (BLOCKS, SWAP),
     *(
         (
             (DATA / "own" / f"{name.rsplit('-', 1)[0]}-domain.pddl").read_text(),
