@@ -6,10 +6,12 @@ order give the same bits, and evaluation never uses training episodes.
 
 from __future__ import annotations
 
+import os
+import tempfile
 import time
 import zlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -97,8 +99,11 @@ def _draw(spec: DataSetSpec, domain: Domain, rng: np.random.Generator) -> NDArra
     return action_run.with_object(domain, spec.action, arguments, rng) if spec.beside else arguments
 
 
-def part_of(spec: DataSetSpec, first: int) -> tuple[list[Episode], float, float]:
-    """The part that starts with episode `first`: its episodes, simulated seconds and wall seconds."""
+def part_of(spec: DataSetSpec, first: int) -> tuple[bytes, float, float]:
+    """The part that starts with episode `first`: its file, simulated seconds and wall seconds.
+
+    Writing Parquet takes tens of milliseconds, so it belongs to the part: files of many workers are only stored.
+    """
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
     numbers = range(first, min(first + PART, spec.episodes))
@@ -107,12 +112,26 @@ def part_of(spec: DataSetSpec, first: int) -> tuple[list[Episode], float, float]
     else:
         episodes = [run_one(spec, domain, body, number) for number in numbers]
         simulated_s = sum(episode.duration_s for episode in episodes)
-    return episodes, simulated_s, time.perf_counter() - started
+    names = [entry["name"] for entry in _columns(spec, domain)]
+    with tempfile.TemporaryDirectory() as folder:
+        path = part_path(replace(spec, folder=Path(folder)), first)
+        write_part(path, episodes, names)
+        file = path.read_bytes() if episodes else b""
+    return file, simulated_s, time.perf_counter() - started
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
     """Path of the part that starts with episode `first`: part-000020-000040.parquet holds 20 to 39."""
     return spec.folder / f"part-{first:06d}-{min(first + PART, spec.episodes):06d}.parquet"
+
+
+def store_part(path: Path, file: bytes) -> None:
+    """Write the file of a part, atomically; without episodes nothing is written."""
+    if not file:
+        return
+    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    temporary.write_bytes(file)
+    temporary.replace(path)
 
 
 def missing_parts(spec: DataSetSpec) -> list[int]:
@@ -219,8 +238,7 @@ def gather(spec: DataSetSpec, parts: Sequence[int], jobs: int) -> Iterator[tuple
     Yields:
       Of each written part: number of its draws, simulated seconds and wall seconds.
     """
-    names = [entry["name"] for entry in _columns(spec, domains.load(spec.domain))]
-    for number, (episodes, simulated_s, wall_s) in completed(part_of, [(spec, first) for first in parts], jobs):
+    for number, (file, simulated_s, wall_s) in completed(part_of, [(spec, first) for first in parts], jobs):
         first = parts[number]
-        write_part(part_path(spec, first), episodes, names)
+        store_part(part_path(spec, first), file)
         yield min(PART, spec.episodes - first), simulated_s, wall_s

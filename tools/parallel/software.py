@@ -16,7 +16,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.source import ROOT, runs_sha256
 
-LIBRARIES = ("mujoco", "pybullet", "numpy", "onnxruntime", "scikit-learn")
+LIBRARIES = ("mujoco", "pybullet", "numpy", "onnxruntime", "scikit-learn", "pyarrow")
 SOURCE = (".py", ".pddl", ".toml", ".xml", ".urdf")
 DIGITS = 12  # of a hash, as in reports
 

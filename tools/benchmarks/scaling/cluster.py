@@ -9,15 +9,12 @@ from __future__ import annotations
 import itertools
 import tempfile
 import time
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 from tailor.executive import domains
-from tailor.models.episodes.episodes import write_part
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.scaling.simulation import Overheads, speedup
 from tailor.tools.learning import gathering
@@ -36,8 +33,8 @@ def run(console: Console, quick: bool) -> None:
     table = Table("action", "part", *(f"{count} workers" for count in WORKERS), title=f"speed-up, {WORK_PARTS} parts")
     for name in domain_names():
         measured = {action: _measured(name, action, 2 if quick else 8) for action in modelled_actions(name)}
-        first, (parts, _) = next(iter(measured.items()))
-        overheads = Overheads(*_overheads_s(name, parts[0]), _write_s(name, first, parts[0]))
+        parts, _ = next(iter(measured.values()))
+        overheads = Overheads(*_overheads_s(name, parts[0]), _write_s(parts[0]))
         robot = domains.load(name).robot
         for action, (_, sizes_s) in measured.items():
             work = list(itertools.islice(itertools.cycle(sizes_s), WORK_PARTS))
@@ -50,7 +47,7 @@ def run(console: Console, quick: bool) -> None:
     console.print(table)
 
 
-def _measured(domain: str, action: str, count: int) -> tuple[list[Any], list[float]]:
+def _measured(domain: str, action: str, count: int) -> tuple[list[bytes], list[float]]:
     """Parts of a data set, and the CPU time of each."""
     spec = gathering.DataSetSpec(domain, action, count * gathering.PART, 1, Path())
     gathering.part_of(spec, 0)  # loads what any worker loads once
@@ -62,7 +59,7 @@ def _measured(domain: str, action: str, count: int) -> tuple[list[Any], list[flo
     return parts, times_s
 
 
-def _overheads_s(domain: str, part: Sequence[Any]) -> tuple[float, float]:
+def _overheads_s(domain: str, part: bytes) -> tuple[float, float]:
     """Start of a worker, and what a part costs beside its work: its result is sent there and back."""
     from distributed import LocalCluster
 
@@ -77,16 +74,14 @@ def _overheads_s(domain: str, part: Sequence[Any]) -> tuple[float, float]:
     return ready - started, (ended - ready) / ROUNDS
 
 
-def _same(part: Sequence[Any]) -> Sequence[Any]:
+def _same(part: bytes) -> bytes:
     return part
 
 
-def _write_s(domain: str, action: str, part: Sequence[Any]) -> float:
-    """CPU time of writing a part."""
-    names = gathering.argument_names(domains.load(domain), action)
+def _write_s(part: bytes) -> float:
+    """CPU time of storing a part."""
     with tempfile.TemporaryDirectory() as folder:
-        write_part(Path(folder) / "part.parquet", part, names)  # loads what is loaded once
         started = time.process_time()
         for number in range(ROUNDS):
-            write_part(Path(folder) / f"part-{number}.parquet", part, names)
+            gathering.store_part(Path(folder) / f"part-{number}.parquet", part)
         return (time.process_time() - started) / ROUNDS
