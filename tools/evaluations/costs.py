@@ -26,11 +26,13 @@ class Costs:
       contacts: Number of contacts that should not have happened.
       energy_j: Work of the drives during the actions; NaN if it is not known.
       arrival: Mean absolute error at the ends of its finished actions, by name with unit.
+      further: Costs that only this robot has, by name: see `further_costs` of its task sampler.
     """
 
     contacts: int
     energy_j: float
     arrival: tuple[tuple[str, float], ...]
+    further: tuple[tuple[str, float], ...] = ()
 
 
 NO_COSTS = Costs(0, float("nan"), ())
@@ -38,7 +40,11 @@ NO_COSTS = Costs(0, float("nan"), ())
 
 def costs_of(run: Run, domain: Domain) -> Costs:
     """Costs of a run of a domain."""
-    return Costs(sampler_of(domain).contacts(run.finished, run.truth), _energy_j(run, domain), _arrival(run, domain))
+    sampler = sampler_of(domain)
+    contacts = sampler.contacts(run.finished, run.truth)
+    known = getattr(sampler, "further_costs", None)  # a sampler need not have any
+    further = known(run.truth) if known is not None else {}
+    return Costs(contacts, _energy_j(run, domain), _arrival(run, domain), tuple(sorted(further.items())))
 
 
 def _energy_j(run: Run, domain: Domain) -> float:

@@ -26,9 +26,11 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
+from tailor.tools.lockstep.worlds import events_of
 from tailor.tools.parallel.pool import completed
 
 PIN_STREAM = 4
+LIMIT_S = 240.0  # of simulated time: thirteen actions of a mobile manipulator take 90 s without a mishap
 
 
 def run_all(
@@ -84,7 +86,8 @@ def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     The variant's `noise` changes only the seed of the body's noise; the start stays the same.
     """
     context, start = _context(task, variant, seed)
-    return run_lockstep(context, body_of(task.domain, task.profile), start, seed + variant.noise), context
+    body, events = body_of(task.domain, task.profile), events_of(context.scenario)
+    return run_lockstep(context, body, start, seed + variant.noise, events, LIMIT_S), context
 
 
 def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple[list[float], list[float]]:

@@ -112,7 +112,8 @@ class EpisodeExtractor:
         other_names = self._sampler.start_names(run.action, values)
         for k, parameter in enumerate(run.action.parameters):
             if parameter.argument == 0:
-                values[k] = belief[other_names.get(parameter.name, parameter.name)]
+                believed = belief.get(other_names.get(parameter.name, parameter.name))
+                values[k] = values[k] if believed is None else believed  # a cup's spot is no state of the robot
         arguments = run.action.arguments(values[None, :])[0]
         return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 

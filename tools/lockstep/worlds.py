@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tailor.executive import domains
+from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.installed import part, spec_of_robot
 from tailor.simnodes.body import Body
 from tailor.simnodes.world import Event, World
@@ -24,7 +25,12 @@ def make_world(robot: str, scenario: str, seed: int, body: Body | None = None) -
     name = scenario or domains.scenarios(spec.name)[0]
     sampled, start = domains.seeded_scenario(spec.name, name, seed)
     made: Body = part(spec, "body")() if body is None else body
-    return World(made, start, seed, [_event(entry) for entry in sampled.settings.get("events", ())])
+    return World(made, start, seed, events_of(sampled))
+
+
+def events_of(scenario: Scenario) -> list[Event]:
+    """Disturbances that were drawn for a scenario."""
+    return [_event(entry) for entry in scenario.settings.get("events", ())]
 
 
 def _event(entry: dict[str, float]) -> Event:

@@ -22,6 +22,7 @@ from tailor.schemas.kitchen.kinematics import OMEGA_MAX_RADPS, V_MAX_MPS
 
 ASIDE_RAD = 0.3  # how far aside of the line from the shoulder a hand may point
 CRAWL_MPS = 0.07  # an exact base would else arrive with the very speed that is too fast
+NEAR_M = 0.06  # from its goal at most: the arm reaches little farther than from the edge of a stand
 CUP_MOVED_M, HANDLE_TURNED_RAD = 0.05, 0.3  # a cup that turns out to stand elsewhere by this is decided anew
 STOOL_MOVED_M = 0.12  # when the stool turns out to stand elsewhere by this, the way is decided anew
 STOOL_RADII_M = (0.15, 0.19)
@@ -85,6 +86,7 @@ GO_TO_POSE = Action(
         V_MAX_MPS,
         OMEGA_MAX_RADPS,
         ArrivalPath(V_MAX_MPS, bend_radps=0.8, bend_worth_radps=0.6),
+        near_m=NEAR_M,
         crawl_mps=CRAWL_MPS,
     ),
     "goToPose/duration",

@@ -16,11 +16,13 @@ from tailor.schemas.kitchen.furniture import Place, kitchen, on_table
 
 TABLE_M = (0.4, 0.8)  # from the robot's middle to the table, when it grips or puts (paper 6.3)
 TILT_M = 0.03  # a table that is turned a little is nearer at one end of a stand's range: kept off both ends
-LATERAL_M = 0.15  # how far beside the spot the robot may stand
+LATERAL_M = 0.12  # how far beside the spot the robot may stand
 FACING_RAD = 0.5  # how far it may look aside of the table
 SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
 ON_TOP_M = 0.06  # height above the table's top by which a cup may be misjudged
-SLACK_M, SLACK_RAD = 0.04, 0.25  # beyond the ranges of a stand the robot still counts as being there
+# Beyond the ranges of a stand the robot still counts as being there: more than what goToPose leaves, or it would be
+# sent again to where it has arrived.
+SLACK_M, SLACK_RAD = 0.07, 0.25
 Ranges = Mapping[str, Interval]
 
 

@@ -1,5 +1,7 @@
 """Episodes cut out of what an executive said: where they begin, what they ask for, how they ended."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tailor.executive import domains
@@ -107,3 +109,18 @@ def test_the_work_of_the_drives_is_cut_with_the_episode_where_motion_is_told() -
     assert (np.diff(told.work_j[:-1]) > 0).all()
     [(_, untold)] = cut(subgoals("goToPose", {"xg": 2.0}), *drive("goToPose", 0, 5), finished("goToPose", 0, 0.5))
     assert untold.work_j is None
+
+
+def test_a_reach_of_an_arm_keeps_the_spot_that_is_no_state_of_the_robot() -> None:
+    """The kitchen's: on-policy rounds of its recipe broke off here."""
+    kitchen = domains.load("kitchen")
+    chosen = {"x": 0.0, "y": 0.0, "phi": 0.0, "spot_x": 0.7, "spot_y": 0.1, "aside": 0.2}
+    parameters = tuple(
+        Parameter(p.name, k, "left1", p.unit, True, p.lower, p.upper, chosen[p.name])
+        for k, p in enumerate(kitchen.actions["reach"].parameters)
+    )
+    instance = Subgoals(0, 0, 2, (InstantiatedAction("reach", 1, False, 3.0, 0.1, parameters),))
+    ticks = [replace(each, belief=(0.03, 0.5, 0.1)) for each in drive("reach", 0, 25)]
+    [(name, episode)] = EpisodeExtractor(kitchen).read([instance, *ticks, finished("reach", 0, 2.5)])
+    assert (name, episode.duration_s) == ("reach", 2.5)
+    assert np.allclose(episode.ticks[-1], [0.03, 0.5, 0.1, 0.7, 0.1, 0.2])

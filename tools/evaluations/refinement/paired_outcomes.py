@@ -28,7 +28,8 @@ MAX_MORE_POINTS = 0.5  # of failures or contacts, that count as no more
 def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
     """Columns of a row.
 
-    Durations, arrivals and energy are of the pairs in which both achieved the goal; failures and contacts are of all.
+    Durations, arrivals and energy are of the pairs in which both achieved the goal; failures, contacts and costs of
+    this robot alone are of all.
 
     Args:
       pairs: Outcomes by start.
@@ -54,6 +55,7 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         **_shares("contacts_pct", pairs.values(), every, lambda outcome: outcome.costs.contacts > 0),
         **_means("energy_j", both, units, lambda outcome: outcome.costs.energy_j),
         **_arrivals(both, units),
+        **_further(list(pairs.values()), every),
         "bias_greedy_s": bias_s(pair[0] for pair in both),
         "bias_refined_s": bias_s(pair[1] for pair in both),
     }
@@ -76,6 +78,18 @@ def _arrivals(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
 
 def _arrival(name: str, outcome: Outcome) -> float:
     return dict(outcome.costs.arrival).get(name, float("nan"))
+
+
+def _further(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
+    names = sorted({name for pair in pairs for outcome in pair for name, _ in outcome.costs.further})
+    found: dict[str, Any] = {}
+    for name in names:
+        found |= _means(name, pairs, units, partial(_further_cost, name))
+    return found
+
+
+def _further_cost(name: str, outcome: Outcome) -> float:
+    return dict(outcome.costs.further).get(name, float("nan"))
 
 
 def _means(name: str, pairs: Sequence[Pair], units: Units | None, cost: Callable[[Outcome], float]) -> dict[str, Any]:

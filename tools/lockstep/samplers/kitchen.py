@@ -30,7 +30,11 @@ from tailor.tools.lockstep.samplers.beside import Beside
 
 TOUCHED, TIPPED = "touched furniture", "tipped the cup"
 FROM_START = 0.3  # share of the drives that begin, or end, away from tables
+END_TICKS = 10  # a drive that ends right here is judged each tick, and a false alarm there leads to a new one
+BESIDE_STAND = {"x": 0.04, "y": 0.04, "phi": 0.1}  # by which a stand may lie outside of its ranges: drives arrive so
 CUP = "cup1"
+SLOW_MPS, REST_MPS, REST_RADPS = 0.1, 0.005, 0.02
+TRUTH_S = 0.1  # between two true states
 MASS_KG, ROLLING_N = 120.0, 18.0  # of the B21; 1.5 % of its weight resists its rolling
 ASIDE_STOOL = {"stool_x": 2.75, "stool_y": -1.95}  # in a corner: the duration of a drive is that of one with a free way
 
@@ -70,9 +74,10 @@ class KitchenSampler:
         return self.sample(action, rng)
 
     def beside(self, action: Action, truths: Sequence[Message], count: int, rng: np.random.Generator) -> list[Beside]:
-        """Stools beside a drive, half of them beside its rest from some tick on."""
+        """Stools beside a drive; half of them beside its rest from some tick on, half of these beside its end."""
         ways = np.array([(truth.x, truth.y) for truth in truths if isinstance(truth, KitchenTruth)])
-        ticks = [0 if k % 2 else int(rng.integers(len(ways))) for k in range(count)]
+        last = max(0, len(ways) - END_TICKS)
+        ticks = [0 if k % 2 else int(rng.integers(last if k % 4 else 0, len(ways))) for k in range(count)]
         return [stool.beside(ways[tick:], tick, rng) for tick in ticks]
 
     def context(self, action: Action, arguments: Array, rng: np.random.Generator) -> Array:
@@ -142,6 +147,14 @@ class KitchenSampler:
         touched = [frozenset[str](), *(frozenset(m.touched) for m in truth if isinstance(m, KitchenTruth))]
         return sum(len(now - before) for before, now in itertools.pairwise(touched))
 
+    def further_costs(self, truth: Sequence[Message]) -> Mapping[str, float]:
+        """Cups that tipped while nothing held them, and seconds in which the base moved, but below 0.1 m/s."""
+        states = [message for message in truth if isinstance(message, KitchenTruth)]
+        cups = ((each, state.held) for state in states for each in state.objects if each.name in kitchen().cups)
+        tipped = {cup.name for cup, held in cups if cup.tilt > kitchen().cup.tipped_rad and cup.name != held}
+        slow = sum(abs(s.v) < SLOW_MPS and (abs(s.v) > REST_MPS or abs(s.omega) > REST_RADPS) for s in states)
+        return {"tipped_cups": float(len(tipped)), "slow_s": slow * TRUTH_S}
+
     def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
         """Errors of a drive's position (m) and heading (rad), and of the speed (m/s)."""
         if not isinstance(truth, KitchenTruth) or action.name != "goToPose":
@@ -165,7 +178,7 @@ def _spot(rng: np.random.Generator) -> tuple[Spot, float]:
 
 def _stand(spot: Spot, rng: np.random.Generator) -> tuple[float, float, float]:
     ranges = places.stand_ranges(spot)
-    x, y, phi = (rng.uniform(ranges[q].lower, ranges[q].upper) for q in ("x", "y", "phi"))
+    x, y, phi = (rng.uniform(ranges[q].lower - by, ranges[q].upper + by) for q, by in BESIDE_STAND.items())
     return x, y, wrap(phi)
 
 
