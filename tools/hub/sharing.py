@@ -29,9 +29,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Run a verb; exit code 0.
 
     Raises:
-      UsageError: A flag is missing or of the other verb, or nothing was pushed or pulled.
+      UsageError: A flag is missing, or nothing was pushed or pulled.
     """
-    _check_flags(arguments)
+    _check_models(arguments)
     row = _push(arguments) if arguments.verb == "push" else _pull(arguments)
     if arguments.json:
         print(json.dumps(row))
@@ -41,15 +41,25 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _check_flags(arguments: argparse.Namespace) -> None:
-    pushing = arguments.verb == "push"
-    own, place = ("--to", arguments.to) if pushing else ("--from", arguments.source)
-    others = {"--from": arguments.source, "--revision": arguments.revision, "--replace": arguments.replace}
-    if not pushing:
-        others = {"--to": arguments.to, "--public": arguments.public, "--license": arguments.license}
-    wrong = [name for name, value in others.items() if value]
+def check_flags(arguments: argparse.Namespace) -> None:
+    """Refuse flags that the verb does not take.
+
+    Raises:
+      UsageError: There is one; the message names it.
+    """
+    flags = {
+        "push": {"--to": arguments.to, "--public": arguments.public, "--license": arguments.license},
+        "pull": {"--from": arguments.source, "--revision": arguments.revision, "--replace": arguments.replace},
+    }
+    others = (flags[verb] for verb in VERBS if verb != arguments.verb)
+    wrong = [name for each in others for name, value in each.items() if value]
     if wrong:
         raise UsageError(f"{arguments.verb} takes no {', '.join(wrong)} (see tailor models --help)")
+
+
+def _check_models(arguments: argparse.Namespace) -> None:
+    pushing = arguments.verb == "push"
+    own, place = ("--to", arguments.to) if pushing else ("--from", arguments.source)
     if place is None:
         raise UsageError(f"{arguments.verb} needs {own} USER/NAME, a repository of the hub, or {own} ./FOLDER")
     wanted = 1 if pushing and arguments.data is None else 0

@@ -62,6 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; exit code 0, or 1 if a check fails."""
+    sharing.check_flags(arguments)
     if arguments.verb in sharing.VERBS:
         return sharing.run(arguments)
     arguments.zoo = arguments.zoo or _zoo_of(arguments.models)

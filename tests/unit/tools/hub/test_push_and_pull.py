@@ -189,6 +189,7 @@ def test_a_swap_that_was_killed_is_completed_by_the_next_one(tmp_path):
         (("push", ROBOT, "--to", "a b"), "'a b': expected USER/NAME, a repository of the hub, or a folder as ./NAME"),
         (("push", ROBOT, "--to", "tests/arm"), "'tests/arm': there is a folder of that name here"),
         (("push", ROBOT, "--to", "./a", "--replace"), "push takes no --replace"),
+        (("list", "--to", "./a"), "list takes no --to"),
         (("push", "hal", "--to", "./a"), "hal"),
         (("pull", "--from", "./nothing"), "nothing: no such folder"),
         (("pull", "--from", "./tests"), "there is no SHA256SUMS"),
