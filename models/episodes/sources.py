@@ -53,7 +53,8 @@ def probe_of(manifest: Manifest, ends: Sequence[Sequence[float]]) -> dict[str, A
     if not drawn or len(ends) < PROBE or manifest.get("on_policy"):
         return None
     about = {"seed": manifest["seed"], "stream": manifest["stream"], "ends": list(map(list, ends))}
-    return about | ({"beside": True} if beside else {})
+    objects = {"objects": manifest["objects"]} if manifest.get("objects") else {}
+    return about | ({"beside": True} if beside else {}) | objects
 
 
 def end_of(duration_s: float, ticks: NDArray[np.float64]) -> list[float]:

@@ -93,6 +93,14 @@ def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episod
     return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
 
 
+def run_episodes(spec: DataSetSpec, domain: Domain, body: Any, runs: Sequence[int]) -> tuple[list[Episode], float]:
+    """The episodes of these runs, in order, and the simulated seconds; a run gives one episode, or one an object."""
+    if spec.objects:
+        return runs_beside_objects(spec.objects, domain, spec.action, body, runs, spec.rng)
+    episodes = [run_one(spec, domain, body, number) for number in runs]
+    return episodes, sum(episode.duration_s for episode in episodes)
+
+
 def _draw(spec: DataSetSpec, domain: Domain, rng: np.random.Generator) -> NDArray[np.float64]:
     """Arguments of one episode, with the row of its object if there is one."""
     arguments = action_run.sample_arguments(domain, spec.action, rng)
@@ -107,11 +115,7 @@ def part_of(spec: DataSetSpec, first: int) -> tuple[bytes, float, float]:
     domain, started = domains.load(spec.domain), time.perf_counter()
     body = action_run.new_body(domain)
     numbers = range(first, min(first + PART, spec.episodes))
-    if spec.objects:
-        episodes, simulated_s = runs_beside_objects(spec.objects, domain, spec.action, body, numbers, spec.rng)
-    else:
-        episodes = [run_one(spec, domain, body, number) for number in numbers]
-        simulated_s = sum(episode.duration_s for episode in episodes)
+    episodes, simulated_s = run_episodes(spec, domain, body, numbers)
     names = [entry["name"] for entry in _columns(spec, domain)]
     with tempfile.TemporaryDirectory() as folder:
         path = part_path(replace(spec, folder=Path(folder)), first)

@@ -7,6 +7,7 @@ as they did, the model is still true.
 from __future__ import annotations
 
 from functools import lru_cache
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -48,11 +49,12 @@ def differing_episodes(card: Card) -> str:
     domain = domains.load(name)
     if action not in domain.actions:
         return f"{name} has no action '{action}'"
-    drawn = (len(probe["ends"]), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")))
+    ends, objects = probe["ends"], probe.get("objects", 0)
+    drawn = (len(ends), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")), objects)
     spec = gathering.DataSetSpec(name, action, *drawn)
-    body = action_run.new_body(domain)
-    for number, then in enumerate(probe["ends"]):
-        episode = gathering.run_one(spec, domain, body, number)
+    runs = range(ceil(len(ends) / max(1, objects)))
+    episodes, _ = gathering.run_episodes(spec, domain, action_run.new_body(domain), runs)
+    for number, (episode, then) in enumerate(zip(episodes, ends, strict=False)):
         now = end_of(episode.duration_s, episode.ticks)
         if len(now) != len(then) or not np.allclose(now, then, rtol=0, atol=END_TOLERANCE):
             return f"random episode {number} now takes {now[0]:.1f} s, {then[0]:.1f} s in the card, or ends elsewhere"

@@ -7,7 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tailor.runtime.malloc_arenas import HOST, limit_arenas
+from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.processes.supervised import State
@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
     notifier = Notifier.from_environment()
     settings = with_hosting_flags(bus_settings(arguments), arguments)
     stop = stop_on_signals()
-    limit_arenas(HOST)
+    set_for_host()
     with hosted_bus(settings, _report), tempfile.TemporaryDirectory(prefix="tailor-") as folder:
         supervisor = Supervisor(_report, lambda name, argv: Child(name, argv, notify_folder=Path(folder)))
         try:

@@ -13,7 +13,7 @@ from tailor.executive.core.state import State
 from tailor.executive.shell import Shell
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock, wall_ns
-from tailor.runtime.malloc_arenas import LOOP, limit_arenas
+from tailor.runtime.malloc_settings import set_for_loop
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Compose and check the configuration, then tick until stopped."""
     stop, notifier = stop_on_signals(), Notifier.from_environment()
-    limit_arenas(LOOP)
+    set_for_loop()
     deployment = deployment_from(arguments)
     config = executive_config(arguments.domain, deployment)
     check_package(arguments.domain)

@@ -10,7 +10,7 @@ import time
 from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_gateway
 from tailor.runtime.bus.run_folder import run_folder
-from tailor.runtime.malloc_arenas import HOST, limit_arenas
+from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     identity = identity_in(f"{arguments.keys}/{ROUTER}") if arguments.keys else None
     roles = registered_roles(arguments.keys) if arguments.keys else None
     stop = stop_on_signals()
-    limit_arenas(HOST)
+    set_for_host()
     os.nice(NICENESS)
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a port scan must not use them up

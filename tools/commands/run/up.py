@@ -9,7 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from tailor.runtime.malloc_arenas import HOST, limit_arenas
+from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     A system that ends by itself is a failure as well (1).
     """
     stop = stop_on_signals()
-    limit_arenas(HOST)
+    set_for_host()
     if arguments.require_recording and arguments.record is None:
         raise UsageError("--require-recording: expected --record FILE as well")
     if arguments.letters:

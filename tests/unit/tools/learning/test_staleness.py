@@ -78,6 +78,18 @@ def test_a_changed_source_without_episodes_to_compare_makes_a_model_stale(card, 
     assert "it holds no random episodes to compare" in staleness_of(card)
 
 
+def test_episodes_of_many_objects_a_run_are_compared_as_such(tmp_path: Path) -> None:
+    spec = DataSetSpec("soccer", "goToPose", 1, 3, tmp_path, beside=True, objects=8)
+    gathering.prepare(spec, resume=False)
+    list(gathering.gather(spec, [0], jobs=1))
+    episodes = merge([read_data_set(tmp_path)]).manifest
+    card = {"robot": "agilo", "action": "goToPose", "episodes": {"probe": episodes["probe"]}}
+    assert card["episodes"]["probe"]["objects"] == 8
+    assert differing_episodes(card) == ""
+    card["episodes"]["probe"]["ends"][5][0] += 0.1
+    assert differing_episodes(card).startswith("random episode 5 now")
+
+
 def test_every_source_of_a_merged_data_set_counts(card) -> None:
     """An audit found cards that stated the first one's alone."""
     files = next(iter(card["episodes"]["source_files"].values()))

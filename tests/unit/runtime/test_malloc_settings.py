@@ -8,10 +8,10 @@ import pytest
 
 SCRIPT = """
 import ctypes, sys, threading
-from tailor.runtime.malloc_arenas import limit_arenas
+from tailor.runtime import malloc_settings
 
-if sys.argv[1] != "many":
-    limit_arenas(int(sys.argv[1]))
+if sys.argv[1] != "none":
+    getattr(malloc_settings, sys.argv[1])()
 libc = ctypes.CDLL(None)
 libc.malloc.restype, libc.malloc.argtypes = ctypes.c_void_p, [ctypes.c_size_t]
 together = threading.Barrier(8)
@@ -38,6 +38,6 @@ def arenas(how):
 
 @pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "malloc_stats"), reason="the C library has no arenas")
 def test_threads_share_few_arenas():
-    assert arenas("many") > 1
-    assert arenas("1") == 1
-    assert arenas("2") == 2
+    assert arenas("none") > 2
+    assert arenas("set_for_host") == 1
+    assert arenas("set_for_loop") == 2
