@@ -6,9 +6,10 @@ import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 
-from tailor.runtime.bus import access, zenoh_config
-from tailor.runtime.bus.credentials import Identity, Password
-from tailor.runtime.bus.run_folder import SOCKET, RunFolder, hosted, run_folder
+from tailor.runtime.bus import zenoh_config
+from tailor.runtime.bus.rights import access
+from tailor.runtime.bus.rights.credentials import Identity, Password
+from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, hosted, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UsageError

@@ -1,4 +1,4 @@
-"""The only module that imports zenoh: a session with its publishers, inboxes, services and subscriptions."""
+"""A zenoh session with its publishers, inboxes, services and subscriptions; only it and `wires.py` import zenoh."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import secrets
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import Any
 
 import zenoh
 
 from tailor.runtime.bus.attachment import SENDER_BYTES
-from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, Source
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
 from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
+from tailor.runtime.bus.wires import RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
@@ -87,7 +87,7 @@ class Session:
         wires = [self._wire(each, encoding, topic.priority) for each, encoding in self._keys_of(topic, key)]
         if self.keys.announces:
             self._graph.announce(Kind.PUBLISHER, ros_topic(topic, robot), self.keys.domain)
-        return Publisher(key, _Wire(wires), self.sender)
+        return Publisher(key, Wire(wires), self.sender)
 
     def _keys_of(self, topic: Topic, key: str) -> list[tuple[str, str]]:
         """Keys of a topic in this session's profile, each with the encoding of what is published there."""
@@ -125,12 +125,12 @@ class Session:
             )
             for each, encoded in keys
         ]
-        return Publisher(key, _Wire(declared), self.sender)
+        return Publisher(key, Wire(declared), self.sender)
 
     def plain_publisher(self, key: str, encoding: str) -> Publisher:
         """Publisher of commands on a topic of a robot that knows nothing of us; drops rather than wait."""
         self._announce_key(Kind.PUBLISHER, key)
-        return Publisher(key, _Wire([self._wire(key, encoding, "real_time")]), self.sender)
+        return Publisher(key, Wire([self._wire(key, encoding, "real_time")]), self.sender)
 
     def plain_source(self, key: str) -> Source:
         """Raw messages of one topic of such a robot; the newest few between two looks."""
@@ -178,13 +178,13 @@ class Session:
         return Inbox(subscriptions, encoding_of, time.monotonic_ns, newest_only=newest_only)
 
     def _ring(self, key: str) -> Source:
-        return _Source(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)), self.keys)
+        return RingSource(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)), self.keys)
 
     def _latch(self, topic: Topic, key: str, at: str) -> Source:
         latch = EStopLatch(topic, key)
 
         def offer(sample: zenoh.Sample) -> None:
-            raw = as_plain(_raw(sample), self.keys)
+            raw = as_plain(raw_of(sample), self.keys)
             if raw is not None:
                 latch.offer(raw)
 
@@ -230,7 +230,7 @@ class Session:
         queue = IngestQueue()
 
         def put(sample: zenoh.Sample) -> None:  # copied in zenoh's thread: a waiting sample pins its whole batch
-            raw = as_plain(_received_raw(sample, wall_ns()), self.keys)
+            raw = as_plain(received_raw(sample, wall_ns()), self.keys)
             if raw is not None:
                 queue.put(raw)
 
@@ -241,18 +241,6 @@ class Session:
         return queue, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
 
 
-class Subscriptions:
-    """Subscriptions that end together."""
-
-    def __init__(self, declared: Sequence[Any]) -> None:
-        self._declared = declared
-
-    def undeclare(self) -> None:
-        """End them."""
-        for each in self._declared:
-            each.undeclare()
-
-
 def _is_one_key(key: str) -> bool:
     """Whether zenoh accepts a key and it is not a pattern."""
     try:
@@ -260,60 +248,3 @@ def _is_one_key(key: str) -> bool:
     except zenoh.ZError:
         return False
     return "*" not in key and len(key.encode()) <= MAX_KEY_BYTES
-
-
-class _Wire:
-    def __init__(self, publishers: Sequence[zenoh.Publisher]) -> None:
-        self._publishers = publishers
-        builder = zenoh.TimestampInstrumentationBuilder()  # "unstable" in zenoh 1.x; used by arrival.py
-        self._note_reception = builder.set_receive(True).build()
-
-    def put(self, payload: bytes, attachment: bytes | None) -> None:
-        for publisher in self._publishers:
-            publisher.put(payload, attachment=attachment, timestamp_instrumentation=self._note_reception)
-
-    def matched(self) -> bool:
-        return any(_status(publisher).matching for publisher in self._publishers)
-
-
-def _status(publisher: Any) -> Any:
-    return publisher.matching_status  # its type hint is wrong: the value is a MatchingStatus
-
-
-class _Source:
-    def __init__(self, subscriber: Any, keys: KeyProfile) -> None:
-        self._subscriber, self._keys = subscriber, keys
-
-    def receive(self) -> Raw | None:
-        while (sample := self._subscriber.try_recv()) is not None:
-            raw = as_plain(_raw(sample), self._keys)
-            if raw is not None:
-                return raw
-        return None
-
-
-def _raw(sample: zenoh.Sample) -> Raw:
-    attachment = sample.attachment
-    return Raw(
-        key=str(sample.key_expr),
-        payload=sample.payload.to_bytes(),
-        attachment=None if attachment is None else attachment.to_bytes(),
-        encoding=str(sample.encoding),
-        is_put=sample.kind == zenoh.SampleKind.PUT,
-        received_wall_ns=_reception_stamp(sample),
-    )
-
-
-def _received_raw(sample: zenoh.Sample, at_ns: int) -> Raw:
-    """Copy of a sample; `at_ns` is its wall time of reception unless zenoh stamped it."""
-    raw = _raw(sample)
-    return raw if raw.received_wall_ns is not None else replace(raw, received_wall_ns=at_ns)
-
-
-def _reception_stamp(sample: zenoh.Sample) -> int | None:
-    stack = sample.timestamp_stack
-    records = stack.records if stack is not None else []
-    if not records or records[-1].point != zenoh.InterceptionPoint.RECEIVE or records[-1].is_custom:
-        return None
-    fixed_point = int(str(records[-1].timestamp()).split("/", 1)[0])  # NTP64: seconds and a 32-bit fraction
-    return (fixed_point >> 32) * 1_000_000_000 + ((fixed_point & 0xFFFFFFFF) * 1_000_000_000 >> 32)

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tailor.runtime.bus import access
-from tailor.runtime.bus.credentials import Identity, Password
-from tailor.runtime.bus.run_folder import CERTIFICATE_USER, RunFolder
+from tailor.runtime.bus.rights import access
+from tailor.runtime.bus.rights.credentials import Identity, Password
+from tailor.runtime.bus.rights.run_folder import CERTIFICATE_USER, RunFolder
 from tailor.schemas.errors import UsageError
 from tailor.schemas.services import ROLES, Role
 

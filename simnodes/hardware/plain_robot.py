@@ -9,9 +9,9 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 
-from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.inbox import Source
 from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected

@@ -11,9 +11,9 @@ import pytest
 
 from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.attachment import Origin
-from tailor.runtime.bus.credentials import Password
 from tailor.runtime.bus.opening import open_client
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.credentials import Password
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import CannotOpenError, opened
 from tailor.runtime.processes.child import tailor
 from tailor.schemas.codec import encode

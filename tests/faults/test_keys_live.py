@@ -6,8 +6,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.session import opened
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.errors import UsageError

@@ -9,8 +9,8 @@ import argparse
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
-from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_client
+from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
 from tailor.schemas.ros2.profiles import PROFILES

@@ -13,7 +13,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from tailor.runtime.bus.credentials import AUTHORITY, CERTIFICATE, PRIVATE_KEY
+from tailor.runtime.bus.rights.credentials import AUTHORITY, CERTIFICATE, PRIVATE_KEY
 
 AUTHORITY_KEY = "authority-key.pem"  # stays on the machine where keys are made
 CLOCK_SKEW = timedelta(days=1)  # machines whose clock was never set are common on robots

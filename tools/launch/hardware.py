@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.loading import load_hardware

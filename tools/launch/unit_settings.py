@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tailor.runtime.bus.run_folder import VARIABLE
+from tailor.runtime.bus.rights.run_folder import VARIABLE
 from tailor.runtime.processes.child import ONE_THREAD
 from tailor.runtime.processes.restart import FIRST_DELAY_NS, MAX_STARTS, WINDOW_NS
 from tailor.runtime.processes.supervised import STARTUP_NS

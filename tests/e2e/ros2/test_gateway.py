@@ -7,9 +7,9 @@ import pytest
 import zenoh
 
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.bus.credentials import Password
 from tailor.runtime.bus.opening import open_client, open_local_router
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.credentials import Password
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.zenoh_config import client
 from tailor.schemas import codec
 from tailor.schemas.messages import EStop, Odometry, VelocityCommand

@@ -7,8 +7,8 @@ import sys
 import time
 
 from tailor.runtime.bus import zenoh_config
-from tailor.runtime.bus.credentials import Password
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.credentials import Password
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import opened
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example

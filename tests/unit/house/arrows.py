@@ -10,7 +10,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[3]
 ROOMS_FILE = Path(__file__).with_name("rooms.toml")
 ROOMS = tomllib.loads(ROOMS_FILE.read_text())
-ONE_PLACE: dict[str, str] = ROOMS.pop("one_place")
+ONE_PLACE: dict[str, list[str]] = ROOMS.pop("one_place")
 OURS = set(ROOMS["."])
 MODULES = frozenset(p.relative_to(ROOT).as_posix() for folder in OURS for p in (ROOT / folder).rglob("*.py"))
 

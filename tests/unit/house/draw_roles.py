@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tailor.runtime.bus.access import may_publish
+from tailor.runtime.bus.rights.access import may_publish
 from tailor.schemas.services import ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS
 

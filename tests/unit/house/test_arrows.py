@@ -115,7 +115,7 @@ def test_the_guard_needs_the_standard_library_only(path: str) -> None:
 
 @pytest.mark.parametrize("library", ONE_PLACE)
 def test_a_library_with_one_place_is_imported_nowhere_else(library: str) -> None:
-    assert [p for p in PROJECT_FILES if library in top_names(p)] == [ONE_PLACE[library]]
+    assert [p for p in PROJECT_FILES if library in top_names(p)] == ONE_PLACE[library]
 
 
 LEARNING = ["sklearn", "skl2onnx", "onnx", "joblib", "pyarrow", "mujoco", "matplotlib"]

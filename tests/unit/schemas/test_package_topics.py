@@ -27,7 +27,7 @@ assert ros_type(Gripper) == "courier_msgs/msg/Gripper"
 assert type_of(ros_type(Gripper)) is Gripper
 assert type_hash(Gripper).startswith("RIHS01_")
 assert key_of("claw", "pedelec") == "pedelec/claw"
-from tailor.runtime.bus.access import access_control, size_limits
+from tailor.runtime.bus.rights.access import access_control, size_limits
 rules = {rule["id"]: rule["key_exprs"] for rule in access_control([])["rules"]}
 assert [name for name, keys in rules.items() if "*/claw" in keys] == ["driver publish", "player publish"]
 assert [name for name, keys in rules.items() if "*/grip" in keys] == ["executive publish"]

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, PlaybackClock

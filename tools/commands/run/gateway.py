@@ -7,9 +7,9 @@ import os
 import resource
 import time
 
-from tailor.runtime.bus.credentials import identity_in
 from tailor.runtime.bus.opening import open_gateway
-from tailor.runtime.bus.run_folder import run_folder
+from tailor.runtime.bus.rights.credentials import identity_in
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 
 from tailor.runtime.bus.opening import open_client
-from tailor.runtime.bus.run_folder import VARIABLE
+from tailor.runtime.bus.rights.run_folder import VARIABLE
 from tailor.runtime.bus.session import Session
 
 

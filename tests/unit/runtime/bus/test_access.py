@@ -3,7 +3,7 @@
 import pytest
 import zenoh
 
-from tailor.runtime.bus import access
+from tailor.runtime.bus.rights import access
 from tailor.schemas.ros2.graph import Kind, Node, qos
 from tailor.schemas.ros2.profiles import ros_topic
 from tailor.schemas.ros2.service import set_goal

@@ -5,8 +5,8 @@ import stat
 
 import pytest
 
-from tailor.runtime.bus import run_folder as module
-from tailor.runtime.bus.run_folder import LOCK, SOCKET, USERS, hosted, run_folder
+from tailor.runtime.bus.rights import run_folder as module
+from tailor.runtime.bus.rights.run_folder import LOCK, SOCKET, USERS, hosted, run_folder
 from tailor.schemas.errors import UsageError
 
 ENDPOINT = "tcp/127.0.0.1:7999"

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tailor.runtime.bus import access, zenoh_config
-from tailor.runtime.bus.credentials import Identity, Password
-from tailor.runtime.bus.run_folder import RunFolder
+from tailor.runtime.bus import zenoh_config
+from tailor.runtime.bus.rights import access
+from tailor.runtime.bus.rights.credentials import Identity, Password
+from tailor.runtime.bus.rights.run_folder import RunFolder
 from tailor.schemas.services import ROLES
 
 ENDPOINT = "tcp/127.0.0.1:7999"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tailor.runtime.bus.ros_access import ALL_TOKENS, service_keys, tokens
+from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, service_keys, tokens
 from tailor.schemas.messages import ArmRequest, EStop
 from tailor.schemas.ros2.profiles import ros_patterns
 from tailor.schemas.services import ROLES, SERVICES, Role

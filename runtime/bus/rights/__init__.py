@@ -1,0 +1,1 @@
+"""Who may publish what on the bus, and how a process proves who it is."""
