@@ -151,7 +151,7 @@ def live_page(endpoint, folder):
         wait_until(lambda: log.read_text().startswith("http"), "address")
         address = log.read_text().split()[0]
         with urllib.request.urlopen(address, timeout=PATIENCE_S) as response:
-            yield address, re.search(r'"stop": "([^"]+)"', response.read().decode()).group(1)
+            yield address, re.search(r'"stop": *"([^"]+)"', response.read().decode()).group(1)
     finally:
         assert view.stop() == 0
 
