@@ -26,10 +26,11 @@ from tailor.executive.interfaces.outlet import messages_of
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.simnodes.world import World
 from tailor.tools.gym.spaces import Command, believed, clipped, command_space, numbers, padded, width
 from tailor.tools.lockstep.driver_link import DriverLink
 from tailor.tools.lockstep.run import CHECKS_PER_TICK, SENDER
-from tailor.tools.lockstep.worlds import make_world
+from tailor.tools.lockstep.worlds import events_of, make_world
 
 PERIOD_S = PERIOD_NS * 1e-9
 MAX_DRAWS = 10
@@ -68,7 +69,7 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
         self._domain = domains.load(domain)
         self._scenario = scenario or domains.scenarios(domain)[0]
         self._models = load_models(self._domain.robot, zoo)
-        self._body = make_world(self._domain.robot, self._scenario, 0).body
+        self._body = make_world(self._domain.robot, self._scenario, 0).body  # refuses an unknown scenario
         self._limit_s, self._checks = limit_s, checks
         self._names = tuple(self._domain.actions)
         self._width = max(width(action) for action in self._domain.actions.values())
@@ -119,9 +120,9 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
 
     def _begin(self, seed: int) -> None:
         """Put body and executive at the start of a scenario, and run the first tick."""
-        scenario, _ = domains.seeded_scenario(self._domain.name, self._scenario, seed)
+        scenario, start = domains.seeded_scenario(self._domain.name, self._scenario, seed)
         self._context = make_context(self._domain, scenario, self._models, Settings(seed=seed), SENDER)
-        world = make_world(self._domain.robot, self._scenario, seed, self._body)
+        world = World(self._body, start, seed, events_of(scenario))
         self._link, self._tick, self._outputs = DriverLink(self._domain, world, SENDER), 0, ()
         self._state = initial_state(self._context)
         self._next_tick(self._state.command, self._context.problem.goal_text)

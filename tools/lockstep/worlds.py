@@ -5,18 +5,16 @@ from __future__ import annotations
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.installed import part, spec_of_robot
-from tailor.simnodes.body import Body
 from tailor.simnodes.world import Event, World
 
 
-def make_world(robot: str, scenario: str, seed: int, body: Body | None = None) -> World:
+def make_world(robot: str, scenario: str, seed: int) -> World:
     """World of a scenario, sampled with the same seed and order of draws as the executive uses.
 
     Args:
       robot: Name of a robot whose package has a body.
       scenario: One of the scenarios of the robot's domain; empty for the first.
       seed: Random seed of start, targets and noise.
-      body: The robot's body, which the world resets; None: a new one, which takes longer.
 
     Raises:
       UsageError: Robot or scenario is unknown, or the robot has no body.
@@ -24,8 +22,7 @@ def make_world(robot: str, scenario: str, seed: int, body: Body | None = None) -
     spec = spec_of_robot(robot)
     name = scenario or domains.scenarios(spec.name)[0]
     sampled, start = domains.seeded_scenario(spec.name, name, seed)
-    made: Body = part(spec, "body")() if body is None else body
-    return World(made, start, seed, events_of(sampled))
+    return World(part(spec, "body")(), start, seed, events_of(sampled))
 
 
 def events_of(scenario: Scenario) -> list[Event]:
