@@ -11,6 +11,7 @@ import os
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,38 +61,47 @@ class Episode:
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
-    """Write episodes as one Parquet file, atomically; without episodes nothing is written.
+    """Write episodes as one Parquet file, atomically; without episodes nothing is written. See `part_bytes`."""
+    store_part(path, part_bytes(episodes, names))
+
+
+def part_bytes(episodes: Iterable[Episode], names: Sequence[str]) -> bytes:
+    """Episodes as the bytes of one Parquet file; empty without episodes.
 
     Args:
-      path: The file.
       episodes: One row group each; those of a single tick share one.
       names: Names of the arguments, k.
     """
     import pyarrow as pa  # here, so that commands start without it
 
-    temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    writer, tables = None, []
-    try:
-        for episode in episodes:
-            tables.append(_table(episode, names))
-            if len(episode.ticks) > 1 or len(tables) == SHORT_EPISODES:
-                writer = writer or _writer(temporary, tables[0])
-                writer.write_table(pa.concat_tables(tables))
-                tables = []
-        if tables:
-            writer = writer or _writer(temporary, tables[0])
-            writer.write_table(pa.concat_tables(tables).combine_chunks())
-    finally:
-        if writer is not None:
-            writer.close()
+    file, writer, tables = BytesIO(), None, []
+    for episode in episodes:
+        tables.append(_table(episode, names))
+        if len(episode.ticks) > 1 or len(tables) == SHORT_EPISODES:
+            writer = writer or _writer(file, tables[0])
+            writer.write_table(pa.concat_tables(tables))
+            tables = []
+    if tables:
+        writer = writer or _writer(file, tables[0])
+        writer.write_table(pa.concat_tables(tables).combine_chunks())
     if writer is not None:
-        temporary.replace(path)
+        writer.close()
+    return file.getvalue()
 
 
-def _writer(path: Path, table: pa.Table) -> pq.ParquetWriter:
+def store_part(path: Path, file: bytes) -> None:
+    """Write the bytes of a part, atomically; if there are none, nothing is written."""
+    if not file:
+        return
+    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    temporary.write_bytes(file)
+    temporary.replace(path)
+
+
+def _writer(file: BytesIO, table: pa.Table) -> pq.ParquetWriter:
     import pyarrow.parquet as pq
 
-    return pq.ParquetWriter(path, table.schema, compression="zstd", write_page_checksum=True)
+    return pq.ParquetWriter(file, table.schema, compression="zstd", write_page_checksum=True)
 
 
 def _table(episode: Episode, names: Sequence[str]) -> pa.Table:

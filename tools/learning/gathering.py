@@ -6,12 +6,10 @@ order give the same bits, and evaluation never uses training episodes.
 
 from __future__ import annotations
 
-import os
-import tempfile
 import time
 import zlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -22,7 +20,7 @@ from numpy.typing import NDArray
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.context_columns import CONTEXT
-from tailor.models.episodes.episodes import Episode, write_part
+from tailor.models.episodes.episodes import Episode, part_bytes, store_part
 from tailor.models.episodes.manifest import MANIFEST, read_manifest, write_manifest
 from tailor.models.episodes.sources import short_hashes
 from tailor.schemas.errors import UsageError
@@ -117,25 +115,12 @@ def part_of(spec: DataSetSpec, first: int) -> tuple[bytes, float, float]:
     numbers = range(first, min(first + PART, spec.episodes))
     episodes, simulated_s = run_episodes(spec, domain, body, numbers)
     names = [entry["name"] for entry in _columns(spec, domain)]
-    with tempfile.TemporaryDirectory() as folder:
-        path = part_path(replace(spec, folder=Path(folder)), first)
-        write_part(path, episodes, names)
-        file = path.read_bytes() if episodes else b""
-    return file, simulated_s, time.perf_counter() - started
+    return part_bytes(episodes, names), simulated_s, time.perf_counter() - started
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
     """Path of the part that starts with episode `first`: part-000020-000040.parquet holds 20 to 39."""
     return spec.folder / f"part-{first:06d}-{min(first + PART, spec.episodes):06d}.parquet"
-
-
-def store_part(path: Path, file: bytes) -> None:
-    """Write the file of a part, atomically; without episodes nothing is written."""
-    if not file:
-        return
-    temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    temporary.write_bytes(file)
-    temporary.replace(path)
 
 
 def missing_parts(spec: DataSetSpec) -> list[int]:

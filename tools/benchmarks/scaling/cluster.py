@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive import domains
+from tailor.models.episodes.episodes import store_part
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.scaling.simulation import Overheads, speedup
 from tailor.tools.learning import gathering
@@ -83,5 +84,5 @@ def _write_s(part: bytes) -> float:
     with tempfile.TemporaryDirectory() as folder:
         started = time.process_time()
         for number in range(ROUNDS):
-            gathering.store_part(Path(folder) / f"part-{number}.parquet", part)
+            store_part(Path(folder) / f"part-{number}.parquet", part)
         return (time.process_time() - started) / ROUNDS
