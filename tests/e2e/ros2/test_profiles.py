@@ -7,7 +7,7 @@ import pytest
 import zenoh
 
 from tailor.runtime.bus.attachment import Origin, pack, unpack
-from tailor.runtime.bus.opening import open_client, open_router
+from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import opened
 from tailor.runtime.bus.zenoh_config import client
 from tailor.schemas import codec
@@ -16,21 +16,12 @@ from tailor.schemas.ros2 import service
 from tailor.schemas.ros2.graph import Kind, parsed_token
 from tailor.schemas.ros2.profiles import KeyProfile, ros_topic
 from tailor.schemas.topics import TOPICS
-from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
 
 ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
 ROS, BOTH = KeyProfile("rmw_zenoh", 7), KeyProfile("both", 7)
 ODOM, ESTOP = (ros_topic(TOPICS[name], "agilo").key(7) for name in ("odom", "estop"))
 STRANGER = "ab" * 16
-
-
-@pytest.fixture
-def endpoint():
-    codec.prime()
-    endpoint = free_endpoint()
-    with open_router(endpoint):
-        yield endpoint
 
 
 @contextmanager

@@ -2,26 +2,16 @@
 
 import pytest
 
-from tailor.runtime.bus.opening import open_client, open_router
-from tailor.schemas import codec
+from tailor.runtime.bus.opening import open_client
 from tailor.schemas.ros2.profiles import KeyProfile
 from tailor.simnodes.hardware.plain_keys import named
 from tailor.simnodes.hardware.plain_robot import PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, RobotBus
 from tailor.tools.conformance import live_link
 from tailor.tools.conformance.live_link import LiveLink, NoDriverError
-from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
 
 TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
-
-
-@pytest.fixture
-def endpoint():
-    codec.prime()
-    endpoint = free_endpoint()
-    with open_router(endpoint):
-        yield endpoint
 
 
 def fault(robot):
