@@ -17,6 +17,7 @@ from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import control, deliberate
 from tailor.executive.interfaces.domain import Scenario
+from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.realtime import collect_garbage
 from tailor.schemas.codec import encode, prime
@@ -26,7 +27,6 @@ from tailor.tools.benchmarks.planning import texts
 from tailor.tools.benchmarks.planning_scale import goal_text, problem_text
 
 PERIOD_NS = 100_000_000
-BUDGET_NS = 60_000_000  # as executive/shell.py
 SENDER, DRIVER = "ab" * 16, "cd" * 16
 MAX_TICKS_PER_STEP = 20
 CUPS = (10, 20, 40, 50)
@@ -85,7 +85,7 @@ def _driven(context: Context, cups: int, max_ticks: int) -> Course:
         started_ns = time.process_time_ns()
         state, first = control(context, state, now_ns, inputs)
         course.control_ms.append((time.process_time_ns() - started_ns) / 1e6)
-        state, rest = deliberate(context, state, ClockBudget(started_ns + BUDGET_NS, time.process_time_ns))
+        state, rest = deliberate(context, state, ClockBudget(started_ns + DELIBERATION_NS, time.process_time_ns))
         sizes = [(type(output.message), len(encode(output.message))) for output in (*first, *rest)]
         course.times_ms.append((time.process_time_ns() - started_ns) / 1e6)
         course.largest_plan = max([course.largest_plan, *(size for kind, size in sizes if kind is PlanReport)])

@@ -24,6 +24,7 @@ from tailor.executive.core.plan_reuse import Preparation
 from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.core.state import Output
 from tailor.executive.replay import RecordedTick
+from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.realtime import collect_garbage
 from tailor.schemas.errors import UsageError
@@ -32,7 +33,6 @@ from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
 SECONDS, QUICK_SECONDS = 60.0, 8.0
-BUDGET_NS = 60_000_000  # as executive/shell.py
 
 
 def shares(domain: str, scenario: str, seconds: float, settings: Settings | None = None) -> list[float]:
@@ -58,7 +58,7 @@ def _shares(domain: str, scenario: str, seconds: float, settings: Settings | Non
     with _timed(PlanSource, "advance") as searched, _timed(Preparation, "advance") as prepared:
         run_lockstep(
             context, world.body, start, 0, world.events, limit_s=seconds, on_tick=on_tick,
-            new_budget=lambda: ClockBudget(time.process_time_ns() + BUDGET_NS, time.process_time_ns),
+            new_budget=lambda: ClockBudget(time.process_time_ns() + DELIBERATION_NS, time.process_time_ns),
         )  # fmt: skip
     return [100.0 * float(ns) / PERIOD_NS for ns in np.diff(marks)]
 
