@@ -1,7 +1,7 @@
 """Topics on which two nodes of rmw_zenoh do not hear each other, since their types differ. Pure.
 
-Keys contain the type, so a base that takes Twist never receives a TwistStamped, and nobody is told: the robot stands.
-Liveliness tokens name the topics of all nodes with their types.
+Keys contain the type, so a base that takes Twist never receives a TwistStamped, and no error is reported: the robot
+stands. Liveliness tokens name the topics of all nodes with their types.
 """
 
 from __future__ import annotations

@@ -106,11 +106,11 @@ class Cluster:
             raise UsageError(f"--on {self.address}: the scheduler has no worker") from None
         with self._explained():
             workers = self.client.scheduler_info(n_workers=-1)["workers"]
-            asked = {
+            answers = {
                 name: self.client.submit(software_for, self.work, workers=[name], pure=False, allow_other_workers=False)
                 for name in sorted(workers)
             }
-            faults = {name: _faults(future, workers[name], self.work) for name, future in asked.items()}
+            faults = {name: _faults(future, workers[name], self.work) for name, future in answers.items()}
         if any(faults.values()):
             each = "; ".join(f"worker {name}: {', '.join(wrong)}" for name, wrong in faults.items() if wrong)
             raise UsageError(f"--on {self.address}: {each}")
@@ -140,17 +140,17 @@ def _checked(work: Work, expected: Mapping[str, str], part: Part, call: tuple[An
     return part(*call)
 
 
-def _faults(asked: Any, worker: Mapping[str, Any], work: Work) -> list[str]:
+def _faults(answer: Any, worker: Mapping[str, Any], work: Work) -> list[str]:
     """What a worker differs in."""
     threads = worker["nthreads"]
     wrong = [f"runs {threads} parts in one process, expected --nthreads 1"] if threads != 1 else []
     try:
-        error = asked.exception(timeout=ANSWER_S)
+        error = answer.exception(timeout=ANSWER_S)
     except TimeoutError:
         return [*wrong, f"does not answer within {ANSWER_S:g} s"]
     if error is not None:
         return [*wrong, f"has no Tailor that can be used ({_first_line(error)})"]
-    return [*wrong, *differences(asked.result(), software_for(work))]
+    return [*wrong, *differences(answer.result(), software_for(work))]
 
 
 def _first_line(error: BaseException) -> str:
