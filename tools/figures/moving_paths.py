@@ -69,7 +69,7 @@ def move_paths(tracks: Sequence[Track], path: Path, frames_per_s: int = FRAMES_P
       frames_per_s: Frames for each second of the runs, which the picture shows as fast as they were.
       hold_s: Duration of the last frame.
     """
-    figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained")
+    figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained", dpi=DOTS_PER_INCH)
     limits = limits_of(tracks)
     paths = []
     for axis, track in zip(figure.subplots(1, len(tracks), squeeze=False)[0], tracks, strict=True):
