@@ -1,1 +1,1 @@
-"""MCAP recordings: writing, reading, recovery of damaged files, playback, snapshots."""
+"""Recordings: recorder, reader, player, copies, snapshots."""

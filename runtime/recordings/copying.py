@@ -10,8 +10,8 @@ from typing import Any
 from mcap import records as r
 from mcap.writer import CompressionType, Writer
 
-from tailor.runtime.recordings.mcap_scan import DamageReport, scan
-from tailor.runtime.recordings.mcap_writer import CHUNK_BYTES
+from tailor.runtime.recordings.mcap.scan import DamageReport, scan
+from tailor.runtime.recordings.mcap.writer import CHUNK_BYTES
 from tailor.schemas.errors import UsageError
 
 Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)

@@ -10,7 +10,7 @@ from typing import Any
 
 from mcap import records as r
 
-from tailor.runtime.recordings.mcap_scan import DamageReport, scan
+from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import count_key, memory_of
-from tailor.runtime.recordings.channel_table import MAX_KEYS
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text

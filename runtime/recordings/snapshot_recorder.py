@@ -7,7 +7,7 @@ from pathlib import Path
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.recordings.channel_table import ENCODING
+from tailor.runtime.recordings.mcap.channel_table import ENCODING
 from tailor.runtime.recordings.recorder import Health
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection

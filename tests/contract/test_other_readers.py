@@ -13,7 +13,7 @@ from rosbags.highlevel import AnyReader
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.session import encoding_of
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import message_types, ros_type

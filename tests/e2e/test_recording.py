@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tailor.runtime.processes.child import Child
-from tailor.runtime.recordings.mcap_scan import DamageReport
+from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Odometry, Provenance

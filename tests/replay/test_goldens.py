@@ -17,8 +17,8 @@ from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.platform_fingerprint import platform_fingerprint
-from tailor.runtime.recordings.channel_table import ENCODING
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.channel_table import ENCODING
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError

@@ -19,8 +19,8 @@ from tailor.executive.shell import tick_report
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.loop import Period
-from tailor.runtime.recordings.channel_table import ENCODING
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.channel_table import ENCODING
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, Provenance
 from tailor.schemas.topics import TOPICS, key_of

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.channel_table import ENCODING
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.channel_table import ENCODING
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected, UsageError

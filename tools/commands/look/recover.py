@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
-from tailor.runtime.recordings.mcap_scan import DamageReport, scan
+from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

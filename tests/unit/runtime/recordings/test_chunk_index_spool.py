@@ -12,9 +12,9 @@ from rosbags.highlevel import AnyReader
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings import chunk_index_spool
-from tailor.runtime.recordings.chunk_index_spool import CHUNK_INDEXES, ChunkIndexSpool
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap import chunk_index_spool
+from tailor.runtime.recordings.mcap.chunk_index_spool import CHUNK_INDEXES, ChunkIndexSpool
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Odometry

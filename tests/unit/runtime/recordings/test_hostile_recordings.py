@@ -10,7 +10,7 @@ from mcap.writer import Writer
 
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.recordings.mcap_scan import MAGIC
+from tailor.runtime.recordings.mcap.scan import MAGIC
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection
 from tailor.schemas.codec import decode, encode

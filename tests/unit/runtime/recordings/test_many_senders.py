@@ -9,8 +9,8 @@ from mcap.reader import make_reader
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import OTHER_KEYS, IngestQueue
-from tailor.runtime.recordings import channel_table
-from tailor.runtime.recordings.channel_table import MAX_KEYS, MAX_SENDERS
+from tailor.runtime.recordings.mcap import channel_table
+from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS, MAX_SENDERS
 from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from tailor.runtime.recordings.mcap_chunk import records_of
+from tailor.runtime.recordings.mcap.chunk import records_of
 from tailor.runtime.recordings.recording import open_recording
 from tailor.tools.recordings.survey import percentiles
 

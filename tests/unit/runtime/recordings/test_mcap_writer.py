@@ -12,13 +12,13 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue, memory_of
 from tailor.runtime.bus.session import encoding_of
-from tailor.runtime.recordings.mcap_scan import MAGIC, DamageReport, scan
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.scan import MAGIC, DamageReport, scan
+from tailor.runtime.recordings.mcap.sink import Sink
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
-from tailor.runtime.recordings.sink import Sink
 from tailor.runtime.recordings.snapshot import FailureDetector, SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.schemas.codec import encode
@@ -209,7 +209,7 @@ def make_recorder(tmp_path, queue, wanted=EVERYTHING, **limits):
 
 
 def test_the_recorder_counts_what_a_full_disk_costs_and_goes_on(tmp_path, monkeypatch):
-    monkeypatch.setattr("tailor.runtime.recordings.mcap_writer.STUCK_BYTES", 6000)
+    monkeypatch.setattr("tailor.runtime.recordings.mcap.writer.STUCK_BYTES", 6000)
     queue = IngestQueue()
     recorder = make_recorder(tmp_path, queue)
     real = os.write
@@ -366,7 +366,7 @@ def test_a_snapshot_of_nothing_is_refused(tmp_path):
 @pytest.fixture
 def full_disk(monkeypatch):
     """Call with True and False: whether the disk is full."""
-    from tailor.runtime.recordings import sink
+    from tailor.runtime.recordings.mcap import sink
 
     def refuse(*_):
         raise OSError(errno.ENOSPC, "No space left on device")

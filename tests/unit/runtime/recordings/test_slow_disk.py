@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from tailor.runtime.recordings import sink
-from tailor.runtime.recordings.mcap_writer import McapWriter
-from tailor.runtime.recordings.sink import SLOW, BackgroundSink
+from tailor.runtime.recordings.mcap import sink
+from tailor.runtime.recordings.mcap.sink import SLOW, BackgroundSink
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tests.support.patience import wait_until
 
 

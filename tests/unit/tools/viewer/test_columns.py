@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap_writer import McapWriter
+from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.typesystem import ros_type

@@ -22,7 +22,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
-from tailor.runtime.recordings.mcap_chunk import records_of
+from tailor.runtime.recordings.mcap.chunk import records_of
 from tailor.schemas.errors import UsageError
 
 MAGIC = b"\x89MCAP0\r\n"

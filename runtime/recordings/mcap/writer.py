@@ -15,9 +15,9 @@ from mcap.writer import CompressionType, IndexType, Writer
 
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, unpack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.channel_table import ChannelTable
-from tailor.runtime.recordings.chunk_index_spool import ChunkIndexSpool
-from tailor.runtime.recordings.sink import SLOW, BackgroundSink, Sink
+from tailor.runtime.recordings.mcap.channel_table import ChannelTable
+from tailor.runtime.recordings.mcap.chunk_index_spool import ChunkIndexSpool
+from tailor.runtime.recordings.mcap.sink import SLOW, BackgroundSink, Sink
 from tailor.schemas.errors import Rejected
 from tailor.schemas.topics import TOPICS
 

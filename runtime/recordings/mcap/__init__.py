@@ -1,0 +1,1 @@
+"""The MCAP file format: writing one file, and reading it in whatever state it is."""
