@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import prod
 
 from tailor.executive.planning.ground.ground_formula import Binding, FactTable, StaticWorld, ground
 from tailor.executive.planning.pddl.language import Action, And, Atom, Condition, Equal, Formula, Not
@@ -22,6 +23,13 @@ def schema_bindings(schema: Action, world: StaticWorld) -> Iterator[Binding | No
     yield from _extend({}, 0, names, choices, tests, world)
 
 
+def least_bindings(schema: Action, world: StaticWorld) -> int:
+    """Least number of bindings that `schema_bindings` tries: all without static conditions, else the empty one."""
+    if any(is_static(part, world) for part in conjuncts_of(schema.conditions)):
+        return 1
+    return max(1, prod(len(world.choices(parameter)) for parameter in schema.parameters))
+
+
 def _extend(
     binding: Binding,
     level: int,
@@ -30,8 +38,7 @@ def _extend(
     tests: list[list[Formula]],
     world: StaticWorld,
 ) -> Iterator[Binding | None]:
-    nothing = FactTable()
-    if any(ground(test, binding, world, nothing) == FALSE for test in tests[level]):
+    if tests[level] and _fails(tests[level], binding, world):
         yield None
     elif level == len(names):
         yield binding
@@ -39,6 +46,11 @@ def _extend(
         yield None
         for name in choices[level]:
             yield from _extend({**binding, names[level]: name}, level + 1, names, choices, tests, world)
+
+
+def _fails(tests: list[Formula], binding: Binding, world: StaticWorld) -> bool:
+    nothing = FactTable()
+    return any(ground(test, binding, world, nothing) == FALSE for test in tests)
 
 
 def conjuncts_of(conditions: tuple[Condition, ...]) -> Iterator[Formula]:

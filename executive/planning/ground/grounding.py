@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.bindings import schema_bindings, without_static
+from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings, without_static
 from tailor.executive.planning.ground.durations import TimeGrid, time_grid
 from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
@@ -93,9 +93,11 @@ def ground_actions(
     Raises:
       TooMuchToGround: Too many steps, or too much memory.
     """
-    small = GroundingLimit(min(steps, MAX_EXHAUSTIVE_STEPS))
+    small, most = GroundingLimit(min(steps, MAX_EXHAUSTIVE_STEPS)), min(steps, MAX_BINDINGS)
     try:
-        yield from _exhaustive(problem, world, tolerance_s, small, min(steps, MAX_BINDINGS))
+        if sum(least_bindings(schema, world) for schema in world.domain.actions) > most:
+            raise _TooManyBindings
+        yield from _exhaustive(problem, world, tolerance_s, small, most)
         return
     except _TooManyBindings:
         limit = GroundingLimit(steps)

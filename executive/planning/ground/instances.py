@@ -27,7 +27,8 @@ from tailor.executive.planning.ground.ground_formula import (
 from tailor.executive.planning.pddl.language import Action, Condition, When
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
-_INSTANT = (Fraction(0), Fraction(0))
+_ZERO = Fraction(0)
+_INSTANT = (_ZERO, _ZERO)
 MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
 
 
@@ -37,7 +38,7 @@ def instance(
     """The ground action of a complete binding, its durations in ns; None if never applicable or without effect."""
     bounds = _INSTANT if schema.duration is None else duration_range(schema.duration, binding, world)
     conditions = _conditions(schema.conditions, binding, world, facts)
-    cost = Fraction(0) if schema.cost is None else evaluate(schema.cost, binding, world)
+    cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
     if bounds is None or conditions is None or cost is None or cost < 0:
         return None
     effects = _useful(conditions, _effects(schema, binding, world, facts))
@@ -54,7 +55,7 @@ def instance(
         external_conditions(conditions, effects),
         effects,
         bits,
-        *range_ns(bounds),
+        *((0, 0) if bounds is _INSTANT else range_ns(bounds)),
         float(bounds[0]),
         not any(effect.conditions for effect in effects),
         float(cost),

@@ -9,7 +9,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import terms_of
 from tailor.executive.planning.ground.ground_formula import StaticWorld
 from tailor.executive.planning.ground.rules import Rule
-from tailor.executive.planning.pddl.language import Atom, Equal, Formula, Not
+from tailor.executive.planning.pddl.language import Atom, Equal, Formula, Not, Typed
 
 Slot = int | str  # number of a variable, or an object
 Table = dict[tuple[str, ...], list[Fact]]
@@ -21,10 +21,20 @@ class FactIndex:
 
     def __init__(self, world: StaticWorld) -> None:
         self._tables: dict[str, dict[tuple[int, ...], Table]] = {name: {} for name in world.domain.predicates}
+        self._objects: dict[tuple[str, ...], tuple[Table, frozenset[str]]] = {}
+        self._world = world
 
     def table(self, predicate: str, positions: tuple[int, ...]) -> Table:
         """The table of a predicate's facts by their items at `positions` (from 1); it grows as facts are inserted."""
         return self._tables[predicate].setdefault(positions, {})
+
+    def objects(self, variable: Typed) -> tuple[Table, frozenset[str]]:
+        """The objects of a variable's types, as a table of facts with one argument and as a set."""
+        objects = self._objects.get(variable.types)
+        if objects is None:
+            names = self._world.choices(variable)
+            objects = self._objects[variable.types] = ({(): [("", name) for name in names]}, frozenset(names))
+        return objects
 
     def insert(self, fact: Fact) -> None:
         """Enters a fact in all tables of its predicate."""
@@ -79,9 +89,8 @@ class _Planner:
     def __init__(self, rule: Rule, index: FactIndex, world: StaticWorld) -> None:
         self._index = index
         self._world = world
-        self._variables = rule.variables
         self._slots = {variable.name: n for n, variable in enumerate(rule.variables)}
-        self._allowed = [frozenset(world.choices(variable)) for variable in rule.variables]
+        self._objects = [index.objects(variable) for variable in rule.variables]
         self._tests = list(rule.tests)
         self.left = list(rule.body)
         self.bound: set[int] = set()
@@ -108,7 +117,7 @@ class _Planner:
             elif isinstance(slot, str) or slot in fresh:
                 checks.append((position, slot))
             else:
-                fresh[slot] = (position, slot, self._allowed[slot])
+                fresh[slot] = (position, slot, self._objects[slot][1])
         self.bound.update(fresh)
         table = self._index.table(atom.predicate, tuple(key)) if atom and lookup else {}
         return JoinStep(table, tuple(key.values()), tuple(fresh.values()), tuple(checks), self._ready_tests())
@@ -116,11 +125,13 @@ class _Planner:
     def choice(self, variable: int) -> JoinStep:
         """The step that tries every object of a variable that no atom binds."""
         self.bound.add(variable)
-        table: Table = {(): [("", name) for name in self._world.choices(self._variables[variable])]}
-        return JoinStep(table, (), ((1, variable, self._allowed[variable]),), (), self._ready_tests())
+        table, allowed = self._objects[variable]
+        return JoinStep(table, (), ((1, variable, allowed),), (), self._ready_tests())
 
     def _ready_tests(self) -> tuple[Test, ...]:
         """What can be tested now: of the atoms the static ones, without a lookup."""
+        if not self._tests and not self.left:
+            return ()
         ready = [test for test in self._tests if self._is_bound(test)]
         atoms = [atom for atom in self.left if atom.predicate in self._world.static and self._is_bound(atom)]
         self._tests = [test for test in self._tests if test not in ready]

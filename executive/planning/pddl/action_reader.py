@@ -18,7 +18,6 @@ from tailor.executive.planning.pddl.formula_reader import (
 from tailor.executive.planning.pddl.language import (
     Action,
     Condition,
-    Domain,
     DurationBound,
     Effect,
     Function,
@@ -36,14 +35,15 @@ _PARTS = {
     ":action": (":parameters", ":precondition", ":effect"),
     ":durative-action": (":parameters", ":duration", ":condition", ":effect"),
 }
+_ONE_OF = {head: f"one of {', '.join(parts)}" for head, parts in _PARTS.items()}
 
 
-def read_action(form: Form, domain: Domain) -> Action:
+def read_action(form: Form, scope: Scope) -> Action:
     """An action schema.
 
     Args:
       form: (:action ...) or (:durative-action ...).
-      domain: Domain with its types, constants, predicates and functions already read.
+      scope: Constants, and the domain with its types, predicates and functions already read.
 
     Raises:
       PddlError: Malformed, or `Unsupported`: numeric effects, continuous change.
@@ -52,10 +52,10 @@ def read_action(form: Form, domain: Domain) -> Action:
         raise form.place.error(f"expected a name after {form.head}")
     name = word_of(form.items[1], "the action's name")
     parts = _parts(form)
-    variables = variables_of(form_of(parts.get(":parameters", Form(form.place)), "parameters"), domain.types)
+    variables = variables_of(form_of(parts.get(":parameters", Form(form.place)), "parameters"), scope.domain.types)
     if len(variables) > MAX_PARAMETERS:
         raise form.place.error(f"action '{name}' has {len(variables)} parameters, more than {MAX_PARAMETERS}")
-    scope = Scope.of(domain, ()).extended(variables)
+    scope = scope.extended(variables)
     durative = form.head == ":durative-action"
     empty = Form(form.place)
     if durative:
@@ -69,13 +69,13 @@ def read_action(form: Form, domain: Domain) -> Action:
 
 
 def _parts(form: Form) -> dict[str, Node]:
-    allowed = _PARTS[form.head]
+    allowed, one_of = _PARTS[form.head], _ONE_OF[form.head]
     parts: dict[str, Node] = {}
     rest = form.items[2:]
     for key, value in zip(rest[::2], rest[1::2], strict=False):
-        word = word_of(key, f"one of {', '.join(allowed)}")
+        word = word_of(key, one_of)
         if word not in allowed:
-            raise key.place.error(f"expected one of {', '.join(allowed)}, found '{word}'")
+            raise key.place.error(f"expected {one_of}, found '{word}'")
         if word in parts:
             raise key.place.error(f"'{word}' is given twice")
         parts[word] = value

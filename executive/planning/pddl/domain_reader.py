@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.action_reader import read_action
 from tailor.executive.planning.pddl.derived_reader import with_derived
+from tailor.executive.planning.pddl.formula_reader import Scope
 from tailor.executive.planning.pddl.language import Domain, Typed
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
 from tailor.executive.planning.pddl.typed_lists import read_typed, variables_of
@@ -53,7 +54,8 @@ def parse_domain(text: str, source: str = "domain") -> Domain:
     for part in parts:
         domain = _declare(part, domain)
     domain = with_derived(domain, [part for part in parts if part.head == ":derived"])
-    actions = tuple(read_action(part, domain) for part in parts if part.head in _ACTIONS)
+    scope = Scope.of(domain, ())
+    actions = tuple(read_action(part, scope) for part in parts if part.head in _ACTIONS)
     _reject_duplicates([part for part in parts if part.head in _ACTIONS])
     return replace(domain, actions=actions)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tailor.executive.planning.pddl.language import (
     And,
@@ -40,12 +40,15 @@ class Scope:
 
     def extended(self, names: Iterable[Typed]) -> Scope:
         """This scope with more terms, which hide earlier ones of the same name."""
-        return replace(self, terms={**self.terms, **{t.name: t.types for t in names}})
+        return Scope(self.domain, {**self.terms, **{t.name: t.types for t in names}})
 
     def may_be(self, term: str, types: tuple[str, ...]) -> bool:
         """Whether the term may be of one of the types."""
-        is_a = self.domain.is_a
-        return any(is_a(a, b) or is_a(b, a) for a in self.terms[term] for b in types)
+        own = self.terms[term]
+        if own == types:
+            return True
+        ancestors = self.domain.ancestors
+        return any(b in ancestors[a] or a in ancestors[b] for a in own for b in types)
 
 
 def read_formula(node: Node, scope: Scope) -> Formula:

@@ -8,6 +8,7 @@ import pytest
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import DEFAULT, MATCHING, GroundCache, Search, Settings, validate
 from tailor.executive.planning.ground import grounding
+from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings
 from tests.support.planning_problems import OWN, own, read, solve
 
 LOGISTICS = """(define (domain logistics) (:requirements :strips)
@@ -57,6 +58,24 @@ def test_reachable_actions_give_the_same_search(name, settings, by_reachability,
     result = solve(*own(name), settings)
     monkeypatch.undo()
     assert result == solve(*own(name), settings)
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_is_surely_too_much_to_try_is_at_most_what_is_tried(name):
+    domain, problem = own(name)
+    world = grounding.static_world(problem)
+    for schema in domain.actions:
+        tried = list(schema_bindings(schema, world))
+        assert 1 <= least_bindings(schema, world) <= len(tried)
+
+
+def test_actions_that_are_surely_too_many_are_not_tried_one_by_one(monkeypatch):
+    monkeypatch.setattr(grounding, "_exhaustive", None)
+    actions = " ".join(f"(:action a{n} :parameters (?x ?y) :effect (p ?x ?y))" for n in range(50))
+    domain = f"(define (domain d) (:predicates (p ?x ?y)) {actions})"
+    objects = " ".join(f"o{n}" for n in range(10))
+    text = f"(define (problem p) (:domain d) (:objects {objects}) (:init) (:goal (p o1 o2)))"
+    assert solve(*read(domain, text)).status == "solved"
 
 
 def test_refusal_is_quick_and_names_what_is_too_large():
