@@ -22,14 +22,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "letters": ("tailor.tools.commands.run.letters", "write letters with the arm, with and without refined velocities"),
     "bus": ("tailor.tools.commands.run.bus", "run only the bus router"),
     "gateway": ("tailor.tools.commands.run.gateway", "let other users and machines onto the bus, by role"),
-    "keys": ("tailor.tools.commands.run.keys", "make keys for a bus on several machines"),
+    "keys": ("tailor.tools.commands.setup.keys", "make keys for a bus on several machines"),
     "sim": ("tailor.tools.commands.run.sim", "run a simulated robot on the bus"),
     "executive": ("tailor.tools.commands.run.executive", "run the executive on the bus"),
     "goal": ("tailor.tools.commands.run.goal", "send a PDDL goal to a running executive"),
     "arm": ("tailor.tools.commands.run.arm", "arm a driver for the running executive"),
     "estop": ("tailor.tools.commands.run.estop", "emergency stop of all drivers"),
     "status": ("tailor.tools.commands.look.status", "state and health of a running system, with an e-stop key"),
-    "units": ("tailor.tools.commands.run.units", "write systemd units for a robot"),
+    "units": ("tailor.tools.commands.setup.units", "write systemd units for a robot"),
     "driver": ("tailor.tools.commands.drivers.driver", "drive a real robot: guard, arming and watchdogs around it"),
     "check-driver": (
         "tailor.tools.commands.drivers.check_driver",
@@ -49,7 +49,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "view": ("tailor.tools.commands.look.view", "show a run in the browser, recorded or live"),
     "scene": ("tailor.tools.commands.look.scene", "give 3D viewers markers and transforms of a run, recorded or live"),
     "why": ("tailor.tools.commands.look.why", "explain the choice of subgoals, compared with greedy"),
-    "new": ("tailor.tools.commands.run.new", "write the package of a new robot"),
+    "new": ("tailor.tools.commands.setup.new", "write the package of a new robot"),
     "plan": ("tailor.tools.commands.run.plan", "plan with PDDL files, VHPOP-style"),
     "gather": ("tailor.tools.commands.learn.gather", "run actions in simulation and save the episodes"),
     "train": ("tailor.tools.commands.learn.train", "train action models from episodes"),
@@ -65,6 +65,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 # by the folder of a command's module
 GROUPS = {
     "run": "robots and plans",
+    "setup": "keys, services, new robots",
     "drivers": "real robots",
     "look": "runs, live and recorded",
     "learn": "action models",

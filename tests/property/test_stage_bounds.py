@@ -15,7 +15,7 @@ from tailor.executive.refinement.certificates.stage_bounds import StageBound, st
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
 from tailor.models.runtime import load_robot
-from tailor.tools.benchmarks.refine_cases import Case, cases
+from tailor.tools.benchmarks.refinement.cases import Case, cases
 
 TASKS = 2
 

@@ -6,6 +6,7 @@ Loads no executive unless a deployment file is named: `tailor estop` must not wa
 from __future__ import annotations
 
 import argparse
+import re
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
+from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.profiles import PROFILES
 from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import BusSettings
@@ -70,3 +72,20 @@ def open_bus(
     settings = bus_settings(arguments)
     identity = identity_in(settings.key) if settings.key else None
     return open_client(settings.endpoint, timeout_s, sender, role, identity, settings.key_profile)
+
+
+def configure_sender(parser: argparse.ArgumentParser) -> None:
+    """The flag --sender: a launcher gives each of its children an id, by which it knows their messages."""
+    parser.add_argument("--sender", metavar="HEX", default="", help="sender id, 32 hex digits (default: random)")
+
+
+def sender_of(arguments: argparse.Namespace) -> str:
+    """Sender id, or "" for a random one; raises UsageError for anything else."""
+    return checked_sender(arguments.sender, "--sender")
+
+
+def checked_sender(sender: str | None, flag: str) -> str:
+    """Value of a flag that holds a sender id, "" without one; raises UsageError for anything else."""
+    if sender and not re.fullmatch("[0-9a-f]{32}", sender):
+        raise UsageError(f"{flag} {sender}: expected 32 hex digits")
+    return sender or ""

@@ -15,7 +15,7 @@ MAX_WAITING = 4  # presses that wait for an earlier one to be confirmed
 
 
 class Button(Protocol):
-    """Stops every driver; `tailor.tools.cli.stop_button.StopButton` does."""
+    """Stops every driver; `tailor.tools.operator.stop_button.StopButton` does."""
 
     def press(self) -> object:
         """Return when every driver has confirmed, or after a time limit."""

@@ -14,7 +14,7 @@ from email.message import Message
 from http import HTTPStatus
 
 from tailor.schemas.messages import DriverState
-from tailor.tools.cli.stop_button import all_stopped
+from tailor.tools.operator.stop_button import all_stopped
 
 PATH = "/stop"
 TOKEN_HEADER = "X-Stop-Token"

@@ -36,7 +36,7 @@ EXCEPTIONS = {
     "tools/goldens/renew.py": "lists the recordings of the robots that ship",
     "tools/commands/run/demo.py": "shows one robot",
     "tools/commands/run/letters.py": "shows the arm",
-    "tools/commands/run/units.py": "default of the command line",
+    "tools/commands/setup/units.py": "default of the command line",
     "tools/commands/measure/evaluate.py": "default of the paper's evaluations",
 }
 

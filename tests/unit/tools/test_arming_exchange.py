@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tailor.schemas.messages import ArmRequest, DriverState
-from tailor.tools.cli.arming_exchange import Exchange, Outcome
+from tailor.tools.operator.arming_exchange import Exchange, Outcome
 from tests.support.bus_system import ROOT
 
 A, B = "a" * 32, "b" * 32

@@ -10,9 +10,9 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import DriverState, EStop
-from tailor.tools.cli import dead_mans_switch, stop_button
-from tailor.tools.cli.dead_mans_switch import HELD, DeadMansSwitch, driver_lines
-from tailor.tools.cli.stop_button import STOP, StopButton, all_stopped, summary
+from tailor.tools.operator import dead_mans_switch, stop_button
+from tailor.tools.operator.dead_mans_switch import HELD, DeadMansSwitch, driver_lines
+from tailor.tools.operator.stop_button import STOP, StopButton, all_stopped, summary
 
 SENDER = "ab12cd34" + "0" * 24
 

@@ -14,7 +14,7 @@ from tailor.models.runtime import ZOO
 from tailor.runtime import realtime
 from tailor.runtime.processes import restart
 from tailor.schemas.errors import UsageError
-from tailor.tools.commands.run import units
+from tailor.tools.commands.setup import units
 from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
 from tailor.tools.launch.unit_text import command_line

@@ -9,9 +9,9 @@ import numpy as np
 from tailor.executive.interfaces.models import Models
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.growth.curve import Curve
-from tailor.tools.benchmarks.refine import LONG_MS, QUICK_TASKS, TASKS, best_at
-from tailor.tools.benchmarks.refine_cases import LEGS, cases
-from tailor.tools.benchmarks.refine_runners import ours
+from tailor.tools.benchmarks.refinement.cases import LEGS, cases
+from tailor.tools.benchmarks.refinement.refine import LONG_MS, QUICK_TASKS, TASKS, best_at
+from tailor.tools.benchmarks.refinement.runners import ours
 from tailor.tools.learning.fresh_seeds import fresh_seed
 
 BUDGET_MS = 60.0

@@ -19,8 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
-from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.launch.hardware import hardware_of
 
 

@@ -18,8 +18,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, open_bus
-from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
 from tailor.tools.scenes.recorded_scenes import add_scenes

@@ -23,8 +23,8 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import finite
-from tailor.tools.cli.stop_button import StopButton
 from tailor.tools.cli.terminal import table_console
+from tailor.tools.operator.stop_button import StopButton
 from tailor.tools.status.panel import panel
 from tailor.tools.status.picture import Picture
 from tailor.tools.status.stop_key import StopKey

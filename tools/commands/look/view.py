@@ -16,7 +16,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.cli.stop_button import StopButton
+from tailor.tools.operator.stop_button import StopButton
 from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.explainer import Explainer

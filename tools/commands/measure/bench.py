@@ -29,7 +29,7 @@ BENCHMARKS = {
 PLANNERS = ("planners.improvement", "planners.tours", "planners.cups", "planners.tick_share", "planners.configurations")
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH, CLUSTER = "soak", "growth", "cluster"
-ROOMS = {GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}
+ROOMS = {"refine": "refinement.refine", GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}
 ON_REQUEST = {
     SOAK: "whole systems under one random fault a minute: invariants, memory; only if named",
     GROWTH: "curves: how costs grow with plans, free parameters, episodes, recordings, opponents; only if named",

@@ -15,10 +15,9 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.cli.arming_exchange import WAIT_S, Exchange, Outcome
-from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.endpoint import checked_sender, configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.cli.sender_flag import checked_sender
+from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 
 POLL_S = 0.01
 TEXTS = {

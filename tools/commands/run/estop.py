@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from tailor.schemas.messages import DriverState
 from tailor.tools.cli.endpoint import configure_bus, open_bus
-from tailor.tools.cli.stop_button import StopButton, all_stopped, summary
+from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
         button = StopButton(session)
         try:
             if arguments.hold:
-                from tailor.tools.cli.dead_mans_switch import hold_in_terminal
+                from tailor.tools.operator.dead_mans_switch import hold_in_terminal
 
                 hold_in_terminal(session)
         finally:  # whatever ended it

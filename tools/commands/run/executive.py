@@ -20,8 +20,7 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
-from tailor.tools.cli.endpoint import open_bus
-from tailor.tools.cli.sender_flag import checked_sender, configure_sender, sender_of
+from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 from tailor.tools.launch.package_check import check_package

@@ -19,8 +19,7 @@ from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
-from tailor.tools.cli.endpoint import configure_bus, open_bus
-from tailor.tools.cli.sender_flag import configure_sender, sender_of
+from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world

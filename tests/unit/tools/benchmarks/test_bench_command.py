@@ -12,8 +12,9 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.runtime.recordings.recording import open_recording
-from tailor.tools.benchmarks import planning, recording, refine, ticks
+from tailor.tools.benchmarks import planning, recording, ticks
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
+from tailor.tools.benchmarks.refinement import refine
 from tailor.tools.commands.measure import bench
 from tailor.tools.main import main
 

@@ -23,7 +23,7 @@ from tailor.simnodes.driver import HELD_BY, shown
 from tailor.simnodes.hold import RELEASED_NS
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.cli.stop_button import DriverStates, driver_states
+from tailor.tools.operator.stop_button import DriverStates, driver_states
 
 HELD = b"\0\1\0\0\0"  # CDR of EStop(False)
 PERIOD_NS = 100_000_000

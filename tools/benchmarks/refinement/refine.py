@@ -16,10 +16,10 @@ from scipy import stats
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import SolverName
 from tailor.models.runtime import load_robot
-from tailor.tools.benchmarks import certificates
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
-from tailor.tools.benchmarks.refine_cases import Case, cases
-from tailor.tools.benchmarks.refine_runners import Progress, ours, runners
+from tailor.tools.benchmarks.refinement import certificates
+from tailor.tools.benchmarks.refinement.cases import Case, cases
+from tailor.tools.benchmarks.refinement.runners import Progress, ours, runners
 from tailor.tools.learning.fresh_seeds import fresh_seed
 
 TASKS, QUICK_TASKS = 20, 5  # of each case

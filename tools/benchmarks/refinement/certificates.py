@@ -25,7 +25,7 @@ from tailor.models.bounds.model_bounds import ModelBounds
 from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import OnnxDuration
-from tailor.tools.benchmarks.refine_cases import Case
+from tailor.tools.benchmarks.refinement.cases import Case
 
 GAPS_PCT = (5.0, 1.0)
 LIMIT_S = 2.0

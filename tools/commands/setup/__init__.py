@@ -1,0 +1,1 @@
+"""Commands that prepare machines and packages: keys, unit files, a new robot."""
