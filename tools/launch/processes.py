@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
@@ -39,21 +40,14 @@ class LaunchConfig:
 def record_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The recorder. It is never started again: its file exists."""
     argv = tailor("record", "--output", str(config.record), "--connect", config.bus.endpoint)
-    return ProcessSpec(
-        "record",
-        argv,
-        restarts=False,
-        silence_ns=RECORDER_SILENCE_NS,
-        arguments=lambda start: senders.arguments("record", start),
-    )
+    arguments = partial(senders.arguments, "record")
+    return ProcessSpec("record", argv, restarts=False, silence_ns=RECORDER_SILENCE_NS, arguments=arguments)
 
 
 def scene_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """Markers and transforms; no other process needs it."""
     argv = tailor("scene", "--live", "--connect", config.bus.endpoint)
-    return ProcessSpec(
-        "scene", argv, silence_ns=SCENE_SILENCE_NS, arguments=lambda start: senders.arguments("scene", start)
-    )
+    return ProcessSpec("scene", argv, silence_ns=SCENE_SILENCE_NS, arguments=partial(senders.arguments, "scene"))
 
 
 def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSpec:
@@ -72,9 +66,7 @@ def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSp
 def hardware_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The driver of a real robot. It gets no leave, so a person arms it after every start."""
     argv = tailor("driver", config.hardware, "--connect", config.bus.endpoint)
-    return ProcessSpec(
-        "driver", argv, silence_ns=SIM_SILENCE_NS, arguments=lambda start: senders.arguments("driver", start)
-    )
+    return ProcessSpec("driver", argv, silence_ns=SIM_SILENCE_NS, arguments=partial(senders.arguments, "driver"))
 
 
 def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:

@@ -15,9 +15,11 @@ from tailor.runtime.processes.supervised import ProcessSpec, State
 from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
+from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
@@ -46,33 +48,38 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
     """
     if config.record is not None and config.record.exists():
         raise UsageError(f"{config.record}: exists already, expected the name of a new file")
-    robot = build_context(config.executive, sender="").domain.robot
+    build_context(config.executive, sender="")  # reports all that is wrong with it
     with (
         hosted_bus(config.bus, screen.report) as session,
-        tempfile.TemporaryFile("w+") as log,
+        tempfile.TemporaryFile("w+") as printed,
         tempfile.TemporaryDirectory(prefix="tailor-") as folder,  # of this user alone
     ):
-        supervisor = Supervisor(screen.report, lambda name, argv: Child(name, argv, log, Path(folder)))
+        supervisor = Supervisor(screen.report, lambda name, argv: Child(name, argv, printed, Path(folder)))
+        output = ChildOutput(printed, screen.report)
         try:
-            return _System(config, robot, session, supervisor, screen, stop).run()
+            return _System(config, session, supervisor, output, screen, stop).run()
         finally:
             supervisor.stop()
-            log.seek(0)
-            for line in log.read().splitlines():
-                screen.report(line)
+            output.finish()
 
 
 class _System:
     """One run of a system; its children are stopped by the caller."""
 
     def __init__(
-        self, config: LaunchConfig, robot: str, session: Session, supervisor: Supervisor, screen: Screen, stop: Stop
+        self,
+        config: LaunchConfig,
+        session: Session,
+        supervisor: Supervisor,
+        output: ChildOutput,
+        screen: Screen,
+        stop: Stop,
     ) -> None:
-        self._config, self._robot = config, robot
-        self._supervisor, self._screen, self._stop = supervisor, screen, stop
-        self._inbox = session.inbox(("driver", *EXECUTIVE_TOPICS), robot, newest_only=False)
+        self._config, self._robot = config, spec_of(config.executive.domain).robot
+        self._supervisor, self._output, self._screen, self._stop = supervisor, output, screen, stop
+        self._inbox = session.inbox(("driver", *EXECUTIVE_TOPICS), self._robot, newest_only=False)
         self._senders = Senders()
-        self._reports = ProcessReports(session.publisher("processes", robot), self._senders, screen)
+        self._reports = ProcessReports(session.publisher("processes", self._robot), self._senders, screen)
         self._recording = RecordingWatch(config.require_recording, screen.report)
         self._result = self._stopped = self._reported = ""
 
@@ -138,6 +145,7 @@ class _System:
         self._result = result
 
     def _poll(self, now_ns: int) -> None:
+        self._output.poll()  # first: why a child has ended, then that it has
         self._supervisor.poll(now_ns)
         self._reports.publish(self._supervisor.states(now_ns), now_ns)
 

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import argparse
 import secrets
-from collections.abc import Callable
-from typing import Any
 
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock
-from tailor.runtime.processes.notify import SILENT, Notifier
-from tailor.runtime.stopping import stop_on_signals
+from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.schemas.reason_text import reason_text
-from tailor.simnodes.driver_spec import DriverSpec, shipped_driver_spec
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
-from tailor.simnodes.world import World
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.state_lines import state_lines
@@ -53,35 +50,18 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
-        run_node(
-            world,
-            declared,
-            session,
-            lambda: stop.requested,
-            arguments.speed,
-            arguments.leave,
-            notifier,
-        )
+        epoch = 1 + secrets.randbelow(2**62)  # another one at every start
+        node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, arguments.leave)
+        _run(node, world.body.robot, stop, notifier)
     return 0
 
 
-def run_node(
-    world: World,
-    declared: DriverSpec,
-    session: Any,
-    stopped: Callable[[], bool],
-    speed: float = 1.0,
-    leave: str = "",
-    notifier: Notifier = SILENT,
-) -> None:
-    """Put a world on the bus, under a new random epoch."""
-    epoch = 1 + secrets.randbelow(2**62)
-    node = Node(world, declared, session, MonotonicClock(), epoch, speed, leave)
+def _run(node: Node, robot: str, stop: Stop, notifier: Notifier) -> None:
     print_states = not notifier.supervised
     if print_states:
-        print(f"simulated {world.body.robot} on the bus; Ctrl-C stops", flush=True)
-    with state_lines(lambda: state_line(node.driver.guard, world.body.robot), print_states):
-        node.run(stopped, notifier)
+        print(f"simulated {robot} on the bus; Ctrl-C stops", flush=True)
+    with state_lines(lambda: state_line(node.driver.guard, robot), print_states):
+        node.run(lambda: stop.requested, notifier)
 
 
 def state_line(guard: Guard, robot: str) -> str:

@@ -64,12 +64,12 @@ def run(arguments: argparse.Namespace) -> int:
     config = LaunchConfig(
         executive_config(arguments.domain, deployment),
         with_hosting_flags(deployment.bus, arguments),
-        arguments.record,
-        arguments.once,
-        arguments.config,
-        arguments.require_recording,
-        not arguments.no_scene,
-        arguments.hardware,
+        record=arguments.record,
+        once=arguments.once,
+        deployment_file=arguments.config,
+        require_recording=arguments.require_recording,
+        scene=not arguments.no_scene,
+        hardware=arguments.hardware,
     )
     if config.hardware:
         _check_hardware(config)
