@@ -19,6 +19,7 @@ _ANY = (
     # of static functions, which durations and costs read; what is not static is an effect or a condition of its own
     "INT_FLUENTS",
     "REAL_FLUENTS",
+    "BOUNDED_TYPES",
     "ACTIONS_COST",
     "PLAN_LENGTH",
     "STATIC_FLUENTS_IN_ACTIONS_COST",
