@@ -11,9 +11,8 @@ import pytest
 
 pytest.importorskip("unified_planning", reason="pip install 'tailor[up]' to test the engine")
 
-from unified_planning.engines import CompilationKind
+from unified_planning.engines import CompilationKind, ValidationResultStatus
 from unified_planning.engines import PlanGenerationResultStatus as Status
-from unified_planning.engines import ValidationResultStatus
 from unified_planning.plans import PartialOrderPlan, PlanKind
 from unified_planning.shortcuts import (
     AnytimePlanner,
