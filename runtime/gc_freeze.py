@@ -1,4 +1,4 @@
-"""Excludes loaded objects from garbage collection: a full collection of them takes many ticks."""
+"""Limits garbage collection: a full collection of what is loaded takes many ticks."""
 
 from __future__ import annotations
 
@@ -15,3 +15,15 @@ def gc_frozen() -> Iterator[None]:
         yield
     finally:
         gc.unfreeze()
+
+
+@contextmanager
+def gc_disabled() -> Iterator[None]:
+    """No collections inside the block: for one that makes many objects, and no cycles."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()

@@ -1,17 +1,14 @@
-"""Alternatives to a subgoal: predictions for the other values of one of its free parameters (Figure 11)."""
+"""Alternatives to a subgoal: predictions for the other values of each of its free parameters (Figure 11)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
-from tailor.executive.refinement.objective.sequence import ActionSequence
-from tailor.executive.refinement.objective.settings import RefinementSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,36 +32,33 @@ class Alternatives:
         return float(self.values[int(np.argmin(first))])
 
 
-def alternatives(
-    sequence: ActionSequence,
-    chosen: Mapping[int, float],
-    models: Models,
-    settings: RefinementSettings,
-    variable: int,
-    count: int = 73,
-) -> Alternatives:
-    """Predictions along one free variable, over its whole range.
+def alternatives(objective: SequenceObjective, chosen: Array, count: int = 73) -> tuple[Alternatives, ...]:
+    """Predictions along each free variable, over its whole range.
+
+    An action's models are run once, for the variables that it depends on.
 
     Args:
-      sequence: The refined sequence, its variables still free.
-      chosen: Values of the free variables by id.
-      models: Loaded models.
-      settings: Settings of refinement.
-      variable: Id of a free variable that occurs within the horizon.
-      count: Number of values, equally spaced from end to end of the range.
-
-    Raises:
-      KeyError: The variable is not free within the horizon.
+      objective: Of the refined sequence, its d variables still free.
+      chosen: Their values, shape (d,), in the order of `objective.ids`.
+      count: Number of values of each, equally spaced from end to end of its range.
     """
-    objective = SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
-    columns = {identifier: column for column, identifier in enumerate(objective.ids)}
-    column = columns[variable]
-    candidates = np.tile(objective.vector(chosen), (count, 1))
-    candidates[:, column] = np.linspace(objective.ranges.lower[column], objective.ranges.upper[column], count)
-    predictions = [stage.predict(candidates[:, stage.columns]) for stage in objective.stages]
-    return Alternatives(
-        variable,
-        candidates[:, column],
-        np.array([prediction.duration_s for prediction in predictions]),
-        objective(candidates),
-    )
+    free = len(chosen)
+    candidates = np.tile(chosen, (free, count, 1))
+    for column, (lower, upper) in enumerate(zip(objective.ranges.lower, objective.ranges.upper, strict=True)):
+        candidates[column, :, column] = np.linspace(lower, upper, count)
+    durations_s = np.empty((free, len(objective.stages), count))
+    total_s = np.zeros((free, count))
+    for index, stage in enumerate(objective.stages):
+        varied = candidates[stage.columns].reshape(-1, free)
+        prediction = stage.predict(np.vstack([chosen, varied])[:, stage.columns])
+        durations_s[:, index] = _along(stage.columns, prediction.duration_s, total_s.shape)
+        total_s += _along(stage.columns, stage.cost_of(prediction), total_s.shape)
+    values = candidates[range(free), :, range(free)]
+    return tuple(map(Alternatives, objective.ids, values, durations_s, total_s))
+
+
+def _along(columns: NDArray[np.intp], predicted: Array, shape: tuple[int, int]) -> Array:
+    """Predictions for all free variables, shape (d, n), from those for the chosen values and along `columns`."""
+    spread = np.full(shape, predicted[0])
+    spread[columns] = predicted[1:].reshape(len(columns), -1)
+    return spread

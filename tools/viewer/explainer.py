@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,8 @@ class Explainer:
 
     def __init__(self, build_context: Callable[[Mapping[str, Any]], Context] | None = None) -> None:
         """`build_context` makes a context from a provenance, or raises UsageError; None: from the installed models."""
-        self._build_context = build_context or self._rebuild
+        self._build_context = lru_cache(maxsize=8)(self._parsed)  # by provenance: runs may alternate in a recording
+        self._rebuild = build_context or self._rebuilt
         self._hashes: Any = None  # of the loaded models
         self._load: ModelLoader = load_models
         self._context: Context | None = None
@@ -39,16 +40,19 @@ class Explainer:
     def load(self, provenance: str) -> None:
         """Load domain and models that a provenance names; `missing` keeps the reason of a failure."""
         try:
-            table = table_of(provenance)
-            if isinstance(table, Rejected):
-                raise UsageError(f"provenance: {table.reason}")
-            self._context = self._build_context(table)
+            self._context = self._build_context(provenance)
             self.missing = ""
         except (UsageError, KeyError, ValueError) as error:
             self._context = None
             self.missing = str(error)
 
-    def _rebuild(self, provenance: Mapping[str, Any]) -> Context:
+    def _parsed(self, provenance: str) -> Context:
+        table = table_of(provenance)
+        if isinstance(table, Rejected):
+            raise UsageError(f"provenance: {table.reason}")
+        return self._rebuild(table)
+
+    def _rebuilt(self, provenance: Mapping[str, Any]) -> Context:
         """The context; models are loaded once, until a provenance names others."""
         if provenance.get("models") != self._hashes:
             self._hashes, self._load = provenance.get("models"), cache(load_models)

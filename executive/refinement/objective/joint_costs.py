@@ -26,7 +26,8 @@ def joint_costs(stages: Sequence[Stage], samples: Sequence[Array]) -> list[Array
     for model, indices in _by_model(stages):
         means, stds = _predict(model, [arguments[index] for index in indices])
         for index, mean, std in zip(indices, means, stds, strict=True):
-            costs[index] = stages[index].cost_of(parameters[index], arguments[index], mean, std)
+            stage = stages[index]
+            costs[index] = stage.cost_of(stage.prediction(parameters[index], arguments[index], mean, std))
     return costs
 
 

@@ -59,18 +59,23 @@ class SequenceObjective:
 
     def __call__(self, candidates: Array) -> Array:
         """Cost in seconds, shape (n,), of candidates of shape (n, d); +inf is INVALID."""
-        total = np.zeros(len(candidates))
-        for stage in self.stages:
-            total += stage.cost(candidates[:, stage.columns])
+        return self.total(self.predict(candidates))
+
+    def total(self, predictions: Sequence[Prediction]) -> Array:
+        """Cost in seconds, shape (n,), from what `predict` returns; +inf is INVALID."""
+        total = np.zeros(len(predictions[0].duration_s))
+        for stage, prediction in zip(self.stages, predictions, strict=True):
+            total += stage.cost_of(prediction)
         return total
 
     def costs(self, stages: Sequence[Stage], samples: Sequence[Array]) -> list[Array]:
         """Cost of several stages, each for samples of its own; those of one model are predicted together."""
         return joint_costs(stages, samples)
 
-    def predict(self, candidate: Array) -> tuple[Prediction, ...]:
-        """Predictions for one candidate, shape (d,), action by action; fields of shape (1,)."""
-        return tuple(stage.predict(candidate[None, stage.columns]) for stage in self.stages)
+    def predict(self, candidates: Array) -> tuple[Prediction, ...]:
+        """Predictions for candidates, shape (n, d) or (d,) for one, action by action; fields of shape (n,)."""
+        rows = np.atleast_2d(candidates)
+        return tuple(stage.predict(rows[:, stage.columns]) for stage in self.stages)
 
     def vector(self, values: Mapping[int, float]) -> Array:
         """Candidate, shape (d,), from values by variable id; the middle of the range if one is missing."""

@@ -93,9 +93,9 @@ class Stage:
         """Predictions for samples of the free parameters, shape (n, len(columns))."""
         parameters = self.parameters(samples)
         arguments = self.action.arguments(parameters)
-        return self._prediction(parameters, arguments, *self.models.duration.predict(arguments))
+        return self.prediction(parameters, arguments, *self.models.duration.predict(arguments))
 
-    def _prediction(self, parameters: Array, arguments: Array, mean: Array, std: Array) -> Prediction:
+    def prediction(self, parameters: Array, arguments: Array, mean: Array, std: Array) -> Prediction:
         """Predictions from the outputs of the duration model, both of shape (n_arrivals * n,)."""
         arrivals = len(self._displacements)
         count = len(parameters) // arrivals
@@ -121,13 +121,10 @@ class Stage:
 
     def cost(self, samples: Array) -> Array:
         """Seconds, shape (n,), for samples of shape (n, len(columns)); +inf is INVALID."""
-        return self._cost(self.predict(samples))
+        return self.cost_of(self.predict(samples))
 
-    def cost_of(self, parameters: Array, arguments: Array, mean: Array, std: Array) -> Array:
-        """As `cost`, from parameters, arguments, and the outputs of the duration model for them."""
-        return self._cost(self._prediction(parameters, arguments, mean, std))
-
-    def _cost(self, prediction: Prediction) -> Array:
+    def cost_of(self, prediction: Prediction) -> Array:
+        """As `cost`, from the predictions for the samples."""
         settings = self._settings
         cost: Array = prediction.duration_s + settings.k_std * prediction.std_s
         if self.models.success is not None or self._risk_to_next is not None:

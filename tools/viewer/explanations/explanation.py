@@ -75,17 +75,21 @@ def explain(
     if not objective.ids:
         return None
     alone = greedy(sequence, models, settings, rng).values
-    picked, lone = objective.vector(chosen), objective.vector(alone)
+    picked, lone = both = objective.vectors([chosen, alone])
+    predictions = objective.predict(both)
+    chosen_s, greedy_s = np.transpose([prediction.duration_s for prediction in predictions]).tolist()
+    chosen_j, greedy_j = np.transpose([prediction.energy_j for prediction in predictions]).tolist()
+    chosen_cost, greedy_cost = objective.total(predictions).tolist()
     return Explanation(
         tuple(a.action.name for a in sequence.within(settings.horizon)),
-        _durations(objective, picked),
-        _durations(objective, lone),
-        float(objective(picked[None])[0]),
-        float(objective(lone[None])[0]),
-        tuple(_parameter(sequence, objective, place, picked, lone, models, settings) for place in range(len(picked))),
+        tuple(chosen_s),
+        tuple(greedy_s),
+        chosen_cost,
+        greedy_cost,
+        _parameters(sequence, objective, picked, lone),
         situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
-        _energies(objective, picked, settings),
-        _energies(objective, lone, settings),
+        tuple(chosen_j) if settings.energy_weight else (),
+        tuple(greedy_j) if settings.energy_weight else (),
     )
 
 
@@ -157,30 +161,16 @@ def accepted(
     return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
 
 
-def _durations(objective: SequenceObjective, candidate: Array) -> tuple[float, ...]:
-    return tuple(float(prediction.duration_s[0]) for prediction in objective.predict(candidate))
-
-
-def _energies(objective: SequenceObjective, candidate: Array, settings: RefinementSettings) -> tuple[float, ...]:
-    if settings.energy_weight == 0:
-        return ()
-    return tuple(float(prediction.energy_j[0]) for prediction in objective.predict(candidate))
-
-
-def _parameter(
-    sequence: ActionSequence,
-    objective: SequenceObjective,
-    place: int,
-    picked: Array,
-    lone: Array,
-    models: Models,
-    settings: RefinementSettings,
-) -> FreeParameter:
-    identifier = objective.ids[place]
-    return FreeParameter(
-        sequence.variables[identifier],
-        float(picked[place]),
-        float(lone[place]),
-        alternatives(sequence, objective.values(picked), models, settings, identifier),
-        tuple(i for i, stage in enumerate(objective.stages) if place in stage.columns),
+def _parameters(
+    sequence: ActionSequence, objective: SequenceObjective, picked: Array, lone: Array
+) -> tuple[FreeParameter, ...]:
+    return tuple(
+        FreeParameter(
+            sequence.variables[along.variable],
+            float(picked[place]),
+            float(lone[place]),
+            along,
+            tuple(i for i, stage in enumerate(objective.stages) if place in stage.columns),
+        )
+        for place, along in enumerate(alternatives(objective, picked))
     )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.refinement.alternatives import alternatives
+from tailor.executive.refinement.alternatives import Alternatives, alternatives
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tests.support.synthetic_models import MODELS, approach_dribble
@@ -21,7 +24,7 @@ def test_alternatives_agree_with_the_choice():
     search = Refinement(given, MODELS, SETTINGS, np.random.default_rng(0))
     search.advance(CheckBudget(500))
     angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
-    predicted = alternatives(given, search.choice.values, MODELS, SETTINGS, angle, 721)
+    predicted = _along(given, search.choice.values, SETTINGS)[angle]
     assert predicted.durations_s.shape == (2, 721)
     valid = np.isfinite(predicted.total_s)
     np.testing.assert_allclose(predicted.durations_s.sum(axis=0)[valid], predicted.total_s[valid])
@@ -34,11 +37,33 @@ def test_greedy_alternative_is_what_horizon_one_chooses():
     alone = Refinement(given, MODELS, replace(SETTINGS, horizon=1), np.random.default_rng(0))
     alone.advance(CheckBudget(500))
     angle = next(variable.id for variable in given.free() if variable.quantity == "phi")
-    predicted = alternatives(given, alone.choice.values, MODELS, SETTINGS, angle, 721)
+    predicted = _along(given, alone.choice.values, SETTINGS)[angle]
     assert predicted.greedy == pytest.approx(alone.choice.values[angle], abs=0.02)
     assert predicted.best != pytest.approx(predicted.greedy, abs=0.05)
 
 
+def test_alternatives_are_those_of_each_candidate_predicted_alone():
+    given = approach_dribble()
+    objective = _objective(given, SETTINGS)
+    chosen = objective.ranges.lower + 0.3 * objective.ranges.width
+    for column, predicted in enumerate(alternatives(objective, chosen, 9)):
+        for index, value in enumerate(predicted.values):
+            candidate = chosen.copy()
+            candidate[column] = value
+            durations_s = [float(each.duration_s[0]) for each in objective.predict(candidate)]
+            np.testing.assert_allclose(predicted.durations_s[:, index], durations_s, rtol=1e-12)
+            assert predicted.total_s[index] == pytest.approx(float(objective(candidate[None])[0]), rel=1e-12)
+
+
 def test_bound_variable_has_no_alternatives():
-    with pytest.raises(KeyError):
-        alternatives(approach_dribble(), {}, MODELS, SETTINGS, 0)
+    given = approach_dribble()
+    assert set(_along(given, {}, SETTINGS)) == {variable.id for variable in given.free()}
+
+
+def _objective(given: ActionSequence, settings: RefinementSettings) -> SequenceObjective:
+    return SequenceObjective(given.within(settings.horizon), given.variables, MODELS, settings)
+
+
+def _along(given: ActionSequence, chosen: Mapping[int, float], settings: RefinementSettings) -> dict[int, Alternatives]:
+    objective = _objective(given, settings)
+    return {each.variable: each for each in alternatives(objective, objective.vector(chosen), 721)}
