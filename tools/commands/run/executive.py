@@ -11,7 +11,7 @@ from tailor.executive.core.context import Context, check_goal
 from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import State
 from tailor.executive.shell import Shell
-from tailor.runtime import realtime
+from tailor.runtime import numpy_blocks, realtime
 from tailor.runtime.clock import MonotonicClock, wall_ns
 from tailor.runtime.malloc_settings import set_for_loop
 from tailor.runtime.platform_fingerprint import platform_fingerprint
@@ -55,6 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
         offset_ns = wall_ns() - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns, driver_sender=driver_sender)
         codec.prime()
+        numpy_blocks.fill()
         origin = {**provenance(config, context), "machine": platform_fingerprint()}
         origin["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), origin, notifier)
