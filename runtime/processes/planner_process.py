@@ -14,7 +14,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -75,16 +75,19 @@ class PlannerProcess:
         self._max_bytes = max_bytes
         self._output = bytearray()
         self._answer: PlannerAnswer | None = None
-        self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-")
-        paths = [Path(self._folder.name) / name for name in ("domain.pddl", "problem.pddl")]
-        for path, text in zip(paths, (domain, problem), strict=True):
-            path.write_text(text, encoding="utf-8")
-        self._child = self._start(command, paths)
+        try:
+            self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-")
+        except OSError as error:
+            raise _cannot_start(command, error) from None
+        self._child = self._start(command, {"domain.pddl": domain, "problem.pddl": problem})
         self._deadline = clock() + limit_s
 
-    def _start(self, command: str, paths: list[Path]) -> subprocess.Popen[bytes]:
+    def _start(self, command: str, files: Mapping[str, str]) -> subprocess.Popen[bytes]:
+        paths = [Path(self._folder.name) / name for name in files]
         try:
             words = split_command(command)
+            for path, text in zip(paths, files.values(), strict=True):
+                path.write_text(text, encoding="utf-8")
             child = subprocess.Popen(
                 bound_to_parent([*words, *map(str, paths)], signal.SIGKILL),  # it has nothing to tidy up
                 stdin=subprocess.DEVNULL,

@@ -21,7 +21,7 @@ class Calls:
         self._begun_ns[name] = self._clock.now_ns()
         try:
             call()
-        except Exception as error:
+        except BaseException as error:  # also SystemExit and asyncio's CancelledError: a writer must not end unseen
             text = " ".join(f"{name}: {type(error).__name__}: {error}".split())
             return text[:MAX_TEXT]
         finally:

@@ -1,7 +1,10 @@
 """The executive's requests to an external planner: always an answer, and no child left behind."""
 
+import errno
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import pytest
 
@@ -103,3 +106,18 @@ def test_nothing_is_started_before_there_is_a_request():
     planner = ExternalPlanner(f"{sys.executable} -c pass", 1.0)
     assert planner.poll(0, 0) is None
     assert planner._child is None
+
+
+@pytest.mark.parametrize("missing", ["the folder of temporary files", "space for the files"])
+def test_a_disk_that_takes_no_files_ends_the_request_and_not_the_executive(tmp_path, monkeypatch, missing):
+    def full(path, text, encoding):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    if missing == "space for the files":
+        (tmp_path / "tmp").mkdir()
+        monkeypatch.setattr(Path, "write_text", full)
+    answer = answer_of("true")
+    assert answer.outcome == "missing"
+    assert "cannot be started: " in answer.reason
+    assert not list(tmp_path.glob("*/tailor-planner-*"))

@@ -8,7 +8,7 @@ from tailor.simnodes.hardware.interface import Hardware
 
 
 class Faulty(Hardware):
-    """Notes what is called; `raises` names the methods that raise, `stalls` those that wait for `released`."""
+    """Notes what is called; `raises` names the methods that raise `error`, `stalls` those that wait for `released`."""
 
     robot = "agilo"
     open_s, read_s, write_s, write_hz = 0.15, 0.1, 0.1, 200.0
@@ -16,13 +16,14 @@ class Faulty(Hardware):
     def __init__(self):
         self.raises, self.stalls, self.calls, self.written = set(), set(), Counter(), []
         self.released = threading.Event()
+        self.error: type[BaseException] = OSError
         self.silent, self.odometry, self.order, self.freed = False, {}, [], False
 
     def _called(self, name):
         self.calls[name] += 1
         self.order.append(name)
         if name in self.raises:
-            raise OSError(f"no {name}")
+            raise self.error(f"no {name}")
         if name in self.stalls:
             self.freed = self.released.wait(5)
 

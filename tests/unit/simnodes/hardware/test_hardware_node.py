@@ -1,5 +1,6 @@
 """Whatever a robot's hardware does, the robot is stopped, the reason is published, and it is tried again."""
 
+import asyncio
 import itertools
 import threading
 
@@ -127,6 +128,14 @@ def test_a_fault_stops_the_robot_until_a_person_arms_it_again(robot, kind, metho
     assert driven.hardware.calls["close"] == 1
     assert driven.is_in("stopped")(), "it is ready, and waits for a person"
     driven.drive()
+
+
+@pytest.mark.parametrize("error", [SystemExit, asyncio.CancelledError])
+def test_no_exception_ends_the_writing_unseen(robot, error):
+    driven = robot()
+    driven.drive()
+    driven.hardware.error, driven.hardware.raises = error, {"write"}
+    stopped_for(driven, f"write: {error.__name__}: no write")
 
 
 def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot):
