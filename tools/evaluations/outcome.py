@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.schemas.messages import RefinementReport, Subgoals
+from tailor.schemas.messages import Subgoals
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
@@ -72,8 +72,6 @@ class Outcome:
       disturbance_m: Displacement of an object that should have stayed in place; see `TaskSampler.disturbance_m`.
       free: Free variables of the first choice: label, quantity, lower, upper, value.
       bound: Bound variables of the first choice: label, quantity, value.
-      greedy_cost_s: Objective of the greedy values in the first choice.
-      refined_cost_s: Objective of the refined values in the first choice.
       predicted_actions: Of the first choice: action, whether it was asserted, predicted seconds.
       costs: Costs besides time.
     """
@@ -91,8 +89,6 @@ class Outcome:
     disturbance_m: float
     free: tuple[tuple[str, str, float, float, float], ...]
     bound: tuple[tuple[str, str, float], ...]
-    greedy_cost_s: float = float("nan")
-    refined_cost_s: float = float("nan")
     predicted_actions: tuple[tuple[str, bool, float], ...] = ()
     costs: Costs = NO_COSTS
 
@@ -115,7 +111,6 @@ def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
         sampler_of(domain).disturbance_m(finished, run.truth),
         free,
         bound,
-        *_costs_s(run),
         _predicted_actions(run),
         costs_of(run, domain),
     )
@@ -124,14 +119,6 @@ def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:
 def _predicted_actions(run: Run) -> tuple[tuple[str, bool, float], ...]:
     actions = run.subgoals[0].actions if run.subgoals else ()
     return tuple((action.action, action.asserted, round(action.predicted_s, 4)) for action in actions)
-
-
-def _costs_s(run: Run) -> tuple[float, float]:
-    """Objective of the greedy and of the refined choice in the first finished refinement."""
-    for message in run.messages:
-        if isinstance(message, RefinementReport) and message.finished:
-            return message.greedy_s, message.best_s
-    return float("nan"), float("nan")
 
 
 def _variables(

@@ -47,11 +47,6 @@ class Comparison:
             "slower_pct": self.slower_pct,
         }
 
-    @property
-    def gain_of_means_pct(self) -> float:
-        """Improvement of the mean durations; less sensitive to short episodes than the mean of ratios."""
-        return 100 * (1 - self.mean_s / self.mean_baseline_s)
-
 
 @dataclass(frozen=True, slots=True)
 class Difference:

@@ -28,19 +28,6 @@ def draw_pairs(greedy_s: Sequence[float], refined_s: Sequence[float], path: Path
     return _saved(figure, path)
 
 
-def draw_horizons(rows: Sequence[dict[str, Any]], path: Path) -> Path:
-    """Improvement over greedy by horizon, with 95 % intervals."""
-    figure = Figure(figsize=(5.5, 4), layout="constrained")
-    axis = figure.subplots()
-    names = [f"h = {row['horizon']}" for row in rows]
-    means = [row["improvement_pct"] for row in rows]
-    errors = [(row["improvement_pct"] - row["ci95"][0], row["ci95"][1] - row["improvement_pct"]) for row in rows]
-    axis.bar(names, means, color=PALE, yerr=np.transpose(errors), ecolor=INK, capsize=4)
-    axis.axhline(0, color=INK, linewidth=0.8)
-    axis.set(ylabel="improvement over greedy (%)")
-    return _saved(figure, path)
-
-
 def draw_shares(row: dict[str, Any], path: Path) -> Path:
     """Success of approaches without and with assertion, and the confusion matrix."""
     figure = Figure(figsize=(9, 3.6), layout="constrained")

@@ -1,16 +1,27 @@
-"""Progress bars of evaluations, on stderr."""
+"""Progress bars of evaluations, on stderr: JSON on stdout stays whole."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sized
 from typing import TypeVar
 
 from rich.console import Console
-from rich.progress import track
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 Item = TypeVar("Item")
 
 
-def tracked(items: Sequence[Item], title: str) -> Iterator[Item]:
-    """The items, with a bar that grows as they are taken; it disappears at the end."""
-    yield from track(items, title, console=Console(stderr=True), transient=True)
+def tracked(items: Iterable[Item], title: str, total: int | None = None) -> Iterator[Item]:
+    """The items, with a bar that grows as they are taken and disappears at the end; none without a terminal.
+
+    Args:
+      items: As they come.
+      title: Beside the bar.
+      total: Number of items; None: their length.
+    """
+    if total is None and isinstance(items, Sized):
+        total = len(items)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
+        yield from progress.track(items, total=total, description=title)

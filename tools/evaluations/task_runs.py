@@ -7,24 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from tailor.executive import domains
-from tailor.executive.composition import load_models
 from tailor.executive.core.context import Context, Settings, make_context
-from tailor.executive.interfaces.models import Models
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
+from tailor.tools.evaluations.progress import tracked
+from tailor.tools.learning.run_gathering import cached_models
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import events_of
 from tailor.tools.parallel.pool import completed
@@ -65,12 +62,9 @@ def run_all(
             else:
                 found[variant.name][seed] = known
     running = completed(run_one, [(task, variant, seed) for variant, seed in wanted], jobs)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    console = Console(stderr=True)
-    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
-        for _, outcome in progress.track(running, total=len(wanted), description=title or task.scenario):
-            found[outcome.variant][outcome.seed] = outcome
-            journals[outcome.variant].note(outcome)
+    for _, outcome in tracked(running, title or task.scenario, len(wanted)):
+        found[outcome.variant][outcome.seed] = outcome
+        journals[outcome.variant].note(outcome)
     return found
 
 
@@ -105,21 +99,15 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     pinned: Any = PinnedDomain(domain, pins)
     # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(variant.refinement, certify_checks=0))
-    models = _models(domain.robot, task.zoo)
+    models = cached_models(domain.robot, task.zoo)
     context = make_context(pinned, scenario, models, settings, SENDER)
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
     return context, start
 
 
-@lru_cache(maxsize=4)
-def _models(robot: str, zoo: str) -> Models:
-    """Models, loaded once a process."""
-    return load_models(robot, zoo)
-
-
 def dependencies(task: Task) -> list[str]:
     """Hashes of models and source code, on which a run depends besides task, variant and seed."""
-    models: Any = _models(domains.load(task.domain).robot, task.zoo)
+    models: Any = cached_models(domains.load(task.domain).robot, task.zoo)
     cards = [model.card["sha256"] for model in (*models.durations.values(), *models.successes.values())]
     return [*sorted(cards), runs_sha256(task.domain)]

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rich.progress import track
-
 from tailor.executive.core.context import Context
 from tailor.schemas.messages import Message, Subgoals
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.figures.track import Track, track_of
 from tailor.tools.parallel.pool import completed, in_order
@@ -38,7 +37,7 @@ def trace_all(
     """Run every variant at every seed; runs by name of the variant and seed."""
     wanted = [(variant, seed) for seed in seeds for variant in variants]
     running = completed(_traced, [(task, variant, seed) for variant, seed in wanted], jobs)
-    traced_runs = in_order(track(running, title, total=len(wanted), transient=True))
+    traced_runs = in_order(tracked(running, title, len(wanted)))
     return {(variant.name, seed): traced for (variant, seed), traced in zip(wanted, traced_runs, strict=True)}
 
 

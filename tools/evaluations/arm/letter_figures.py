@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from rich.progress import track
 
 from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
@@ -17,6 +16,7 @@ from tailor.models.runtime import load_robot
 from tailor.tools.evaluations.arm.perfect_greedy import greedy_velocities
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.lockstep.run import Run
 from tailor.tools.parallel.pool import completed, in_order
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
@@ -62,7 +62,7 @@ def measure_letters(modes: Sequence[WritingMode], keys: Sequence[Key], zoo: str,
     wanted = [(mode, key) for key in keys for mode in modes]
     found: dict[str, dict[Key, Figures]] = {mode.name: {} for mode in modes}
     running = completed(_figures, [(mode, key, zoo) for mode, key in wanted], jobs)
-    measured = in_order(track(running, "letters", total=len(wanted), transient=True))
+    measured = in_order(tracked(running, "letters", len(wanted)))
     for (mode, key), figures in zip(wanted, measured, strict=True):
         found[mode.name][key] = figures
     return found

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.progress import track
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig
@@ -29,6 +28,7 @@ from tailor.tools.evaluations.live.agreement import agreement, starts_of
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import dependencies, run_all
@@ -115,7 +115,7 @@ def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop:
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
     journal = Journal(arguments.store, task, Variant(LIVE, refinement), dependencies(task))
     missing = [seed for seed in seeds if seed not in journal.known]
-    for seed in track(missing, "live", transient=True):
+    for seed in tracked(missing, "live"):
         config = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)
         outcome = run_live(config, stop, arguments.recordings)
         if stop.requested:
