@@ -31,7 +31,11 @@ class RequestSource(Protocol):
 
 
 class QueryableSource:
-    """Requests that wait in one of zenoh's queryables; `read` makes a request of a query, None if it refused it."""
+    """Requests that wait in one of zenoh's queryables; `read` makes a request of a query, None if it refused it.
+
+    A query for a pattern reaches every queryable that matches: `get("**")`, with which people look at a bus, is no
+    request for an empty goal. It gets no reply.
+    """
 
     def __init__(self, queryable: Any, read: Callable[[Any], ServiceRequest | None]) -> None:
         self._queryable, self._read = queryable, read
@@ -39,7 +43,12 @@ class QueryableSource:
     def receive(self) -> ServiceRequest | None:
         """See RequestSource."""
         query = self._queryable.try_recv()
-        return None if query is None else self._read(query)
+        if query is None:
+            return None
+        if str(query.key_expr) != str(self._queryable.key_expr):
+            query.drop()
+            return None
+        return self._read(query)
 
 
 def text_request(query: Any) -> ServiceRequest:

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 
 import pytest
@@ -154,6 +155,28 @@ def test_requests_are_served_from_a_loop(pair):
         over.set()
         thread.join()
     assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no response within 0.2 s")
+
+
+def test_a_look_at_all_keys_is_no_request(pair):
+    """An empty request to this service is one for the scenario's goal: an armed robot would set off."""
+    a, b = pair
+    server, texts = b.service_server("exec/goal"), []
+
+    def called(key):
+        pending = pool.submit(a.call, key, "", 5.0)
+        while not pending.done():
+            if request := server.poll():
+                texts.append(request.text)
+                request.accept()
+            time.sleep(0.005)
+        return pending.result()
+
+    with ThreadPoolExecutor() as pool:
+        wait_until(lambda: called("exec/goal") == (True, "accepted"), "an answer")
+        texts.clear()
+        for pattern in ("**", "exec/*", "exec/go$*"):
+            assert called(pattern) == (False, f"no service at {pattern}")
+    assert texts == []
 
 
 def test_clients_reconnect_within_a_second_of_their_router():
