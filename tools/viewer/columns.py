@@ -77,13 +77,18 @@ def _column(values: Any, digits: int) -> list[int] | dict[str, list[float | None
 
 def _flattened(value: Any) -> tuple[Any, list[float | None]]:
     """The form of a JSON value of tables, lists and numbers, hashable, and its numbers."""
+    numbers: list[float | None] = []
+    return _walked(value, numbers), numbers
+
+
+def _walked(value: Any, numbers: list[float | None]) -> Any:
+    """The form; the numbers are appended."""
     if isinstance(value, dict):
-        parts = [_flattened(each) for each in value.values()]
-        return ("table", *zip(value, (form for form, _ in parts), strict=True)), [n for _, ns in parts for n in ns]
+        return ("table", *[(name, _walked(each, numbers)) for name, each in value.items()])
     if isinstance(value, list):
-        parts = [_flattened(each) for each in value]
-        return ("list", *(form for form, _ in parts)), [n for _, ns in parts for n in ns]
-    return "number", [value]
+        return ("list", *[_walked(each, numbers) for each in value])
+    numbers.append(value)
+    return "number"
 
 
 def _form(form: Any) -> Any:
