@@ -11,7 +11,6 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
-from tailor.models.runtime import load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
@@ -64,6 +63,8 @@ def load_models(robot: str, zoo: str = "") -> Models:
       UsageError: A missing or altered model, one whose training range is smaller than its action's, or a refinement
         gate that was learned with other models.
     """
+    from tailor.models.runtime import load_robot  # and onnxruntime: a simulator or launcher has no use for 30 MB of it
+
     folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
     return Models(durations, successes)

@@ -13,7 +13,7 @@ from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.bus_settings import BusSettings
-from tailor.tools.cli.plan_search import DURATIVE_HEAD_START
+from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START
 
 
 @dataclass(frozen=True, slots=True)

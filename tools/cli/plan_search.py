@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 
 from tailor.executive.planning import Domain, Problem, Result, Search, Settings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START, Limits
 
 if TYPE_CHECKING:
     from tailor.executive.planning import AnytimeSearch
     from tailor.runtime.processes.planner_process import PlannerProcess
 
-DURATIVE_HEAD_START = 250  # plans refined by the built-in search, 0.05 to 0.1 s: short problems keep its plans
 GRACE_S = 5.0  # of kairos-planner, beyond its own time limit
 INTERRUPTED = "interrupted"
 _POLL_S = 0.002  # period of polling an external planner

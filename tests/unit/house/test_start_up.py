@@ -23,6 +23,8 @@ WITHOUT = {
     "arm": {*HEAVY, "onnxruntime", "executive"},
     "status": {*HEAVY, "onnxruntime", "executive"},
     "goal": {*HEAVY, "onnxruntime", "executive"},
+    "sim": {*HEAVY, "onnxruntime"},
+    "up": {*HEAVY, "onnxruntime"},
 }
 
 

@@ -123,3 +123,17 @@ def test_every_command_has_a_help_text_in_technical_english(capsys, name):
     assert ended.value.code == 0
     assert text.startswith(f"usage: tailor {name} ")
     assert PERSONAL.search(text) is None
+
+
+def test_an_interrupt_while_modules_load_prints_no_traceback():
+    code = (
+        "import sys\n"
+        "def interrupt(event, arguments):\n"
+        "    if event == 'import' and arguments[0] == 'argparse':\n"
+        "        raise KeyboardInterrupt\n"
+        "from tailor.tools.entry import main\n"
+        "sys.addaudithook(interrupt)\n"
+        "sys.exit(main())\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "")
