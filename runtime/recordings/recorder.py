@@ -79,6 +79,7 @@ class Recorder:
         self._closed_messages = self._closed_bytes = 0
         self._closed_mixed: Counter[str] = Counter()
         self._flush_at_ns = self._note_at_ns = 0
+        self._split_error = ""  # why the next file cannot be created
         self._writer = self._next_writer()
 
     def step(self, now_ns: int) -> None:
@@ -140,13 +141,20 @@ class Recorder:
         first_ns = self._writer.first_ns
         too_long = self._limits.max_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.max_ns
         too_big = self._limits.max_bytes and self._writer.bytes >= self._limits.max_bytes
-        if (too_long or too_big) and not self._writer.disk_error:
-            self._note_losses()
-            self._writer.close()
-            self._closed_mixed += self._writer.mixed
-            self._closed_messages += self._writer.messages
-            self._closed_bytes += self._writer.bytes
-            self._writer = self._next_writer()
+        if not (too_long or too_big) or self._writer.disk_error:
+            return
+        self._note_losses()
+        try:
+            following = self._next_writer()
+        except OSError as error:  # the present file goes on, and the next flush tries again
+            self._split_error = error.strerror or str(error)
+            return
+        self._split_error = ""
+        self._writer.close()
+        self._closed_mixed += self._writer.mixed
+        self._closed_messages += self._writer.messages
+        self._closed_bytes += self._writer.bytes
+        self._writer = following
 
     def _next_writer(self) -> McapWriter:
         part = len(self.health.files)
@@ -160,4 +168,4 @@ class Recorder:
         health = self.health
         health.messages = self._closed_messages + self._writer.messages
         health.bytes = self._closed_bytes + self._writer.bytes
-        health.disk_error = self._writer.disk_error
+        health.disk_error = self._writer.disk_error or self._split_error

@@ -272,6 +272,24 @@ def test_provenance_goes_into_every_part_of_a_recording(tmp_path):
         assert dict(metadata)["part"] == {"number": str(number)}
 
 
+def test_a_recording_whose_next_file_cannot_be_created_goes_on_in_the_present_one(tmp_path):
+    queue = IngestQueue()
+    taken = tmp_path / "r_001.mcap"
+    recorder = make_recorder(tmp_path, queue, max_bytes=1)
+    taken.write_bytes(b"of an earlier recording")
+    for tick in (1, 2):
+        queue.put(odometry(tick))
+        recorder.step(tick * S)
+    assert "exists" in recorder.health.disk_error
+    assert recorder.health.files == [tmp_path / "r_000.mcap"]
+    taken.unlink()
+    recorder.step(3 * S)
+    queue.put(odometry(3))
+    health = recorder.close()
+    assert (health.messages, health.disk_error, len(health.files)) == (3, "", 2)
+    assert [len(list(open_recording(path).messages())) for path in health.files] == [2, 1]
+
+
 def test_deletes_and_unwanted_topics_are_not_recorded(tmp_path):
     queue = IngestQueue()
     recorder = make_recorder(tmp_path, queue, selection(["odom"], []))
