@@ -47,7 +47,8 @@ class Making:
       work: Folder of the episodes and models of all steps.
       jobs: Processes.
       command: Command that makes the same models again, for their cards.
-      kinds: Kinds of models to make; empty: all. Those that only choose further episodes are of `CHOOSING` kinds.
+      kinds: Kinds of models to make; empty: the recipe's. Those that only choose further episodes are of `CHOOSING`
+        kinds.
     """
 
     robot: str
@@ -106,7 +107,7 @@ def make(making: Making) -> Iterator[Step]:
         zoo = making.chooser(number)
         yield from _trained(making, zoo, making.data[: number + 1], CHOOSING)
         yield from _round(making, number, each, zoo)
-    yield from _trained(making, making.zoo, making.data, making.kinds)
+    yield from _trained(making, making.zoo, making.data, making.kinds or making.recipe.training.kinds)
     check_complete(making)
 
 
@@ -119,7 +120,7 @@ def check_complete(making: Making) -> None:
     for action in domains.load(making.domain).actions.values():
         for name in filter(None, (action.duration_model, action.success_model)):
             if not (making.zoo / making.robot / f"{name}.onnx").exists():
-                count = making.recipe.episodes
+                count = making.recipe.episodes_of(action.name)
                 raise UsageError(f"{action.name} needs {name}, which {count} random episodes do not suffice to learn")
 
 
@@ -132,17 +133,30 @@ def install(made: Path, zoo: Path, robot: str) -> None:
             path.unlink()  # of an action or kind that has no model any more
 
 
-def _random_episodes(making: Making) -> Iterator[Step]:
+def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
+    """Data sets of random episodes: action, number, folder, and whether each is beside an object.
+
+    Raises:
+      UsageError: The recipe names an action that has no model.
+    """
     recipe, declared = making.recipe, domains.load(making.domain).actions
     actions = run_gathering.modelled_actions(making.domain)
-    wanted = [(action, recipe.episodes, making.random, False) for action in actions]
+    for each in recipe.random:
+        if each.action not in actions:
+            raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
+    wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
     if recipe.beside:
         contexts = {action: declared[action].context for action in actions}
         near = [
             action for action, context in contexts.items() if context and context.success_model.startswith(f"{action}/")
         ]
         wanted += [(action, recipe.beside, making.beside, True) for action in near]
-    for action, count, folder, beside in wanted:
+    return wanted
+
+
+def _random_episodes(making: Making) -> Iterator[Step]:
+    recipe = making.recipe
+    for action, count, folder, beside in _random_sets(making):
         objects = recipe.objects if beside else 0
         spec = DataSetSpec(making.domain, action, count, recipe.seed, folder / action, beside=beside, objects=objects)
         gathering.prepare(spec, resume=True)

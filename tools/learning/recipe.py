@@ -32,9 +32,18 @@ class Round:
 
 
 @dataclass(frozen=True, slots=True)
-class Training:
-    """Options of `tailor train`; empty: its defaults."""
+class RandomEpisodes:
+    """Number of random episodes of an action that needs another one than most."""
 
+    action: str
+    episodes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Training:
+    """Options of `tailor train`, and kinds of models; empty: its defaults, all kinds."""
+
+    kinds: tuple[Literal["duration", "success", "clearance", "energy"], ...] = ()
     features: str = ""
     energy_features: str = ""
     learner: str = ""
@@ -48,7 +57,8 @@ class Recipe:
     """How the models of a robot are made.
 
     Attributes:
-      episodes: Random episodes of each action.
+      episodes: Random episodes of each action,
+      random: but for these.
       beside: Random runs beside objects, of each action that has a model of success beside an object.
       objects: Objects noted after each of these runs, an episode each (see `object_gathering.py`); 0: one that is
         there while it runs.
@@ -61,8 +71,13 @@ class Recipe:
     beside: int = 0
     objects: int = 0
     seed: int = 7
+    random: tuple[RandomEpisodes, ...] = ()
     rounds: tuple[Round, ...] = ()
     training: Training = field(default_factory=Training)
+
+    def episodes_of(self, action: str) -> int:
+        """Number of random episodes of an action."""
+        return next((each.episodes for each in self.random if each.action == action), self.episodes)
 
 
 def recipe_path(robot: str) -> Path:
@@ -91,7 +106,8 @@ def read_recipe(path: Path) -> Recipe:
     if "episodes" not in table:
         raise UsageError(f"{path}: lacks `episodes`, the number of random episodes of each action")
     recipe = from_table(Recipe, table, str(path))
-    for count in (recipe.episodes, *(number for each in recipe.rounds for number in (each.episodes, each.pool))):
+    chosen = (number for each in recipe.rounds for number in (each.episodes, each.pool))
+    for count in (recipe.episodes, *(each.episodes for each in recipe.random), *chosen):
         if count < 1:
             raise UsageError(f"{path}: a number of episodes is {count}, expected at least 1")
     return recipe

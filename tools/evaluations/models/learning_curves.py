@@ -60,7 +60,8 @@ class Point:
         half, source = (0 if self.method == "random" else self.episodes // 2), cast("Any", self.method)
         rounds = (Round(source, (scenario,), half, POOL),) if half else ()
         beside = min(shipped.beside, BESIDE)
-        return replace(shipped, episodes=self.episodes - half, beside=beside, seed=seed, rounds=rounds)
+        count = self.episodes - half
+        return replace(shipped, episodes=count, random=(), beside=beside, seed=seed, rounds=rounds)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -70,7 +70,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     """
     rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
     shipped = read_recipe(recipe_path(recipe.robot))
-    own = replace(shipped, episodes=recipe.episodes, seed=FIRST_SEED + number, rounds=rounds)
+    own = replace(shipped, episodes=recipe.episodes, random=(), seed=FIRST_SEED + number, rounds=rounds)
     making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
     show(make(making), False, {}, f"model {number}: ")
     return making

@@ -9,7 +9,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.learning import making as making_module
 from tailor.tools.learning.making import Making, install, make
-from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
+from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
@@ -69,6 +69,16 @@ def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_othe
     making_module.check_complete(making)
 
 
+def test_an_action_may_have_another_number_of_episodes_and_a_robot_fewer_kinds(tmp_path: Path, trained: list) -> None:
+    few = Recipe(20, random=(RandomEpisodes("goToPose", 60),), training=Training(kinds=("duration",)))
+    steps = {step.title: step.total for step in make(Making("agilo", few, tmp_path, 1, "make"))}
+    assert (steps["goToPose: random episodes"], steps["dribbleBall: random episodes"]) == (60, 20)
+    assert trained[-1].kinds == ("duration",)
+    unknown = Recipe(20, random=(RandomEpisodes("fly", 60),))
+    with pytest.raises(UsageError, match="random episodes of 'fly', expected one of: "):
+        list(make(Making("agilo", unknown, tmp_path, 1, "make")))
+
+
 def test_what_was_made_is_not_made_again(tmp_path: Path, trained: list) -> None:
     making = Making("agilo", TINY, tmp_path, 1, "make")
     list(make(making))
@@ -112,6 +122,8 @@ def test_installing_replaces_all_models_of_the_robot_and_nothing_else(tmp_path: 
         ("episodes = [", "not a recipe"),
         ("episodes = 9\n[[rounds]]\nsource = 'guess'\nscenarios = []\nepisodes = 1", "'rounds.source' is 'guess'"),
         ("episodes = 9\nepochs = 3", "unknown key 'epochs'"),
+        ("episodes = 9\n[[random]]\naction = 'reach'\nepisodes = 0", "a number of episodes is 0"),
+        ("episodes = 9\n[training]\nkinds = ['durations']", "'training.kinds' is 'durations', expected one of"),
     ],
 )
 def test_a_recipe_with_errors_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
