@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from tailor.schemas.kitchen.furniture import Place, kitchen
@@ -107,6 +108,15 @@ def _room() -> Iterator[Shape]:
         yield box(name, each.size, on_plane(*each.place, z=each.size[2] / 2), FURNITURE[name], MAP)
 
 
+def _reach() -> Shape:
+    """How far a level hand gets at the height of a cup on a table, from its left to its right."""
+    ahead, left, shoulder = SHOULDER
+    at = kitchen().table.size[2] + kitchen().cup.grasp_height
+    far = HAND_M + math.sqrt((UPPER_ARM_M + FOREARM_M) ** 2 - (shoulder - at) ** 2)
+    turns = [math.radians(5 * k) for k in range(-18, 19)]
+    return line("reach", [(ahead + far * math.cos(a), left + far * math.sin(a), at) for a in turns], 0.01, GREY, BASE)
+
+
 ROOM = tuple(_room())
 ROBOT = (
     cylinder("enclosure", BASE_RADIUS_M, BASE_HEIGHT_M, Pose3(z=BASE_HEIGHT_M / 2)),
@@ -114,5 +124,6 @@ ROBOT = (
     box("camera", (0.1, 0.24, 0.07), Pose3(*CAMERA), DARK),
     box("upper arm", (UPPER_ARM_M, 0.07, 0.07), Pose3(UPPER_ARM_M / 2), GREY, "lift"),
     box("forearm link", (FOREARM_M, 0.06, 0.06), Pose3(FOREARM_M / 2), GREY, "elbow"),
+    _reach(),
     box("palm", (HAND_M - TOOL_M, 0.15, 0.04), Pose3(0.03), DARK, "hand"),
 )

@@ -85,7 +85,7 @@ class Field {
     const path = this.run.all(this.run.source());
     const places = this.run.all("subgoals").flatMap(placesOf);
     this.headed = path.some((p) => p.phi !== null);
-    const objects = path.flatMap((p) => this.objectsIn(p));
+    const objects = path.flatMap((p) => this.objectCorners(p));
     const xs = [...path.map((p) => p.x), ...places.map((p) => p.x), ...objects.map((o) => o[0])];
     const ys = [...path.map((p) => p.y), ...places.map((p) => p.y), ...objects.map((o) => o[1])];
     let [left, right] = extent(xs, 0);
@@ -163,14 +163,12 @@ class Field {
     return this.run.last(`outline ${this.run.source()} ${name}`, at);
   }
 
-  /** Places of the things in a sample that are no part of the robot. */
-  objectsIn(sample) {
-    return Object.entries(sample.places ?? {})
-      .filter(([name]) => {
-        const outline = this.outline(name, Infinity);
-        return outline && outline.closed && !outline.robots;
-      })
-      .map(([, place]) => place);
+  /** Corners of the things in a sample that are no part of the robot, metres. */
+  objectCorners(sample) {
+    return Object.entries(sample.places ?? {}).flatMap(([name, place]) => {
+      const outline = this.outline(name, Infinity);
+      return outline && outline.closed && !outline.robots ? placed(outline, place) : [];
+    });
   }
 
   shape(outline, place) {
@@ -192,9 +190,8 @@ class Field {
   }
 
   /** The outline at a place: x, y and heading. */
-  corners(outline, [x, y, phi]) {
-    const [c, s] = [Math.cos(phi ?? 0), Math.sin(phi ?? 0)];
-    const points = outline.points.map(([a, b]) => this.map(x + c * a - s * b, y + s * a + c * b));
+  corners(outline, place) {
+    const points = placed(outline, place).map(([x, y]) => this.map(x, y));
     return through(points) + (outline.closed ? "Z" : "");
   }
 
@@ -218,6 +215,12 @@ class Field {
     const pairs = [...named.values()].slice(0, 6).map((a) => [colour(a.index), a.action]);
     return legend([...pairs, ...(this.run.source() === "truth" ? [["idle", "dotted: believed path"]] : [])]);
   }
+}
+
+/** Points of an outline at a place (x, y and heading), metres. */
+function placed(outline, [x, y, phi]) {
+  const [c, s] = [Math.cos(phi ?? 0), Math.sin(phi ?? 0)];
+  return outline.points.map(([a, b]) => [x + c * a - s * b, y + s * a + c * b]);
 }
 
 /** Stretches of the path within one action: [{index, points}]. */

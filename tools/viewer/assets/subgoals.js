@@ -1,6 +1,7 @@
 // Subgoals on the field: where they are, where they point, and what else was to be had where they were free.
 
 const RING_M = [0.3, 0.62]; // where the alternatives' petals stand around a place
+const LABEL_PX = [56, 14]; // room of a name
 
 class SubgoalMarks {
   /** `map` takes metres to pixels. */
@@ -13,7 +14,7 @@ class SubgoalMarks {
   at(at) {
     const why = this.run.last("why", at);
     const places = placesOf(this.run.last("subgoals", at)).filter((place) => place.goal);
-    return [...places.flatMap((place) => this.place(place, at, why)), ...places.map((place) => this.label(place))];
+    return [...places.flatMap((place) => this.place(place, at, why)), ...this.labels(places)];
   }
 
   /** A subgoal: an arrow where it points; where it is free also its range, its alternatives and greedy's choice. */
@@ -34,9 +35,16 @@ class SubgoalMarks {
     return parts;
   }
 
-  label(place) {
-    const [x, y] = this.map(place.x, place.y);
-    return svg("text", { class: "strong halo", x: x + 9, y: y + 17, text: place.label });
+  /** Names below their places; those of places beside each other are apart, so that each can be read. */
+  labels(places) {
+    const taken = [];
+    return places.map((place) => {
+      const [x, y] = this.map(place.x, place.y);
+      let low = y + 17;
+      while (taken.some(([a, b]) => Math.abs(a - x) < LABEL_PX[0] && Math.abs(b - low) < LABEL_PX[1])) low += LABEL_PX[1];
+      taken.push([x, low]);
+      return svg("text", { class: "strong halo", x: x + 9, y: low, text: place.label });
+    });
   }
 
   arrow(place, phi, kind, length) {
