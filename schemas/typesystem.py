@@ -61,9 +61,13 @@ def typestore() -> Any:
 
 
 @cache
+def _types_by_name() -> dict[str, type[Message]]:
+    return {ros_type(kind): kind for kind in message_types()}
+
+
 def type_of(ros_name: str) -> type[Message] | None:
-    """The message type with this ROS name; None if no topic carries it."""
-    return {ros_type(kind): kind for kind in message_types()}.get(ros_name)
+    """The message type with this ROS name; None if no topic carries it. Not cached by name: strangers choose names."""
+    return _types_by_name().get(ros_name)
 
 
 @cache

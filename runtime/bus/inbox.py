@@ -12,6 +12,7 @@ from typing import Protocol
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import Origin, unpack
+from tailor.runtime.bus.encoding import encoding_of, is_of_other_type
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
@@ -52,13 +53,12 @@ class Inbox:
     def __init__(
         self,
         subscriptions: Sequence[tuple[Topic, str, Source]],  # topic, its key, source of its samples
-        encodings: Callable[[type], str],
         now: Callable[[], int],
         wall: Callable[[], int] = wall_ns,
         newest_only: bool = False,  # of a state topic, each sender's newest valid sample alone
     ) -> None:
         self.rejected: Counter[tuple[str, str]] = Counter()  # (key, reason) -> count
-        self._subscriptions = [(topic, key, source, encodings(topic.type)) for topic, key, source in subscriptions]
+        self._subscriptions = [(topic, key, source, encoding_of(topic.type)) for topic, key, source in subscriptions]
         self._now, self._wall, self._newest_only = now, wall, newest_only
         self._previous = Instant(now(), wall())
         self._last: dict[int, tuple[str, int]] = {}  # (sender, sequence) of the newest message, by subscription
@@ -107,7 +107,7 @@ def _origin(key: str, encoding: str, raw: Raw) -> Origin | Rejected:
         return Rejected("other key")  # a put on a wildcard reaches every key that matches
     if not raw.is_put:
         return Rejected("not a put")
-    if raw.encoding.startswith("application/cdr;") and raw.encoding != encoding:
+    if is_of_other_type(raw.encoding, encoding):
         return Rejected("other type")
     return unpack(raw.attachment)
 

@@ -6,12 +6,12 @@ Of the requests to stop it keeps the first, of the held dead man's switches the 
 from __future__ import annotations
 
 from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.encoding import encoding_of, is_of_other_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import EStop
 from tailor.schemas.topics import Topic
-from tailor.schemas.typesystem import ros_type
 
 MAX_SENDERS = 32  # of held switches between two polls
 
@@ -22,7 +22,7 @@ class EStopLatch:
     def __init__(self, topic: Topic, key: str) -> None:
         """Empty."""
         self._topic, self._key = topic, key
-        self._encoding = f"application/cdr;{ros_type(topic.type)}"
+        self._encoding = encoding_of(topic.type)
         self._latched: Raw | None = None
         self._held: dict[str, Raw] = {}  # by sender; filled by the bus's thread, which never waits for the loop's
         self._waiting: list[Raw] = []  # taken out of it by the loop's thread
@@ -35,7 +35,7 @@ class EStopLatch:
         """
         if not raw.is_put or raw.key != self._key:
             return
-        if raw.encoding.startswith("application/cdr;") and raw.encoding != self._encoding:
+        if is_of_other_type(raw.encoding, self._encoding):
             return
         origin, message = unpack(raw.attachment), decode(self._topic, raw.payload)
         if isinstance(origin, Rejected) or not isinstance(message, EStop):

@@ -8,15 +8,13 @@ from threading import Lock
 from typing import Any
 
 from tailor.runtime.bus.attachment import Origin, pack, unpack
+from tailor.runtime.bus.encoding import encoding_of, named_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.service import ServiceRequest
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import Rejected
 from tailor.schemas.ros2.graph import Announced, Kind, Named, Node, parsed_token, qos
 from tailor.schemas.ros2.profiles import BARE, COPY, KeyProfile
-from tailor.schemas.typesystem import ros_type
-
-NAMED_TYPE = "application/cdr;"
 
 
 class Announcer:
@@ -80,8 +78,8 @@ def as_plain(raw: Raw, keys: KeyProfile) -> Raw | None:
     key, topic = known
     if raw.encoding == COPY and keys.plain(topic):
         return None
-    names_type = raw.encoding.startswith(NAMED_TYPE) and raw.encoding != COPY
-    return replace(raw, key=key, encoding=raw.encoding if names_type else f"{NAMED_TYPE}{ros_type(topic.type)}")
+    names_type = named_type(raw.encoding) and raw.encoding != COPY
+    return replace(raw, key=key, encoding=raw.encoding if names_type else encoding_of(topic.type))
 
 
 def ros_request(query: Any) -> ServiceRequest | None:

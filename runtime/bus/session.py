@@ -11,6 +11,7 @@ from typing import Any
 import zenoh
 
 from tailor.runtime.bus.attachment import SENDER_BYTES
+from tailor.runtime.bus.encoding import NAMED_CDR, encoding_of
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
@@ -24,7 +25,6 @@ from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
 from tailor.schemas.ros2.profiles import BARE, COPY, PLAIN, KeyProfile, ros_topic, topic_at
 from tailor.schemas.services import SERVICES
 from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
-from tailor.schemas.typesystem import ros_type
 
 MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
 _PRIORITIES = {
@@ -32,11 +32,6 @@ _PRIORITIES = {
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
     "data": zenoh.Priority.DATA,
 }
-
-
-def encoding_of(kind: type) -> str:
-    """Encoding string of a message type, e.g. application/cdr;std_msgs/msg/Bool."""
-    return f"application/cdr;{ros_type(kind)}"
 
 
 class CannotOpenError(Exception):
@@ -116,7 +111,7 @@ class Session:
         """
         if not _is_one_key(key):
             raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
-        topic, encoding = topic_at(key), f"application/cdr;{ros_type}" if ros_type else None
+        topic, encoding = topic_at(key), f"{NAMED_CDR}{ros_type}" if ros_type else None
         known = topic is not None and encoding == encoding_of(topic.type)
         keys = self._keys_of(topic, key) if topic is not None and known else [(key, encoding)]
         declared = [
@@ -175,7 +170,7 @@ class Session:
                 subscriptions.append((topic, key, source))
             if self.keys.announces:
                 self._graph.announce(Kind.SUBSCRIPTION, ros_topic(topic, robot), self.keys.domain)
-        return Inbox(subscriptions, encoding_of, time.monotonic_ns, newest_only=newest_only)
+        return Inbox(subscriptions, time.monotonic_ns, newest_only=newest_only)
 
     def _ring(self, key: str) -> Source:
         return RingSource(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)), self.keys)

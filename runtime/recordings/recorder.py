@@ -9,10 +9,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue, count_key
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.recordings.mcap.channel_table import ENCODING
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
@@ -120,7 +120,7 @@ class Recorder:
         if wanted is None:
             if len(self._wanted) >= MAX_KINDS:
                 self._wanted.clear()
-            wanted = self._wanted[key, encoding] = self._selection.wants(key, encoding.removeprefix(ENCODING))
+            wanted = self._wanted[key, encoding] = self._selection.wants(key, named_type(encoding))
         return wanted
 
     def _count_losses(self) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import wall_ns
-from tailor.runtime.recordings.mcap.channel_table import ENCODING
 from tailor.runtime.recordings.recorder import Health
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
@@ -51,7 +51,7 @@ class SnapshotRecorder:
         return self.health
 
     def _keep(self, raw: Raw, now_ns: int) -> None:
-        if not raw.is_put or not self._selection.wants(raw.key, raw.encoding.removeprefix(ENCODING)):
+        if not raw.is_put or not self._selection.wants(raw.key, named_type(raw.encoding)):
             return
         self._buffer.add(raw, raw.received_wall_ns or wall_ns())
         self._metadata.observe(raw)

@@ -11,8 +11,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.own import example

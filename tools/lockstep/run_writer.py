@@ -17,14 +17,13 @@ from tailor.executive.core.state import Output
 from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import tick_report
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.loop import Period
-from tailor.runtime.recordings.mcap.channel_table import ENCODING
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, Provenance
 from tailor.schemas.topics import TOPICS, key_of
-from tailor.schemas.typesystem import ros_type
 
 
 class RunWriter:
@@ -79,5 +78,5 @@ class RunWriter:
         self._write(key, type(message), encode(message), now_ns, Origin(self._sequences[key], 0, self._context.sender))
 
     def _write(self, key: str, kind: type, data: bytes, time_ns: int, origin: Origin) -> None:
-        raw = Raw(key, data, pack(origin), f"{ENCODING}{ros_type(kind)}", True, None)
+        raw = Raw(key, data, pack(origin), encoding_of(kind), True, None)
         self._file.write(raw, self._context.stamp(time_ns))

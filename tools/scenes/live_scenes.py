@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
@@ -18,7 +19,6 @@ from tailor.schemas.typesystem import type_of
 from tailor.tools.scenes.scene_feed import SceneFeed
 
 POLL_NS = 50_000_000
-ENCODING = "application/cdr;"
 
 
 def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> None:
@@ -52,7 +52,7 @@ def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Noti
 
 def _read(raw: Raw) -> Message | None:
     """The message of a publication; None for foreign and damaged ones."""
-    kind = type_of(raw.encoding.removeprefix(ENCODING))
+    kind = type_of(named_type(raw.encoding))
     if kind is None or not raw.is_put or isinstance(unpack(raw.attachment), Rejected):
         return None
     message = decode(kind, raw.payload)

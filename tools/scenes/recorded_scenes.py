@@ -6,8 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import NAMED_CDR, encoding_of
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap.channel_table import ENCODING
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode, encode
@@ -48,7 +48,7 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
             key = key_of(topic, feed.robot)
             sequences[key] += 1
             origin = pack(Origin(sequences[key], recorded.log_ns, SENDER))
-            raw = Raw(key, encode(each), origin, f"{ENCODING}{ros_type(type(each))}", True, None)
+            raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
             writer.write(raw, recorded.log_ns)
     if not writer.close():
         raise UsageError(f"{target}: {writer.disk_error}")
@@ -57,7 +57,7 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
 
 def _raw(recorded: Recorded) -> Raw:
     origin = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender)) if recorded.sender else None
-    return Raw(recorded.key, recorded.data, origin, f"{ENCODING}{recorded.ros_type}", True, None)
+    return Raw(recorded.key, recorded.data, origin, f"{NAMED_CDR}{recorded.ros_type}", True, None)
 
 
 def _decoded(recorded: Recorded) -> Message | None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tailor.runtime.bus.attachment import Origin, unpack
+from tailor.runtime.bus.encoding import encoding_of, is_of_other_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS
-from tailor.schemas.typesystem import ros_type
 
 _ROBOT = "{robot}/"
 _FIXED = {topic.key: name for name, topic in TOPICS.items() if not topic.key.startswith(_ROBOT)}
@@ -51,7 +51,7 @@ def read(raw: Raw) -> Received | Rejected | None:
     topic = TOPICS[match[0]]
     if not raw.is_put:
         return Rejected("not a put")
-    if raw.encoding.startswith("application/cdr;") and raw.encoding != f"application/cdr;{ros_type(topic.type)}":
+    if is_of_other_type(raw.encoding, encoding_of(topic.type)):
         return Rejected("other type")
     origin = unpack(raw.attachment)
     if isinstance(origin, Rejected):

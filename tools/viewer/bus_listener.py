@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import Clock, wall_ns
@@ -21,7 +22,6 @@ from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 POLL_NS = 50_000_000  # 20 updates of the page a second
-ENCODING = "application/cdr;"
 
 
 class BusListener:
@@ -72,7 +72,7 @@ class BusListener:
 
 def _read(raw: Raw) -> Message | None:
     """The message of a publication; None for foreign and damaged ones."""
-    kind = type_of(raw.encoding.removeprefix(ENCODING))
+    kind = type_of(named_type(raw.encoding))
     if kind is None or not raw.is_put:
         return None
     message = decode(kind, raw.payload)

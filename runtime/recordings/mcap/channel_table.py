@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
+from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
-from tailor.schemas.topics import TOPICS
+from tailor.schemas.ros2.profiles import topic_at
 from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 
-ENCODING = "application/cdr;"
 MAX_SENDERS = 100  # of one key and type; a restart of a process is a new sender
 MAX_KEYS = 500  # a robot has about 30
 MAX_CHANNELS = 10_000  # of single senders; with one shared channel for each key and type, below 2**16
@@ -54,29 +54,22 @@ class ChannelTable:
         return self._shared[raw.key, kind]
 
     def _register(self, key: str, kind: str, entries: dict[str, str]) -> int:
-        hashed = {"type_hash": type_hash(known)} if (known := _type(kind)) else {}
+        known: type | None = type_of(kind)
+        hashed = {"type_hash": type_hash(known)} if known is not None else {}
         return int(
             self._writer.register_channel(f"/{key}", "cdr", self._schema(kind), {"key": key, **entries, **hashed})
         )
 
     def _schema(self, kind: str) -> int:
-        if kind not in self._schemas and (known := _type(kind)):
+        known: type | None = type_of(kind)
+        if kind not in self._schemas and known is not None:
             self._schemas[kind] = self._writer.register_schema(kind, "ros2msg", definition(known).encode())
         return self._schemas[kind]
 
 
-def _type(name: str) -> type | None:
-    return type_of(name)
-
-
 def _type_name(raw: Raw) -> str:
     """ROS type that a message names, or that of its key if it names none; empty for types of other projects."""
-    named = raw.encoding.startswith(ENCODING)
-    name = raw.encoding.removeprefix(ENCODING) if named else _type_by_key(raw.key)
-    return name if _type(name) else ""
-
-
-def _type_by_key(key: str) -> str:
-    """ROS type of a key according to the table of topics, for senders that do not name it."""
-    robot, _, _ = key.partition("/")
-    return next((ros_type(t.type) for t in TOPICS.values() if t.key.format(robot=robot) == key), "")
+    name = named_type(raw.encoding)
+    if not name and (topic := topic_at(raw.key)) is not None:
+        name = ros_type(topic.type)
+    return name if type_of(name) else ""

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand

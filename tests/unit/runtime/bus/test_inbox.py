@@ -4,10 +4,10 @@ import pytest
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, pack, unpack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Raw, is_state
 from tailor.runtime.bus.latch import MAX_SENDERS, EStopLatch
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.session import encoding_of
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import EStop, Odometry, Sample, VelocityCommand
@@ -40,7 +40,7 @@ def raw(message, key="agilo/odom", **changes):
 
 
 def inbox(*raws, topic="odom", key="agilo/odom", wall=0):
-    return Inbox([(TOPICS[topic], key, Line(*raws))], encoding_of, now=lambda: 0, wall=lambda: wall)
+    return Inbox([(TOPICS[topic], key, Line(*raws))], now=lambda: 0, wall=lambda: wall)
 
 
 ODOMETRY = Odometry(5, 1.0, 2.0, 0.0, 0.5, 0.25)
@@ -91,7 +91,7 @@ def test_a_flood_is_drained_in_bounded_portions():
 @pytest.mark.promise("P6")
 def test_repeated_messages_of_a_frozen_sensor_are_rejected_but_not_those_of_a_restart_or_replay():
     line = Line(*(numbered(ODOMETRY, number) for number in (7, 7, 7, 8, 8, 3)), numbered(ODOMETRY, 3, sender="ff" * 16))
-    box = Inbox([(TOPICS["odom"], "agilo/odom", line)], encoding_of, now=lambda: 0, wall=lambda: 0)
+    box = Inbox([(TOPICS["odom"], "agilo/odom", line)], now=lambda: 0, wall=lambda: 0)
     assert [sample.sequence for sample in box.drain(9)] == [7, 8, 3, 3]
     assert box.rejected == {("agilo/odom", "repeated"): 3}
 
@@ -111,18 +111,14 @@ def test_states_replace_each_other_events_and_commands_do_not():
 def test_junk_does_not_push_a_good_state_out():
     good = raw(ODOMETRY)
     junk = [raw(ODOMETRY, payload=b"x"), raw(ODOMETRY, key="**"), raw(ODOMETRY, is_put=False)]
-    box = Inbox(
-        [(TOPICS["odom"], "agilo/odom", Line(good, *junk))], encoding_of, lambda: 0, lambda: 0, newest_only=True
-    )
+    box = Inbox([(TOPICS["odom"], "agilo/odom", Line(good, *junk))], lambda: 0, lambda: 0, newest_only=True)
     assert [sample.message for sample in box.drain(9)] == [ODOMETRY]
     assert sum(box.rejected.values()) == 3
 
 
 def test_of_several_valid_states_the_newest_counts():
     older, newer = raw(ODOMETRY), raw(ODOMETRY, attachment=pack(Origin(8, 124, SENDER)))
-    box = Inbox(
-        [(TOPICS["odom"], "agilo/odom", Line(older, newer))], encoding_of, lambda: 0, lambda: 0, newest_only=True
-    )
+    box = Inbox([(TOPICS["odom"], "agilo/odom", Line(older, newer))], lambda: 0, lambda: 0, newest_only=True)
     assert [sample.sequence for sample in box.drain(9)] == [8]
 
 
@@ -130,14 +126,14 @@ def test_of_several_valid_states_the_newest_counts():
 def test_a_strangers_states_do_not_push_the_right_ones_out():
     ours, stranger = raw(ODOMETRY), numbered(ODOMETRY, 99, "agilo/odom", "ee" * 16)
     rows = [(TOPICS["odom"], "agilo/odom", Line(ours, stranger, stranger))]
-    box = Inbox(rows, encoding_of, lambda: 0, lambda: 0, newest_only=True)
+    box = Inbox(rows, lambda: 0, lambda: 0, newest_only=True)
     assert sorted(sample.sender for sample in box.drain(9)) == sorted([SENDER, "ee" * 16])
 
 
 def test_of_events_and_commands_all_count_even_where_of_states_only_the_newest_does():
     commands = [numbered(VelocityCommand(0, 0.1, 0.0), number, "agilo/cmd_vel") for number in (1, 2, 3)]
     rows = [(TOPICS["cmd_vel"], "agilo/cmd_vel", Line(*commands))]
-    box = Inbox(rows, encoding_of, lambda: 0, lambda: 0, newest_only=True)
+    box = Inbox(rows, lambda: 0, lambda: 0, newest_only=True)
     assert [sample.sequence for sample in box.drain(9)] == [1, 2, 3]
 
 
@@ -227,7 +223,7 @@ def test_samples_of_several_topics_come_oldest_first():
         (TOPICS["estop"], "estop", Line(raw(EStop(True), "estop", received_wall_ns=20))),
     ]
     walls = iter([0, 100])
-    box = Inbox(rows, encoding_of, now=lambda: 0, wall=lambda: next(walls))
+    box = Inbox(rows, now=lambda: 0, wall=lambda: next(walls))
     assert [(s.key, s.arrival_ns) for s in box.drain(100)] == [("estop", 20), ("agilo/odom", 80)]
 
 

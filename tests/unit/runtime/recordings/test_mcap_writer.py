@@ -9,9 +9,9 @@ from dataclasses import replace
 import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue, memory_of
-from tailor.runtime.bus.session import encoding_of
 from tailor.runtime.recordings.mcap.scan import MAGIC, DamageReport, scan
 from tailor.runtime.recordings.mcap.sink import Sink
 from tailor.runtime.recordings.mcap.writer import McapWriter
