@@ -54,6 +54,25 @@ def with_samples(streams: Mapping[str, Stream], samples: tuple[Sample, ...], now
     return {key: _without_old(stream, now_ns - RATE_WINDOW_NS) for key, stream in following.items()}
 
 
+def of_known_senders(
+    topics: tuple[str, ...], robot: str, streams: Mapping[str, Stream], samples: tuple[Sample, ...]
+) -> tuple[Sample, ...]:
+    """The samples without those of a second sender of one of `topics`, e.g. of a simulator that was started twice.
+
+    It counts once the known sender is stale, e.g. after a restart: two places of one robot make no belief.
+    """
+    keys = {key_of(topic, robot): topic for topic in topics}
+    known = {key: (stream.sender, stream.samples[-1][0]) for key, stream in streams.items()}
+    kept = []
+    for sample in samples:
+        topic = keys.get(sample.key)
+        sender, arrival_ns = known.get(sample.key, (sample.sender, sample.arrival_ns))
+        if topic is None or sample.sender == sender or _is_stale(topic, arrival_ns, sample.arrival_ns):
+            known[sample.key] = (sample.sender, sample.arrival_ns)
+            kept.append(sample)
+    return tuple(kept)
+
+
 def slow_topics(topics: tuple[str, ...], robot: str, streams: Mapping[str, Stream], now_ns: int) -> tuple[str, ...]:
     """Those of `topics` that come at less than 60 % of their nominal rate, as text, e.g. "odom at 25 of 50 Hz".
 

@@ -9,6 +9,7 @@ from tailor.executive.core.freshness import (
     MAX_ROUND_TRIP_NS,
     echo_age_ns,
     newest_arrivals,
+    of_known_senders,
     slow_topics,
     stale_topics,
     with_samples,
@@ -26,17 +27,18 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
     domain = context.domain
     backward = now_ns < state.now_ns
     now_ns = max(now_ns, state.now_ns)
+    samples = of_known_senders(domain.required, domain.robot, state.streams, inputs.samples)
     sensors = {key_of(topic, domain.robot) for topic in domain.sensors}
-    belief = domain.update(state.belief, now_ns, tuple(s for s in inputs.samples if s.key in sensors), state.command)
+    readings = tuple(s for s in samples if s.key in sensors)
     second_ago = now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
     state = replace(
         state,
         tick=state.tick + 1,
         now_ns=now_ns,
-        belief=belief,
-        arrivals=newest_arrivals(state.arrivals, inputs.samples),
-        streams=with_samples(state.streams, tuple(s for s in inputs.samples if s.key in sensors), now_ns),
+        belief=domain.update(state.belief, now_ns, readings, state.command),
+        arrivals=newest_arrivals(state.arrivals, samples),
+        streams=with_samples(state.streams, readings, now_ns),
         overruns_ns=overruns,
         arming=_driver_of(context, state.arming, now_ns, inputs),
     )

@@ -107,3 +107,19 @@ def test_a_sensor_that_ceased_is_judged_by_its_age_alone():
         (),
         (),
     ]
+
+
+def test_a_second_sender_of_a_sensor_counts_only_once_the_first_is_silent():
+    """As of a simulator that was started twice, or a recording that is replayed beside the robot."""
+
+    def world(n, given, x):
+        first, second = odometry(n * TICK, x, n), dataclasses.replace(odometry(n * TICK, 5.0, n), sender="ef" * 16)
+        samples = (first,) if n == 1 else (first, second) if n <= 60 else (second,)
+        return dataclasses.replace(given, samples=(*samples, driver(n * TICK)))
+
+    run = list(drive(line_context(), world=world, ticks=80))
+    states = [state for state, _, _ in run]
+    assert max(state.belief.x for state in states[:60]) < 1.1
+    assert states[59].task.result == "achieved"
+    assert [state.belief.x for state in states[60:]] == [states[59].belief.x] * 5 + [5.0] * 15
+    assert states[-1].cause is None or states[-1].cause.reason is not Reason.INPUT_STALE
