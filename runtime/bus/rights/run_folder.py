@@ -59,7 +59,13 @@ class RunFolder:
         return self.users_file.exists()
 
     def running(self) -> bool:
-        """Whether a router of this bus listens on this machine."""
+        """Whether a router of this bus listens on this machine.
+
+        False for a folder in a place where everybody may make one, if it is not ours: another user's router there
+        would take our e-stops, and report them as done.
+        """
+        if not _is_named() and not all(_is_private(each) for each in (self.path.parent, self.path)):
+            return False
         with socket.socket(socket.AF_UNIX) as probe:
             try:
                 probe.connect(str(self.path / SOCKET))
@@ -152,12 +158,25 @@ def _base() -> Path:
     return Path(tempfile.gettempdir()) / f"tailor-{os.getuid()}"
 
 
+def _is_named() -> bool:
+    """Whether the environment names the folder of all runs; else it lies where every user may make it first."""
+    return VARIABLE in os.environ or "XDG_RUNTIME_DIR" in os.environ
+
+
+def _is_private(path: Path) -> bool:
+    """Whether it is a folder of this user or root, no link, that nobody else may write."""
+    try:
+        status = path.lstat()
+    except OSError:
+        return False
+    return stat.S_ISDIR(status.st_mode) and status.st_uid in (0, os.getuid()) and not status.st_mode & 0o022
+
+
 def _make_private(path: Path) -> None:
     try:
         path.mkdir(mode=0o750 if VARIABLE in os.environ else 0o700, parents=True, exist_ok=True)
         for each in (path.parent, path):
-            status = each.lstat()
-            if not stat.S_ISDIR(status.st_mode) or status.st_uid not in (0, os.getuid()) or status.st_mode & 0o022:
+            if not _is_private(each):
                 raise UsageError(f"{each}: expected a folder that only this user may write, see {VARIABLE}")
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a place for a private folder, see {VARIABLE}") from error

@@ -1,7 +1,9 @@
 """The folder of a bus: its passwords are of one run, and only the user who started it reads them."""
 
 import os
+import socket
 import stat
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -133,6 +135,20 @@ def test_a_folder_of_another_user_is_refused(base, monkeypatch, which):
         monkeypatch.setattr(module.os, "getuid", lambda: os.geteuid() + 1)
     with pytest.raises(UsageError, match="expected a folder that only this user may write"), hosted(ENDPOINT, []):
         pass
+
+
+@pytest.mark.parametrize("which", ["of all runs", "of the bus"])
+def test_a_router_in_a_folder_that_others_may_write_is_not_ours(monkeypatch, which):
+    """Without a login session the folder lies in /tmp: whoever makes it first would be sent our e-stops."""
+    monkeypatch.delenv("XDG_RUNTIME_DIR")
+    with TemporaryDirectory() as short, socket.socket(socket.AF_UNIX) as router:
+        monkeypatch.setattr(module.tempfile, "gettempdir", lambda: short)
+        folder = left_behind()
+        router.bind(str(folder.path / SOCKET))
+        router.listen()
+        assert folder.running()
+        (folder.path.parent if which == "of all runs" else folder.path).chmod(0o777)
+        assert not folder.running()
 
 
 def test_a_link_to_a_folder_is_refused(base, tmp_path):
