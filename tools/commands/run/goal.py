@@ -7,6 +7,7 @@ import json
 import sys
 
 from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.plain_text import plain
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -23,5 +24,5 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"accepted": accepted, "answer": answer}))
     else:
-        print(answer, file=sys.stdout if accepted else sys.stderr)
+        print(plain(answer), file=sys.stdout if accepted else sys.stderr)
     return 0 if accepted else 2

@@ -33,6 +33,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.number_checks import check_within
+from tailor.tools.cli.plain_text import plain
 
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9
 MAX_LIMIT = 1e9  # MB or seconds, beyond any disk and run
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.json:
                 print(json.dumps({"accepted": accepted, "answer": response}))
             else:
-                print(response, file=sys.stdout if accepted else sys.stderr)
+                print(plain(response), file=sys.stdout if accepted else sys.stderr)
             return 0 if accepted else 1
         queue, subscription = session.subscribe_all("**")
         recorder = _recorder(arguments, queue)

@@ -1,0 +1,27 @@
+"""Answers from the bus are text of whoever answered: on a terminal they must not act."""
+
+import argparse
+from contextlib import nullcontext
+
+import pytest
+
+from tailor.tools.commands.run import goal, record
+
+CLEARS_THE_SCREEN = "\x1b[2J"
+
+
+class Impostor:
+    def call(self, key, text):
+        return False, f"{CLEARS_THE_SCREEN}accepted"
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "code"), [(goal, ["(at a)"], 2), (record, ["--write", "--snapshot", "10"], 1)]
+)
+def test_an_answer_is_printed_without_control_characters(monkeypatch, capsys, command, words, code):
+    parser = argparse.ArgumentParser()
+    command.configure(parser)
+    monkeypatch.setattr(record, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(command, "open_bus", lambda *_, **__: nullcontext(Impostor()))
+    assert command.run(parser.parse_args(words)) == code
+    assert capsys.readouterr().err == "\\x1b[2Jaccepted\n"
