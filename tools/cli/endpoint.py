@@ -55,15 +55,12 @@ def with_bus_flags(settings: BusSettings, arguments: argparse.Namespace) -> BusS
     return replace(settings, **{name: value for name, value in given.items() if value is not None})
 
 
-def open_bus(
-    arguments: argparse.Namespace, role: Role, timeout_s: float = 3.0, sender: str = ""
-) -> AbstractContextManager[Session]:
+def open_bus(arguments: argparse.Namespace, role: Role, sender: str = "") -> AbstractContextManager[Session]:
     """Session with the bus that the flags select.
 
     Args:
       arguments: Parsed flags.
       role: Decides what the session may do on a secured bus; with --key, the key's name decides.
-      timeout_s: Time limit for the connection.
       sender: Id of the session on the bus, 32 hex digits; empty: random.
 
     Raises:
@@ -71,7 +68,7 @@ def open_bus(
     """
     settings = bus_settings(arguments)
     identity = identity_in(settings.key) if settings.key else None
-    return open_client(settings.endpoint, timeout_s, sender, role, identity, settings.key_profile)
+    return open_client(settings.endpoint, sender=sender, role=role, identity=identity, keys=settings.key_profile)
 
 
 def configure_sender(parser: argparse.ArgumentParser) -> None:

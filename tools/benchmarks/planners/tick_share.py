@@ -19,7 +19,7 @@ from rich.table import Table
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import PERIOD_NS, Settings
+from tailor.executive.core.context import PERIOD_NS
 from tailor.executive.core.plan_reuse import Preparation
 from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.core.state import Output
@@ -35,20 +35,20 @@ from tailor.tools.lockstep.worlds import make_world
 SECONDS, QUICK_SECONDS = 60.0, 8.0
 
 
-def shares(domain: str, scenario: str, seconds: float, settings: Settings | None = None) -> list[float]:
+def shares(domain: str, scenario: str, seconds: float) -> list[float]:
     """Share of planning in each tick of one run, in percent of the tick."""
     gc.collect()
     gc.disable()
     try:
-        return _shares(domain, scenario, seconds, settings)
+        return _shares(domain, scenario, seconds)
     finally:
         gc.enable()
 
 
-def _shares(domain: str, scenario: str, seconds: float, settings: Settings | None) -> list[float]:
+def _shares(domain: str, scenario: str, seconds: float) -> list[float]:
     world = make_world(domains.load(domain).robot, scenario, 0)
     _, start = domains.seeded_scenario(domain, scenario, 0)
-    context = build_context(ExecutiveConfig(domain, scenario, settings or Settings()), SENDER)
+    context = build_context(ExecutiveConfig(domain, scenario), SENDER)
     marks = [0]
 
     def on_tick(tick: RecordedTick, outputs: tuple[Output, ...]) -> None:
