@@ -128,7 +128,7 @@ class Driver:
         return commands | arming | switches | dict(self._rejected)
 
     def _estop(self, samples: Sequence[Sample], now_ns: int) -> bool:
-        """Stop and latch if an e-stop asks for it or a dead man's switch was released; whether one of them did."""
+        """Stop and latch if an e-stop requests it or a dead man's switch was released; whether one of them did."""
         requested = False
         for sample in samples:
             if isinstance(sample.message, EStop):

@@ -76,7 +76,7 @@ def of_known_senders(
 def slow_topics(topics: tuple[str, ...], robot: str, streams: Mapping[str, Stream], now_ns: int) -> tuple[str, ...]:
     """Those of `topics` that come at less than 60 % of their nominal rate, as text, e.g. "odom at 25 of 50 Hz".
 
-    A tick receives only the newest sample of a topic; the numbers that the sender counts tell how many there were.
+    A tick receives only the newest sample of a topic; the sender's sequence numbers show how many there were.
     A topic without numbers, or with less than a second of history, is not judged.
     """
     rates = ((topic, _rate_hz(streams.get(key_of(topic, robot)), now_ns)) for topic in topics)

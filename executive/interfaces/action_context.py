@@ -1,6 +1,6 @@
 """Context of an action: objects of the belief near which it may fail, one row of numbers for each (paper 7).
 
-An opponent's place and radius, say. A model that was learned with one object serves any number of them.
+E.g. an opponent's place and radius. A model that was learned with one object serves any number of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Command outlets of a robot: base, arm and gripper, say, each with a topic, axes and a message of its own.
+"""Command outlets of a robot, e.g. base, arm and gripper, each with a topic, axes and a message of its own.
 
 A robot with one outlet declares `axes`, `command_topic` and `message` in its domain. One with several declares
 `outlets` as well, in the order of `axes`; all of them are published in each tick, behind one guard.

@@ -114,7 +114,7 @@ class AnytimeSearch:
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """Tells which partial plans can only become as good as the best plan, or worse."""
+    """Recognises partial plans that can only become as good as the best plan, or worse."""
 
     search: AnytimeSearch
     task: GroundTask

@@ -1,4 +1,4 @@
-"""What a robot's package says of its looks: shapes and frames, from the belief and from the ground truth.
+"""What a robot's package declares of its looks: shapes and frames, from the belief and from the ground truth.
 
 One source for the page of a run, for pictures, and for markers and transforms on the bus. The spec's field `scene`
 names an object, usually a module, with the attributes of `SceneView`.

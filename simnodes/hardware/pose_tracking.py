@@ -1,7 +1,7 @@
 """The pose in the map from a localiser that speaks seldom, or not at all, carried on by odometry. Pure.
 
 A localiser such as AMCL publishes after each update only, thus never while the robot stands. Each of its poses gives
-the transform from the odometry's frame to the map; odometry says how far the robot has come since. Units: m, rad.
+the transform from the odometry's frame to the map; odometry measures how far the robot has come since. Units: m, rad.
 """
 
 from __future__ import annotations

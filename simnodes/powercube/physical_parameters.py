@@ -42,7 +42,7 @@ class PhysicalParameters:
     film_nms: float = 100.0  # what slows the motor down across the backlash: grease
 
     encoder_std_rad: float = 2e-4  # kinematic error of a wave gear, about 1 arc minute from peak to peak
-    read_jitter_s: float = 0.001  # the bus asks the modules one after another; one stamp for all
+    read_jitter_s: float = 0.001  # the bus polls the modules one after another; one stamp for all
     tacho_std_radps: float = 0.01  # of velocities from counts over some milliseconds
     current_std_a: float = 0.1
 

@@ -16,7 +16,7 @@ Check = Callable[[Bench], Iterator[str]]
 
 @dataclass(frozen=True, slots=True)
 class Clause:
-    """One clause; `text` says what a driver must keep to."""
+    """One clause; `text` states what a driver must keep to."""
 
     name: str
     text: str

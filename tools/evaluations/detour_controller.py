@@ -40,7 +40,7 @@ class DetourController:
     Attributes:
       action: Controller of the action.
       go: Drives to the poses.
-      context: Tells what is in the way; rows of x, y, radius.
+      context: Yields what is in the way; rows of x, y, radius.
       field: Half the length and half the width of where poses may lie, m.
     """
 

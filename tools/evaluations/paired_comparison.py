@@ -18,7 +18,7 @@ from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 Units = Sequence[str | int]
-P_THRESHOLD = 0.001  # smaller ones say nothing more
+P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000
 
 

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 DIST_M = 1.5  # Figure 7: straight ahead, standing still
 STEP_RAD, ARRIVING_RAD_S = 0.7, 0.4  # its like for two joints: along the first, from rest
-MIN_EPISODES = 3  # in a cell of the map: fewer say little of a mean
+MIN_EPISODES = 3  # in a cell of the map: fewer are too few for a mean
 CELLS = 9, 12  # distance, angle
 
 

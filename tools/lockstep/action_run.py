@@ -296,5 +296,5 @@ def newest(readings: Sequence[Reading]) -> tuple[Sample, ...]:
 
 @lru_cache(maxsize=256)
 def _source(topic: str) -> str:
-    """Who publishes a topic; asked for every reading."""
+    """Who publishes a topic; looked up for every reading."""
     return TOPICS[topic].source

@@ -20,7 +20,7 @@ class Row:
     """What one planner found.
 
     `makespan` in seconds, None without durations; `cost` is what the steps add to (total-cost), None without costs.
-    CPU time includes the start of a program; `reason` says why there is no sound plan.
+    CPU time includes the start of a program; `reason` states why there is no sound plan.
     """
 
     planner: str

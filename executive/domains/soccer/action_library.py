@@ -54,7 +54,7 @@ _go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways)
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 
-# goToPose ignores opponents, and so does an approach, which is goToPose: one model tells of both
+# goToPose ignores opponents, and so does an approach, which is goToPose: one model covers both
 OPPONENTS = ActionContext(
     (
         ContextColumn("obstacle_x", "m", -FIELD_X_M, FIELD_X_M, OPPONENT_MOVED_M),

@@ -14,7 +14,7 @@ from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
 
-MOST = 4  # of another team, that are told of in telemetry
+MOST = 4  # of another team, that telemetry includes
 FRESH_S = 0.5  # six pictures: without them the robot does not drive among opponents
 # where a picture shows an opponent for certain, with a margin to what the camera sees: 0.87 rad, 0.25 to 6 m
 VIEW_RAD = 0.7

@@ -17,7 +17,7 @@ Test = Callable[[Sequence[str]], bool]
 
 
 class FactIndex:
-    """Facts by predicate and by the arguments at some positions; only the tables that a plan asks for are kept."""
+    """Facts by predicate and by the arguments at some positions; only the tables that a plan uses are kept."""
 
     def __init__(self, world: StaticWorld) -> None:
         self._tables: dict[str, dict[tuple[int, ...], Table]] = {name: {} for name in world.domain.predicates}

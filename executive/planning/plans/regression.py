@@ -1,4 +1,4 @@
-"""Tells which suffixes of a sequence of actions reach the goal, by regression of the goal through them.
+"""Finds the suffixes of a sequence of actions that reach the goal, by regression of the goal through them.
 
 Exact where conditions and goal are conjunctions of literals and effects have no conditions; otherwise it does not
 apply. It takes time in proportion to the number of steps: to simulate each suffix takes its square.

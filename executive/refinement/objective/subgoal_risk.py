@@ -1,4 +1,4 @@
-"""Risk that the way to an asserted subgoal spoils the action after it: the robot hits the ball, say (paper 7)."""
+"""Risk that the way to an asserted subgoal spoils the action after it, e.g. by hitting the ball (paper 7)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Opponents beside the runs of an action, drawn after the run: goToPose and approaches drive as if there were none.
 
-So one run tells of any number of opponents which it would have touched. A test compares that with simulated ones.
+So one run shows, of any number of opponents, which it would have touched. A test compares that with simulated ones.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ class Scene:
         self.record.at_ns = self.now_ns()
 
     def heard_ids(self) -> dict[str, str]:
-        """What tells the present executive and simulator from earlier ones; empty without a connection."""
+        """Ids by which the present executive and simulator differ from earlier ones; empty without a connection."""
         link = self.system.link
         if link is None or link.view.driver is None:
             return {}

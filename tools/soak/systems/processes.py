@@ -1,4 +1,4 @@
-"""What /proc tells of the processes of a launched system."""
+"""What /proc shows of the processes of a launched system."""
 
 from __future__ import annotations
 
