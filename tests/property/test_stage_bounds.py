@@ -47,8 +47,13 @@ def assert_no_stage_costs_less(cost, chosen, lower, upper, inside) -> None:
         everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
         bound = stage_bound(stage, link, chosen)
         assert isinstance(bound, StageBound)
-        least = bound.within(whole, everywhere).lower_bound(before, own).item()
-        assert least <= stage.cost(inside[:, stage.columns]).min()
+        bounds = bound.within(whole, everywhere).lower_bounds(before, own)
+        cost_inside = stage.cost(inside[:, stage.columns])
+        samples = inside[:, stage.columns]
+        first, second = np.zeros((len(inside), before.lower.shape[1])), np.zeros((len(inside), own.lower.shape[1]))
+        first[:, link.before], second[:, link.own] = samples[:, link.from_before], samples[:, ~link.from_before]
+        linear = bounds.middle + (first - before.middle) @ bounds.before[0].T + (second - own.middle) @ bounds.own[0].T
+        assert (linear[:, 0] <= cost_inside).all()
         whole, before = everywhere, own
 
 
