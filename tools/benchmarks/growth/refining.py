@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tailor.executive.interfaces.models import Models
+from tailor.executive.shell import DELIBERATION_NS
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.growth.curve import Curve
 from tailor.tools.benchmarks.refinement.cases import LEGS, cases
@@ -14,7 +15,7 @@ from tailor.tools.benchmarks.refinement.refine import LONG_MS, QUICK_TASKS, TASK
 from tailor.tools.benchmarks.refinement.runners import ours
 from tailor.tools.learning.fresh_seeds import fresh_seed
 
-BUDGET_MS = 60.0
+BUDGET_MS = DELIBERATION_NS / 1e6
 LEAST_PCT = 0.01  # gaps are drawn on a logarithmic axis
 
 
