@@ -7,7 +7,7 @@ from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground.ground_formula import StaticWorld
 from tailor.executive.planning.ground.ground_task import GroundTask
-from tailor.executive.planning.ground_plans.extraction import extract
+from tailor.executive.planning.ground_plans.extraction import extract, schedule
 from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasures
 from tailor.executive.planning.ground_plans.open_conditions import refine_open
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, initial_plan
@@ -35,11 +35,13 @@ class GroundSpace:
         return initial_plan(self._task)
 
     def is_complete(self, plan: PartialPlan) -> bool:
-        """See `PlanSpace`; always true of a ground plan."""
-        return True
+        """See `PlanSpace`: whether there is a schedule in which no events interfere."""
+        return schedule(plan, self._task, self._world) is not None
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
-        """See `PlanSpace`."""
+        """See `PlanSpace`; a plan without flaws or schedule has no refinements."""
+        if plan.open is None and plan.threats is None:
+            return []
         flaw = self._orders[order].select(plan)
         if isinstance(flaw, OpenCondition):
             return refine_open(self._task, plan, flaw)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground_plans.extraction import Frame
+from tailor.executive.planning.ground_plans.separation import separated
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
@@ -18,6 +20,7 @@ from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
 
 
@@ -36,8 +39,9 @@ class LiftedSpace:
         return initial_plan(self._task)
 
     def is_complete(self, plan: LiftedPlan) -> bool:
-        """See `PlanSpace`: whether there is an object for every variable."""
-        return plan.bindings.completed() is not None
+        """See `PlanSpace`: whether there is an object for every variable, and a schedule without interference."""
+        bindings = plan.bindings.completed()
+        return bindings is not None and self._schedule(plan, _names(plan, bindings)) is not None
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
@@ -52,14 +56,16 @@ class LiftedSpace:
         """See `PlanSpace`; the bindings are lines as VHPOP prints them."""
         task, bindings = self._task, plan.bindings.completed()
         assert bindings is not None
-        names = tuple(
-            (schema.name, *(_value(bindings, (parameter.name, step)) for parameter in schema.parameters))
-            for step, schema in enumerate(plan.steps, 1)
-        )
-        frame = Frame(names, plan.orderings, task.first_node, task.moments, task.ground.grid)
+        names = _names(plan, bindings)
+        orderings = self._schedule(plan, names)
+        assert orderings is not None
+        frame = Frame(names, orderings, task.first_node, task.moments, task.ground.grid)
         order = {step.id: n for n, step in enumerate(frame.steps())}
         links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
         return frame.plan(task.ground.problem, links, plan.bindings.lines())
+
+    def _schedule(self, plan: LiftedPlan, names: tuple[Fact, ...]) -> Orderings | None:
+        return separated(plan.orderings, names, self._task.ground.problem.timed, self._task.world)
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
         cell = plan.links
@@ -67,6 +73,14 @@ class LiftedSpace:
             producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
             yield Link(producer, _ground(cell.literal, bindings), consumer)
             cell = cell.rest
+
+
+def _names(plan: LiftedPlan, bindings: Bindings) -> tuple[Fact, ...]:
+    """The actions of the steps."""
+    return tuple(
+        (schema.name, *(_value(bindings, (parameter.name, step)) for parameter in schema.parameters))
+        for step, schema in enumerate(plan.steps, 1)
+    )
 
 
 def _value(bindings: Bindings, term: str | tuple[str, int]) -> str:

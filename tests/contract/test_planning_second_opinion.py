@@ -1,6 +1,7 @@
 """A second opinion: the independent validator of kairos-planner accepts our plans and refuses what ours refuses."""
 
 import dataclasses
+from datetime import timedelta
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from tailor.executive import domains
 from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
 from tailor.schemas.installed import domain_names
+from tests.contract.random_temporal import random_task
 from tests.support.planning_problems import DATA, OWN, SHARED, read, solve
 from tests.unit.executive.planning.pddl.test_language import IRON, TIMED, WORKSHOP
 
@@ -101,6 +103,28 @@ def test_plans_of_random_durative_actions_are_sound_in_both_eyes(texts):
         if result.plan is not None and result.plan.steps:
             assert validate(result.plan, domain, problem) == ""
             assert accepted(texts, result.plan), format_plan(result.plan)
+
+
+BROKEN_ONCE = [0, 50, 168, 344, 384, 428, 484, 537, 582]  # plans with interfering events, false proofs
+RANDOM_TASKS = [(seed, costs) for seed in {*range(30), *BROKEN_ONCE} for costs in (False, True)]
+
+
+@pytest.mark.parametrize("ground", [True, False])
+def test_both_agree_on_random_problems_with_time(ground):
+    """Our plans are sound, and what no relaxed plan reaches is beyond the other planner as well."""
+    statuses = set()
+    for seed, costs in RANDOM_TASKS:
+        texts, tick_s = random_task(seed, costs)
+        result = solve(*(read(*texts)), Settings(node_limit=200, ground=ground, tolerance_s=tick_s))
+        statuses.add(result.status)
+        if result.plan is not None and result.plan.steps:
+            assert validate(result.plan, *read(*texts)) == "", seed
+            assert accepted(texts, result.plan), seed
+        elif "without delete effects" in result.reason:
+            domain = kairos.parse_domain(texts[0])
+            other = kairos.solve(domain, kairos.parse_problem(texts[1], domain), timeout=timedelta(seconds=0.2))
+            assert other.plan is None, seed
+    assert statuses >= {"solved", "unsolvable"}
 
 
 # --- exact time ------------------------------------------------------------------------------------

@@ -1,13 +1,15 @@
 """The additive heuristic on the relaxed planning graph: cost, work and makespan of reaching every literal.
 
-Source: Bonet & Geffner 2001; in plan space Younes & Simmons, JAIR 20 (2003), section 4.
+Source: Bonet & Geffner 2001; in plan space Younes & Simmons, JAIR 20 (2003), section 4. Actions count as wholes; where
+these reach no more, starts alone are tried: what an action changes at its start serves actions beside it, and its own
+end, before its later conditions hold.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from tailor.executive.planning.ground.ground_action import GroundAction, Span
@@ -103,12 +105,12 @@ def estimate(
             relaxed += 1
             if relaxed % PORTION == 0:
                 yield
-            if _relax(action, costs[action.number], values, changed):
+            if _relax(action, costs[action.number], values, changed) and action is actions[action.number]:
                 reached.setdefault(action.number)
         for literal, value in changed.items():
             values[literal] = value
         numbers = sorted({number for literal in changed for number in users[literal]})
-        pending = [actions[number] for number in numbers]
+        pending = [actions[number] for number in numbers] or _starts(actions, values)
     return Estimates(tuple(values), tuple(v.cost for v in values), tuple(v.work for v in values), tuple(reached))
 
 
@@ -128,6 +130,20 @@ def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: 
             # the makespan never rises, whichever achiever is the cheapest
             changed[effect.literal] = Value(value[0], value[1], min(value[2], old.makespan))
     return True
+
+
+def _starts(actions: Sequence[GroundAction], values: Sequence[Value]) -> list[GroundAction]:
+    """The starts of actions with later conditions, as far as they reach literals that whole actions do not."""
+    starts = []
+    for action in actions:
+        at_start = tuple([part for part in action.external_conditions if part[1][1] == 0])
+        if len(at_start) < len(action.external_conditions):
+            new = tuple([e for e in action.effects if e.moment == 0 and values[e.literal].cost == math.inf])
+            start = replace(action, external_conditions=at_start, effects=new)
+            reaches: dict[int, Value] = {}
+            if new and _relax(start, 0.0, values, reaches) and reaches:
+                starts.append(start)
+    return starts
 
 
 def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial, reduce
+from itertools import pairwise
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
@@ -35,9 +36,11 @@ class TimeGrid:
         """The nearest float to so many units in seconds."""
         return int(units) * self.unit_ns / NS_PER_S
 
-    def fits(self, time_s: float) -> bool:
-        """Whether a time is a multiple of the unit."""
-        return nanoseconds(time_s) % self.unit_ns == 0
+    def fits(self, times_s: Iterable[float]) -> bool:
+        """Whether times are multiples of the unit, and differ by the separation from the start and from each other."""
+        times_ns = [nanoseconds(time_s) for time_s in times_s]
+        apart = all(gap >= self.separation * self.unit_ns for gap in _gaps(times_ns))
+        return apart and all(time_ns % self.unit_ns == 0 for time_ns in times_ns)
 
     def units(self, time_s: float) -> int:
         """The nearest multiple of the unit to a time."""
@@ -55,14 +58,20 @@ class TimeGrid:
 def time_grid(tolerance_s: float, ranges_ns: Iterable[Range], times_s: Iterable[float]) -> TimeGrid:
     """The coarsest grid that holds the tolerance, all durations and the given times.
 
-    The separation is the tolerance, or the shortest action where that is shorter.
+    The separation is the tolerance, or the shortest action or least time between two given times (and the start) where
+    that is shorter.
     """
-    tolerance_ns = max(nanoseconds(tolerance_s), 1)
+    tolerance_ns, times_ns = max(nanoseconds(tolerance_s), 1), [nanoseconds(time_s) for time_s in times_s]
     ends = {time_ns for bounds in ranges_ns for time_ns in bounds if time_ns}
     longest = [bounds[1] for bounds in ranges_ns if bounds[1]]
-    separation_ns = min([tolerance_ns, *longest])
-    unit_ns = math.gcd(tolerance_ns, *ends, *map(nanoseconds, times_s))
+    separation_ns = min([tolerance_ns, *longest, *_gaps(times_ns)])
+    unit_ns = math.gcd(tolerance_ns, *ends, *times_ns)
     return TimeGrid(unit_ns, separation_ns // unit_ns)
+
+
+def _gaps(times_ns: Iterable[int]) -> Iterator[int]:
+    """The differences between the start and the given times, those of equal times left out."""
+    return (later - earlier for earlier, later in pairwise(sorted({0, *times_ns})))
 
 
 def exact(value: float) -> Fraction:

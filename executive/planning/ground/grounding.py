@@ -58,7 +58,7 @@ class GroundActions:
         """Whether these are ground actions of a problem, given its static world."""
         if self.tolerance_s != tolerance_s or self.world != world:
             return False
-        if not all(self.grid.fits(timed.time_s) for timed in problem.timed):
+        if not self.grid.fits(timed.time_s for timed in problem.timed):
             return False
         return self.reached is None or self.reached.issuperset(_fluents(problem, world))
 

@@ -16,6 +16,7 @@ from tailor.executive.planning.pddl.typed_lists import read_typed
 
 MAX_OBJECTS = 10_000
 MAX_TIMED = 200  # each is a node of every temporal network
+NANOSECOND_S = 1e-9  # times are whole nanoseconds; a literal at time 0 is one of the initial state
 _METRICS: dict[str, OneOf["makespan", "cost"]] = {
     "total-time": "makespan",
     "makespan": "makespan",
@@ -121,11 +122,18 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
         literal = _literal(form_of(form.items[2], "a literal"), scope)
         if TimedLiteral(time_s, replace(literal, positive=not literal.positive)) in draft.timed:
             raise form.place.error(f"{literal} and its opposite at the same time")
-        draft.timed.append(TimedLiteral(time_s, literal))
+        if time_s < NANOSECOND_S:
+            _enter(literal, draft)
+        else:
+            draft.timed.append(TimedLiteral(time_s, literal))
     else:
-        literal = _literal(form, scope)
-        if literal.positive:
-            draft.initial.setdefault(literal.fact)
+        _enter(_literal(form, scope), draft)
+
+
+def _enter(literal: Literal, draft: _Draft) -> None:
+    """Enters a literal of the initial state, where all else is false."""
+    if literal.positive:
+        draft.initial.setdefault(literal.fact)
 
 
 def _is_timed(form: Form) -> bool:
