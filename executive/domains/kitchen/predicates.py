@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
-from tailor.executive.domains.kitchen import places
+from tailor.executive.belief.angles import difference
+from tailor.executive.domains.kitchen import places, robot
+from tailor.executive.domains.kitchen.action_library import ASIDE_RAD
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.interfaces.domain import LabelQuery
 from tailor.executive.interfaces.values import Interval
@@ -23,7 +26,21 @@ def value(query: LabelQuery) -> Interval | None:
         return _stand(query).get(query.quantity)
     if query.quantity == "out":
         return OUT if ("open", query.label) in query.achieved or not query.belief.arm_is_home else IN
+    if query.quantity == "aside":
+        return _aside(query)
     return _spot(query).get(query.quantity)
+
+
+def _aside(query: LabelQuery) -> Interval | None:
+    """Where an arm that is out over the place points, as well as it can; elsewhere it would have to swing first."""
+    if query.belief.arm_is_home or ("robot-at", query.label) not in query.holds:
+        return None
+    spot = _spot(query)
+    x, y = (0.5 * (spot[name].lower + spot[name].upper) for name in ("spot_x", "spot_y"))
+    ahead, left = query.belief.in_base(x, y)
+    c, s, _ = robot.ARM.forward(query.belief.angles).turn[0]
+    aside = difference(math.atan2(s, c), math.atan2(left, ahead - robot.AHEAD_M))
+    return Interval(*(max(-ASIDE_RAD, min(ASIDE_RAD, aside)),) * 2)
 
 
 def _stand(query: LabelQuery) -> Mapping[str, Interval]:

@@ -64,8 +64,7 @@ class KitchenSampler:
         elif action.name == "grip":
             start |= {f"{CUP}_x": others[0], f"{CUP}_y": others[1], f"{CUP}_phi": arguments[HANDLE].item()}
         if action.name != "reach" and arguments[OUT] > 0.5:
-            over = Hand(OVER_M, BACK_M if action.name == "grip" else (0.0,))
-            angles = over(KitchenBelief(pose=_exact(start)), arguments)
+            angles = Hand(OVER_M, BACK_M)(KitchenBelief(pose=_exact(start)), arguments)
             start |= {} if angles is None else dict(zip(JOINTS, angles, strict=True))
         return start
 

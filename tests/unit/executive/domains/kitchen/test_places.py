@@ -138,3 +138,16 @@ def test_scenarios_differ_with_the_seed():
     starts = [domains.load_scenario("kitchen", "one-cup", np.random.default_rng(seed))[1] for seed in (1, 2, 1)]
     assert starts[0] != starts[1]
     assert starts[0] == starts[2]
+
+
+def test_an_arm_that_is_out_points_where_it_points():
+    """Aside of the line from shoulder to cup: it would have to swing to point elsewhere, as no model knows."""
+    x, y = on_table1()
+    standing = believed(cup(x, y), pose=(-1.4, y, math.pi))
+    ahead, left = standing.in_base(x, y)
+    reached = replace(standing, angles=robot.angles_for(robot.level_hand(ahead, left, robot.GRASP_M + 0.07, 0.2, 0.12)))
+    here = (("robot-at", "table1"), ("cup-at", "cup1", "table1"))
+    assert query("aside", "table1", standing, here) is None
+    bound = query("aside", "table1", reached, here)
+    assert bound.lower == bound.upper == pytest.approx(0.2, abs=0.01)
+    assert query("aside", "table2", reached, (("free", "table2"),)) is None
