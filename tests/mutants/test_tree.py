@@ -26,7 +26,8 @@ MUTANTS = {
 
 
 @pytest.fixture
-def tree(tmp_path):
+def tree(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # the function's tests need none, and loading takes long
     project = tmp_path / "project"
     project.mkdir()
     (project / "code_under_test.py").write_text(CODE)
