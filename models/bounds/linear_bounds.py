@@ -6,7 +6,7 @@ of a box share one relaxation of the networks, over the smallest box of features
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,11 +96,14 @@ def _fragments(piece: Piece, middle: Spans, shape: Shape) -> _Fragments:
     possible = np.broadcast_to(piece.possible, shape).reshape(shape[0], -1)
     pairs = np.flatnonzero(possible.any(axis=0))
 
-    def flat(values: Iterable[Array | float]) -> Array:
-        return np.stack([np.broadcast_to(each, shape).reshape(shape[0], -1)[:, pairs] for each in values])
+    def flat(values: Sequence[Array | float]) -> Array:
+        filled = np.empty((len(values), *shape))
+        for row, each in zip(filled, values, strict=True):
+            row[...] = each  # np.broadcast_to takes ten times as long
+        return filled.reshape(len(values), shape[0], -1)[:, :, pairs]
 
     spans, homes = [term.span for term in piece.terms], [_home(term, middle) for term in piece.terms]
-    sign = flat(0.0 if term.argument is None else term.sign for term in piece.terms)[:, 0]
+    sign = flat([0.0 if term.argument is None else term.sign for term in piece.terms])[:, 0]
     lower, upper, *home = (flat(ends) for spans in (spans, homes) for ends in _ends(spans))
     return _Fragments(pairs, possible[:, pairs], lower, upper, sign, Span(*home))
 

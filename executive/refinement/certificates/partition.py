@@ -26,4 +26,4 @@ def partition(subgoals: int, linear: bool) -> Partition:
     """Partition for a number of subgoals with free parameters; `linear`: all their bounds are linear."""
     if subgoals == 1:
         return ONE
-    return Partition(3, 2, 4, (5.0, 2.0), PATIENCE * subgoals) if linear else PAIRS
+    return Partition(3, 4, 8, (5.0, 2.0), PATIENCE * subgoals) if linear else PAIRS
