@@ -152,17 +152,17 @@ def ground(
             return ground(part, binding, world, facts, not positive)
         case And(parts) | Or(parts):
             grounded = (ground(part, binding, world, facts, positive) for part in parts)
-            return _consistent(conjunction(grounded)) if isinstance(formula, And) == positive else disjunction(grounded)
+            return consistent(conjunction(grounded)) if isinstance(formula, And) == positive else disjunction(grounded)
         case Quantified(every, variables, part):
             choices = bindings(variables, binding, world)
             grounded = (ground(part, inner, world, facts, positive) for inner in choices)
             facts.limit.depth += 1
-            joined = _consistent(conjunction(grounded)) if every == positive else disjunction(grounded)
+            joined = consistent(conjunction(grounded)) if every == positive else disjunction(grounded)
             facts.limit.depth -= 1
             return joined
 
 
-def _consistent(condition: GroundCondition) -> GroundCondition:
+def consistent(condition: GroundCondition) -> GroundCondition:
     """The condition, or FALSE if it is a conjunction of a literal and its negation among others."""
     if isinstance(condition, Conjunction) and contradictory(condition.parts):
         return FALSE

@@ -14,9 +14,9 @@ from tailor.executive.planning.ground.ground_formula import (
     GroundCondition,
     GroundingLimit,
     contradictory,
-    ground,
 )
 from tailor.executive.planning.ground.grounding import GroundActions
+from tailor.executive.planning.ground.portions import ground_in_portions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
@@ -47,7 +47,7 @@ class GroundTask:
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> Generator[None, None, GroundTask]:
     """The task of a problem, given the ground actions of its static world; yields as a unit of budget is used."""
     facts = FactTable(grounded.facts, GroundingLimit(subject="the goal"))
-    goal = conjuncts(ground(problem.goal, {}, grounded.world, facts))
+    goal = conjuncts((yield from ground_in_portions(problem.goal, grounded.world, facts)))
     if contradictory(goal):
         goal = (FALSE,)
     holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
