@@ -74,26 +74,38 @@ def test_a_routers_threads_are_not_starved_by_ordinary_work():
     assert {policy for name, policy in policies.items() if name != "python"} == {os.SCHED_FIFO}
 
 
-def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds():
-    """Such as an abandoned search: its generator refers to itself."""
+class Search:
+    """Refers to itself through its generator, as searches do."""
 
-    class Search:
-        def __init__(self):
-            self.work = self.steps()
-            next(self.work)
+    def __init__(self):
+        self.work = self.steps()
+        next(self.work)
 
-        def steps(self):
-            yield self
+    def steps(self):
+        yield self
 
+
+@pytest.fixture
+def old_search():
+    """A reference to an abandoned search that earlier collections have passed on, without the automatic collection."""
     gc.disable()
-    try:
-        search = Search()
-        for tick in range(1, 20):
-            collect_garbage(tick)
-        abandoned = weakref.ref(search)
-        del search
-        for tick in range(20, 20 + OLD_TICKS):
-            collect_garbage(tick)
-        assert abandoned() is None
-    finally:
-        gc.enable()
+    search = Search()
+    for tick in range(1, 20):
+        collect_garbage(tick)
+    abandoned = weakref.ref(search)
+    del search
+    yield abandoned
+    gc.enable()
+
+
+def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds(old_search):
+    for tick in range(20, 20 + OLD_TICKS):
+        collect_garbage(tick)
+    assert old_search() is None
+
+
+def test_abandoned_work_is_collected_after_its_tick(old_search):
+    collect_garbage(20)
+    assert old_search() is not None
+    collect_garbage(21, abandoned=True)
+    assert old_search() is None
