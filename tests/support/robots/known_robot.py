@@ -48,7 +48,7 @@ def _forget() -> None:
         typesystem.message_types,
         typesystem.own_types,
         typesystem.typestore,
-        typesystem.type_of,
+        typesystem._types_by_name,
         codec._codec,
         codec._limit,
         converters,
