@@ -9,14 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, box_of
-from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
-from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.refinement.cases import Case, cases
 
@@ -50,13 +47,8 @@ def assert_no_stage_costs_less(cost, chosen, lower, upper, inside) -> None:
         everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
         bound = stage_bound(stage, link, chosen)
         assert isinstance(bound, StageBound)
-        bounds = bound.within(whole, everywhere).lower_bounds(before, own)
-        cost_inside = stage.cost(inside[:, stage.columns])
-        samples = inside[:, stage.columns]
-        first, second = np.zeros((len(inside), before.lower.shape[1])), np.zeros((len(inside), own.lower.shape[1]))
-        first[:, link.before], second[:, link.own] = samples[:, link.from_before], samples[:, ~link.from_before]
-        linear = bounds.middle + (first - before.middle) @ bounds.before[0].T + (second - own.middle) @ bounds.own[0].T
-        assert (linear[:, 0] <= cost_inside).all()
+        least = bound.within(whole, everywhere).lower_bound(before, own).item()
+        assert least <= stage.cost(inside[:, stage.columns]).min()
         whole, before = everywhere, own
 
 
@@ -70,16 +62,3 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, ta
     share = rng.choice([0.0, 1.0, 0.5, np.nan], (400, cost.ranges.count))
     inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
     assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
-
-
-def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models):
-    chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
-    cost = cases(models, 2)["8 free"][1].objective(models, chosen)
-    solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
-    solver.advance(CheckBudget(25))
-    assert solver.best is not None
-    proof = certificate(cost, solver.best, chosen)
-    assert isinstance(proof, Certificate)
-    proof.advance(CheckBudget(45))
-    assert proof.gap_pct is not None
-    assert proof.gap_pct <= 5.0 + 1e-9

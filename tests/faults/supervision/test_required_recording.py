@@ -43,8 +43,8 @@ def test_nothing_moves_when_its_recording_cannot_be_written(tries, load, place, 
             done = subprocess.run(command, capture_output=True, text=True, timeout=2 * PATIENCE_S, cwd=ROOT)
             lines = done.stdout.splitlines()
             assert done.returncode == 1
-            assert lines[0] == "record ended with 2; not started again", "and no line of an executive"
-            assert lines[1].startswith(f"tailor record: {path.removesuffix('/run.mcap')}")
+            assert lines[0].startswith(f"tailor record: {path.removesuffix('/run.mcap')}")
+            assert lines[1] == "record ended with 2; not started again", "and no line of an executive"
             assert lines[2:] == ["failed: the recorder did not start"], "nothing else has printed anything"
 
 
