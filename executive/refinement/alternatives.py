@@ -49,7 +49,7 @@ def alternatives(objective: SequenceObjective, chosen: Array, count: int = 73) -
     durations_s = np.empty((free, len(objective.stages), count))
     total_s = np.zeros((free, count))
     for index, stage in enumerate(objective.stages):
-        varied = candidates[stage.columns].reshape(-1, free)
+        varied = candidates[stage.columns].reshape(len(stage.columns) * count, free)
         prediction = stage.predict(np.vstack([chosen, varied])[:, stage.columns])
         durations_s[:, index] = _along(stage.columns, prediction.duration_s, total_s.shape)
         total_s += _along(stage.columns, stage.cost_of(prediction), total_s.shape)
@@ -60,5 +60,5 @@ def alternatives(objective: SequenceObjective, chosen: Array, count: int = 73) -
 def _along(columns: NDArray[np.intp], predicted: Array, shape: tuple[int, int]) -> Array:
     """Predictions for all free variables, shape (d, n), from those for the chosen values and along `columns`."""
     spread = np.full(shape, predicted[0])
-    spread[columns] = predicted[1:].reshape(len(columns), -1)
+    spread[columns] = predicted[1:].reshape(len(columns), shape[1])
     return spread

@@ -14,7 +14,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
-from tests.support.synthetic_models import MODELS, approach_dribble
+from tests.support.synthetic_models import GO, MODELS, approach_dribble, sequence
 
 SETTINGS = RefinementSettings(k_std=0.0, gain_k_std=0.0, arrival_spread=(), risk_cost_s=0.0)
 
@@ -42,9 +42,17 @@ def test_greedy_alternative_is_what_horizon_one_chooses():
     assert predicted.best != pytest.approx(predicted.greedy, abs=0.05)
 
 
-def test_alternatives_are_those_of_each_candidate_predicted_alone():
-    given = approach_dribble()
-    objective = _objective(given, SETTINGS)
+PLACES = [{"x": 0.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 1.0, "phi": 0.5, "v": 0.0}, {"x": 2.0, "y": 0.0}]
+END = {"x": 3.0, "y": 1.0, "phi": 0.5, "v": 0.0}
+
+
+@pytest.mark.parametrize(
+    "given",
+    [approach_dribble(), sequence([GO] * 3, [*PLACES, END]), sequence([GO], PLACES[:2])],
+    ids=["two free", "the first action depends on none", "nothing free"],
+)
+def test_alternatives_are_those_of_each_candidate_predicted_alone(given):
+    objective = _objective(given, replace(SETTINGS, horizon=3))
     chosen = objective.ranges.lower + 0.3 * objective.ranges.width
     for column, predicted in enumerate(alternatives(objective, chosen, 9)):
         for index, value in enumerate(predicted.values):
