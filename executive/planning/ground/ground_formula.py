@@ -150,19 +150,30 @@ def ground(
             return TRUE if (binding.get(left, left) == binding.get(right, right)) == positive else FALSE
         case Not(part):
             return ground(part, binding, world, facts, not positive)
-        case And(parts) | Or(parts):
-            grounded = (ground(part, binding, world, facts, positive) for part in parts)
-            return consistent(conjunction(grounded)) if isinstance(formula, And) == positive else disjunction(grounded)
-        case Quantified(every, variables, part):
-            choices = bindings(variables, binding, world)
-            grounded = (ground(part, inner, world, facts, positive) for inner in choices)
-            facts.limit.depth += 1
-            joined = consistent(conjunction(grounded)) if every == positive else disjunction(grounded)
-            facts.limit.depth -= 1
-            return joined
+    every, pairs = operands(formula, binding, world, positive)
+    quantifiers = isinstance(formula, Quantified)
+    facts.limit.depth += quantifiers
+    condition = joined(every, (ground(part, inner, world, facts, positive) for part, inner in pairs))
+    facts.limit.depth -= quantifiers
+    return condition
 
 
-def consistent(condition: GroundCondition) -> GroundCondition:
+def operands(
+    formula: And | Or | Quantified, binding: Binding, world: StaticWorld, positive: bool
+) -> tuple[bool, Iterator[tuple[Formula, Binding]]]:
+    """Whether every part must hold, else some part; and the parts with their bindings."""
+    if isinstance(formula, Quantified):
+        part = formula.part
+        return formula.every == positive, ((part, inner) for inner in bindings(formula.variables, binding, world))
+    return isinstance(formula, And) == positive, ((part, binding) for part in formula.parts)
+
+
+def joined(every: bool, conditions: Iterable[GroundCondition]) -> GroundCondition:
+    """The conjunction, if `every`, or disjunction; the conditions are taken up to the first that decides it."""
+    return _consistent(conjunction(conditions)) if every else disjunction(conditions)
+
+
+def _consistent(condition: GroundCondition) -> GroundCondition:
     """The condition, or FALSE if it is a conjunction of a literal and its negation among others."""
     if isinstance(condition, Conjunction) and contradictory(condition.parts):
         return FALSE

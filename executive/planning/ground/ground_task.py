@@ -9,6 +9,7 @@ from typing import Literal as OneOf
 from tailor.executive.planning.ground.achievers import Achiever, achievers_of
 from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
 from tailor.executive.planning.ground.durations import TimeGrid
+from tailor.executive.planning.ground.goal_grounding import ground_in_portions
 from tailor.executive.planning.ground.ground_formula import (
     FactTable,
     GroundCondition,
@@ -16,7 +17,6 @@ from tailor.executive.planning.ground.ground_formula import (
     contradictory,
 )
 from tailor.executive.planning.ground.grounding import GroundActions
-from tailor.executive.planning.ground.portions import ground_in_portions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts

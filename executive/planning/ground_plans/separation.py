@@ -88,7 +88,7 @@ def _events(name: Fact, world: StaticWorld) -> tuple[Event, Event]:
 
 
 def _event(schema: Action, binding: Binding, world: StaticWorld, moments: tuple[str, ...]) -> Event:
-    reads = {fact for c in schema.conditions if c.when in moments for fact in _facts(c.formula, binding, world)}
+    reads = _read(schema.conditions, binding, world, moments)
     changes: tuple[set[Fact], set[Fact]] = set(), set()
     for effect in schema.effects:
         for inner in bindings(effect.variables, binding, world):

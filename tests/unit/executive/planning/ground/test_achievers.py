@@ -3,6 +3,7 @@
 from tailor.executive.planning.ground.achievers import SIZES
 from tailor.executive.planning.ground.ground_task import make_task
 from tailor.executive.planning.ground.grounding import ground_actions, static_world
+from tailor.executive.planning.plans.portions import completed_work
 from tests.support.planning_problems import read
 
 DOMAIN = """(define (domain d) (:requirements :typing) (:types lamp)
@@ -11,22 +12,13 @@ DOMAIN = """(define (domain d) (:requirements :typing) (:types lamp)
   (:action switch :parameters (?l - lamp) :precondition (power) :effect (and (light) (lit ?l) (not (dark ?l)))))"""
 
 
-def returned(work):
-    """What a generator returns."""
-    while True:
-        try:
-            next(work)
-        except StopIteration as end:
-            return end.value
-
-
 def achievers(lamps):
     """Of (light)."""
     objects = " ".join(f"l{n:03}" for n in range(lamps))
     parts = f"(:objects {objects} - lamp) (:init (power)) (:goal (light))"
     _, problem = read(DOMAIN, f"(define (problem p) (:domain d) {parts})")
     *_, grounded = ground_actions(problem, static_world(problem), 0.01, 10_000)
-    task = returned(make_task(problem, grounded))
+    task = completed_work(make_task(problem, grounded))
     number = next(n for n, name in enumerate(task.names) if name.positive and name.fact == ("light",))
     return [(action.name[0], int(action.name[1][1:])) for action, _ in task.achievers[number]]
 

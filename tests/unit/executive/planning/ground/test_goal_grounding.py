@@ -3,6 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tailor.executive.planning.ground.goal_grounding import PORTION_PARTS, ground_in_portions
 from tailor.executive.planning.ground.ground_formula import (
     FactTable,
     GroundingLimit,
@@ -10,8 +11,8 @@ from tailor.executive.planning.ground.ground_formula import (
     TooMuchToGround,
     ground,
 )
-from tailor.executive.planning.ground.portions import PORTION_PARTS, ground_in_portions
 from tailor.executive.planning.pddl.language import And, Atom, Domain, Equal, Not, Or, Quantified, Typed
+from tailor.executive.planning.plans.portions import completed_work
 
 THINGS = tuple(f"thing{n}" for n in range(5))
 VARIABLES = ("?a", "?b")
@@ -50,14 +51,6 @@ formulas = st.recursive(
 )
 
 
-def ended(work):
-    while True:
-        try:
-            next(work)
-        except StopIteration as end:
-            return end.value
-
-
 @given(formulas, st.integers(10, 200))
 def test_portions_yield_the_condition_the_facts_and_the_limit_of_one_go(formula, steps):
     closed = quantified(True, VARIABLES, formula)
@@ -67,7 +60,7 @@ def test_portions_yield_the_condition_the_facts_and_the_limit_of_one_go(formula,
     except TooMuchToGround as limit:
         expected = str(limit)
     try:
-        condition = ended(ground_in_portions(closed, WORLD, parts))
+        condition = completed_work(ground_in_portions(closed, WORLD, parts))
     except TooMuchToGround as limit:
         condition = str(limit)
     assert condition == expected
