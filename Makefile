@@ -47,7 +47,7 @@ test-packages: setup  # new robots, the tutorial and foreign packages, from the 
 	$(BIN)/python -m pytest tests/e2e/packages
 
 test-new-robots: setup  # of those a new robot of each kind and one foreign package: 4 minutes
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
+	$(BIN)/python -m pytest tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew

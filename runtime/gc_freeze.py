@@ -19,7 +19,7 @@ def gc_frozen() -> Iterator[None]:
 
 @contextmanager
 def gc_disabled() -> Iterator[None]:
-    """No collections inside the block: for one that makes many objects, and no cycles."""
+    """No automatic collections inside the block: for one that collects itself, or makes many objects and no cycles."""
     enabled = gc.isenabled()
     gc.disable()
     try:

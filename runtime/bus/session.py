@@ -11,7 +11,7 @@ from typing import Any
 import zenoh
 
 from tailor.runtime.bus.attachment import SENDER_BYTES
-from tailor.runtime.bus.encoding import NAMED_CDR, encoding_of
+from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
@@ -111,7 +111,7 @@ class Session:
         """
         if not _is_one_key(key):
             raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
-        topic, encoding = topic_at(key), f"{NAMED_CDR}{ros_type}" if ros_type else None
+        topic, encoding = topic_at(key), encoding_named(ros_type) if ros_type else None
         known = topic is not None and encoding == encoding_of(topic.type)
         keys = self._keys_of(topic, key) if topic is not None and known else [(key, encoding)]
         declared = [

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from tailor.runtime.bus.encoding import encoding_named
 from tailor.schemas.ros2.graph import Named
+from tailor.schemas.ros2.profiles import BARE
 from tailor.schemas.typesystem import hash_of
 from tailor.simnodes.hardware.plain_settings import RobotBus
 
@@ -20,5 +22,5 @@ def named(topic: str, ros_type: str) -> Named:
 def address(bus: RobotBus, topic: Named) -> tuple[str, str]:
     """Key and encoding of a topic under the profile and in the ROS domain of the robot's bus."""
     if bus.profile == "rmw_zenoh":
-        return topic.key(bus.domain_id), "application/cdr"
-    return topic.name, f"application/cdr;{topic.type}"  # as zenoh-bridge-ros2dds routes it
+        return topic.key(bus.domain_id), BARE
+    return topic.name, encoding_named(topic.type)  # as zenoh-bridge-ros2dds routes it

@@ -15,7 +15,7 @@ from rosbags.highlevel import AnyReader
 
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.bus.encoding import NAMED_CDR
+from tailor.runtime.bus.encoding import encoding_named
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.recordings.mcap.writer import McapWriter
@@ -46,7 +46,7 @@ def rewritten(source, target, change):
         changed = change(decoded(recorded))
         data = recorded.data if changed is None else encode(changed)
         attachment = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender))
-        tape.write(Raw(recorded.key, data, attachment, NAMED_CDR + recorded.ros_type, True, None), recorded.log_ns)
+        tape.write(Raw(recorded.key, data, attachment, encoding_named(recorded.ros_type), True, None), recorded.log_ns)
     tape.close()
     return target
 

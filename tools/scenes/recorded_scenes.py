@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.bus.encoding import NAMED_CDR, encoding_of
+from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import Recorded, open_recording
@@ -57,7 +57,7 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
 
 def _raw(recorded: Recorded) -> Raw:
     origin = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender)) if recorded.sender else None
-    return Raw(recorded.key, recorded.data, origin, f"{NAMED_CDR}{recorded.ros_type}", True, None)
+    return Raw(recorded.key, recorded.data, origin, encoding_named(recorded.ros_type), True, None)
 
 
 def _decoded(recorded: Recorded) -> Message | None:

@@ -1,6 +1,5 @@
 """Privileges of a real-time process, in a process of its own."""
 
-import gc
 import json
 import os
 import subprocess
@@ -9,11 +8,13 @@ import weakref
 
 import pytest
 
+from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import OLD_TICKS, collect_garbage
 from tests.support.bus_system import free_endpoint
 
 REPORT = """
 import gc, json, os
+from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import prepare
 before = {"policy": os.sched_getscheduler(0)}
 granted = prepare()
@@ -88,14 +89,13 @@ class Search:
 @pytest.fixture
 def old_search():
     """A reference to an abandoned search that earlier collections have passed on, without the automatic collection."""
-    gc.disable()
-    search = Search()
-    for tick in range(1, 20):
-        collect_garbage(tick)
-    abandoned = weakref.ref(search)
-    del search
-    yield abandoned
-    gc.enable()
+    with gc_disabled():
+        search = Search()
+        for tick in range(1, 20):
+            collect_garbage(tick)
+        abandoned = weakref.ref(search)
+        del search
+        yield abandoned
 
 
 def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds(old_search):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.bus.encoding import NAMED_CDR
+from tailor.runtime.bus.encoding import encoding_named
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
@@ -39,7 +39,7 @@ def written(path, messages, extra=()):
     rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(extra)]
     for n, (key, data, sender, sequence, kind) in enumerate(rows):
         attachment = pack(Origin(sequence, 10 + n, sender)) if sender else None
-        tape.write(Raw(key, data, attachment, NAMED_CDR + kind, True, None), 10 + n)
+        tape.write(Raw(key, data, attachment, encoding_named(kind), True, None), 10 + n)
     tape.close()
     return path
 

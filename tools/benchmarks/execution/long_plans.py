@@ -6,7 +6,6 @@ collected between the ticks, as in the live loop.
 
 from __future__ import annotations
 
-import gc
 import time
 from dataclasses import dataclass, field
 
@@ -19,6 +18,7 @@ from tailor.executive.core.step import control, deliberate
 from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget
+from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import collect_garbage
 from tailor.schemas.codec import encode, prime
 from tailor.schemas.messages import DriverState, Odometry, PlanReport, Sample
@@ -68,11 +68,8 @@ def porter_context(cups: int, settings: Settings) -> Context:
 
 def drive(cups: int, settings: Settings, max_ticks: int | None = None) -> Course:
     """Run the task to its end, or for `max_ticks`; without automatic collection of garbage, as in the live loop."""
-    gc.disable()
-    try:
+    with gc_disabled():
         return _driven(porter_context(cups, settings), cups, max_ticks or MAX_TICKS_PER_STEP * 4 * cups)
-    finally:
-        gc.enable()
 
 
 def _driven(context: Context, cups: int, max_ticks: int) -> Course:

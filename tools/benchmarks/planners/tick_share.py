@@ -26,6 +26,7 @@ from tailor.executive.core.state import Output
 from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget
+from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import collect_garbage
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
@@ -38,11 +39,8 @@ SECONDS, QUICK_SECONDS = 60.0, 8.0
 def shares(domain: str, scenario: str, seconds: float) -> list[float]:
     """Share of planning in each tick of one run, in percent of the tick."""
     gc.collect()
-    gc.disable()
-    try:
+    with gc_disabled():
         return _shares(domain, scenario, seconds)
-    finally:
-        gc.enable()
 
 
 def _shares(domain: str, scenario: str, seconds: float) -> list[float]:

@@ -11,6 +11,7 @@ from mcap.writer import Writer
 from rosbags.highlevel import AnyReader
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap import chunk_index_spool
 from tailor.runtime.recordings.mcap.chunk_index_spool import CHUNK_INDEXES, ChunkIndexSpool
@@ -19,7 +20,6 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Odometry
 from tailor.schemas.own import example
-from tailor.schemas.typesystem import ros_type
 
 S = 1_000_000_000
 PAYLOAD = encode(example(Odometry))
@@ -38,7 +38,7 @@ def write(path, chunks):
 def add_chunk(writer, number):
     for key in KEYS:
         origin = pack(Origin(number, number, "ab" * 16))
-        writer.write(Raw(key, PAYLOAD, origin, f"application/cdr;{ros_type(Odometry)}", True, None), number * S)
+        writer.write(Raw(key, PAYLOAD, origin, encoding_of(Odometry), True, None), number * S)
     writer.flush()
 
 

@@ -7,6 +7,7 @@ import pytest
 from mcap.reader import make_reader
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import OTHER_KEYS, IngestQueue
 from tailor.runtime.recordings.mcap import channel_table
@@ -30,7 +31,7 @@ def sender(number):
 
 
 def odometry(number, key="agilo/odom", by=0):
-    encoding = f"application/cdr;{ros_type(Odometry)}"
+    encoding = encoding_of(Odometry)
     return Raw(key, ODOMETRY, pack(Origin(number, number, sender(by))), encoding, True, number + S)
 
 
@@ -70,9 +71,7 @@ def test_a_flood_of_senders_on_one_key_leaves_other_keys_their_senders(tmp_path)
 
 
 def test_types_of_one_key_do_not_share_a_channel(tmp_path):
-    driver = Raw(
-        "agilo/odom", DRIVER, pack(Origin(1, 1, sender(999))), f"application/cdr;{ros_type(DriverState)}", True, S
-    )
+    driver = Raw("agilo/odom", DRIVER, pack(Origin(1, 1, sender(999))), encoding_of(DriverState), True, S)
     recorded(tmp_path / "r.mcap", [*(odometry(number, by=number) for number in range(1, 301)), driver])
     *_, before, last = open_recording(tmp_path / "r.mcap").messages()
     assert (before.ros_type, before.sender) == (ros_type(Odometry), "")

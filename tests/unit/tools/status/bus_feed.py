@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.topics import TOPICS, key_of
-from tailor.schemas.typesystem import ros_type
 from tailor.tools.status.picture import Picture
 from tailor.tools.status.system_model import SystemModel
 
@@ -15,7 +15,7 @@ EXECUTIVE, DRIVER, OTHER = "ab" * 16, "cd" * 16, "ef" * 16
 
 
 def raw_of(key: str, message: m.Message, sender: str = DRIVER, sequence: int = 1) -> Raw:
-    encoding = f"application/cdr;{ros_type(type(message))}"
+    encoding = encoding_of(type(message))
     return Raw(key, encode(message), pack(Origin(sequence, 0, sender)), encoding, True, None)
 
 

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
-from tailor.schemas.typesystem import ros_type
 from tailor.tools.viewer.columns import packed
 from tailor.tools.viewer.recorded_messages import recorded_events
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -85,7 +85,7 @@ def test_odometry_is_read_only_where_nothing_better_is_recorded(robots_pose, tmp
     odometry = [(0.1 * i, "agilo/odom", m.Odometry(0, 1.0, 2.0, 0.0, 0.1 * i, 0.0)) for i in range(5)]
     others = [(t.time_ns / 1e9, t.key, t.message) for t in synthetic_run.soccer_run()] if robots_pose else []
     for number, (at_s, key, message) in enumerate([*odometry, *others]):
-        kind = f"application/cdr;{ros_type(type(message))}"
+        kind = encoding_of(type(message))
         origin = pack(Origin(number, 0, synthetic_run.SENDER))
         writer.write(Raw(key, encode(message), origin, kind, True, None), 10**18 + int(1e9 * at_s))
     writer.close()

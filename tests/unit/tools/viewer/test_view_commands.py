@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.typesystem import ros_type
 from tailor.tools.commands.look import view, why
 from tests.support import synthetic_run
 
@@ -28,7 +28,7 @@ def recording(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("recordings") / "run.mcap"
     writer = McapWriter(path, {})
     for number, t in enumerate(synthetic_run.soccer_run()):
-        kind = f"application/cdr;{ros_type(type(t.message))}"
+        kind = encoding_of(type(t.message))
         origin = pack(Origin(number, BEGIN_NS, synthetic_run.SENDER))
         writer.write(Raw(t.key, encode(t.message), origin, kind, True, None), BEGIN_NS + t.time_ns)
     writer.close()

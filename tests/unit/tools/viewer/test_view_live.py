@@ -10,12 +10,12 @@ from contextlib import contextmanager
 import pytest
 
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.typesystem import ros_type
 from tailor.tools.viewer import server
 from tailor.tools.viewer.broadcast import MAX_WAITING, EventBroadcast
 from tailor.tools.viewer.bus_listener import BusListener
@@ -30,7 +30,7 @@ def tick(at_s: float) -> Event:
 
 def raw(message: m.Message, key: str = "exec/status", sender: str = "ab" * 16, wall_ns: int = 10**18) -> Raw:
     attachment = pack(Origin(1, 0, sender))
-    return Raw(key, encode(message), attachment, f"application/cdr;{ros_type(type(message))}", True, wall_ns)
+    return Raw(key, encode(message), attachment, encoding_of(type(message)), True, wall_ns)
 
 
 def status(mode: str = "READY") -> m.ExecStatus:
