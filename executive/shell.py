@@ -78,7 +78,6 @@ class Shell:
         self._notifier.ready()
         try:
             while True:
-                begun = self._state.deliberations
                 period = loop.wait_for_next_period()
                 stopping = until(self._state)
                 self._tick(period, goal, stopping)
@@ -87,7 +86,7 @@ class Shell:
                 if stopping:
                     self._notifier.stopping()
                     return self._state
-                realtime.collect_garbage(self._state.tick, abandoned=self._state.deliberations > begun)
+                realtime.collect_garbage(self._state.tick)
         finally:
             self._planner.close()
 

@@ -19,6 +19,7 @@ BUS_PRIORITY = 40  # below the loop: a flood on the bus must not delay a tick
 DRIVER_PRIORITY = 45
 YOUNG, OLD = 1, 2  # generations of the garbage collector; an older one contains the younger ones
 OLD_TICKS = 100
+MAX_OLD_OBJECTS = 20_000  # visited in 10 ms; a search among two cups holds 300 000: 140 ms
 _BUS_THREAD = re.compile(r"(app|net|acc|tx|rx)-\d+")  # zenoh's runtimes
 
 
@@ -45,18 +46,18 @@ def prepare(priority: int = PRIORITY) -> dict[str, Any]:
     }
 
 
-def collect_garbage(tick: int, abandoned: bool = False) -> None:
+def collect_garbage(tick: int) -> None:
     """Collect garbage. Call it after the work of each tick, so that no collection interrupts a tick.
 
-    Every tenth second also that of objects which have survived earlier collections. What was loaded before `prepare` is
-    frozen, so that this takes milliseconds.
+    Every tenth second also that of objects which have survived earlier collections, unless so many are alive, e.g. of
+    a search that goes on, that to visit them would delay the next tick. What was loaded before `prepare` is frozen, so
+    that this takes milliseconds. Work that a tick abandons must not wait for it: searches and proofs hold no cycles.
 
     Args:
       tick: Number of the tick.
-      abandoned: Whether the tick left long-lived work behind, e.g. a search, whose generator refers to itself: collect
-        everything now. Abandoned searches that lay side by side for ten seconds took 20 MB, one at a time takes 3 MB.
     """
-    gc.collect(OLD if abandoned or tick % OLD_TICKS == 0 else YOUNG)
+    old = tick % OLD_TICKS == 0 and len(gc.get_objects(OLD)) <= MAX_OLD_OBJECTS
+    gc.collect(OLD if old else YOUNG)
 
 
 def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:

@@ -46,17 +46,14 @@ class Search:
           ground: Cache to share between searches: replanning skips grounding while static facts are unchanged.
         """
         assert problem.domain == domain, "the problem belongs to another domain"
-        self._problem = problem
-        self._settings = settings
-        self._cache = ground if ground is not None else GroundCache()
-        self._engine: Engine | None = None
-        self._work = self._run()
+        self._course = _Course(problem, settings, ground if ground is not None else GroundCache())
+        self._work = self._course.run()
         self._result: Result | None = None
 
     @property
     def counts(self) -> tuple[int, int]:
         """Numbers of plans generated and visited so far."""
-        return (self._engine.generated, self._engine.visited) if self._engine else (0, 0)
+        return self._course.counts
 
     def advance(self, budget: Budget) -> Result | None:
         """Continues the search until it ends or the budget is spent.
@@ -73,7 +70,21 @@ class Search:
             self._result = next(self._work)
         return self._result
 
-    def _run(self) -> Iterator[Result | None]:
+
+class _Course:
+    """What a search does. It does not hold its own generator, so an abandoned search is freed without a collection."""
+
+    def __init__(self, problem: Problem, settings: Settings, cache: GroundCache) -> None:
+        self._problem, self._settings, self._cache = problem, settings, cache
+        self._engine: Engine | None = None
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """As of `Search`."""
+        return (self._engine.generated, self._engine.visited) if self._engine else (0, 0)
+
+    def run(self) -> Iterator[Result | None]:
+        """The result at last, None after each portion before."""
         settings = self._settings
         rng = RandomSource(settings.seed)
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import replace
 from itertools import pairwise
 
@@ -19,6 +20,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
+from tailor.runtime.gc_freeze import gc_disabled
 from tests.property import examples
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import APPROACH, DRIBBLE, GO, MODELS, approach_dribble, sequence, waypoints, within
@@ -156,6 +158,16 @@ def test_proof_ends_when_its_checks_are_used_up():
     assert budget.granted == proof.checks == 7
 
 
+@pytest.mark.parametrize("checks", [7, 300])
+def test_an_abandoned_proof_is_freed_without_a_collection(checks):
+    with gc_disabled():
+        proof = new_proof("two places", 0)
+        proof.advance(CheckBudget(checks))
+        held = weakref.ref(proof._proof)
+        del proof
+        assert held() is None
+
+
 def test_proof_stagnates_only_if_its_bound_does_not_rise():
     stagnation, bounds = BoundStagnation(), [-np.inf, *np.linspace(1.0, 2.0, 100)]
     assert not any(stagnation.update(bound, 2.0) for bound in bounds)
@@ -164,7 +176,7 @@ def test_proof_stagnates_only_if_its_bound_does_not_rise():
 
 
 def test_proof_that_would_spend_its_checks_on_its_first_boxes_is_not_begun(monkeypatch):
-    monkeypatch.setattr("tailor.executive.refinement.certificates.certificate.EFFORT", 1000)
+    monkeypatch.setattr("tailor.executive.refinement.certificates.proof.EFFORT", 1000)
     cost, chosen = objective("subgoal", 0, 1.0, True)
     proof = certificate(cost, cost.vector({}), replace(chosen, certify_checks=100))
     proof.advance(CheckBudget(100))

@@ -1,150 +1,57 @@
-"""Certificate of a choice: a lower bound on the optimum of the models by branch and bound, and the gap to it.
-
-Boxes on the cheapest chains are bisected until no chain is cheaper than the choice less the accepted gap. The bound of
-a box comes from the tree leaves that it intersects, so that thresholds and kinks count, not slopes alone.
-"""
+"""Certificate of a choice: a lower bound on the optimum of the models, and the gap to it."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
-from itertools import count
-
-import numpy as np
-
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Array
-from tailor.executive.refinement.certificates.bound_stagnation import BoundStagnation
-from tailor.executive.refinement.certificates.box_chain import BoxChain, Costs
-from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, box_of
-from tailor.executive.refinement.certificates.sensitivity import sensitivity
-from tailor.executive.refinement.certificates.stage_bounds import NoBound, StageBound, stage_bound
+from tailor.executive.refinement.certificates.proof import Proof
+from tailor.executive.refinement.certificates.stage_bounds import NoBound, stage_bound
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.executive.refinement.solvers.chain_structure import Columns, blocks_of, links_of
-
-EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 ms while boxes are wide
-MAX_SETUP_SHARE = 0.3  # of the checks for the initial bounds: a proof with a larger share does not converge
-PROBE_PERIOD = 4  # iterations
-MAX_BOXES = 1000  # of a subgoal: the passes over more take longer than their bounds
-MIN_WIDTH = 1e-5  # share of a range: below, the gain is within single precision
-# Two values each: for the only subgoal that has free parameters, and for each of several
-INITIAL_SPLITS = 6, 4  # before the first bounds
-MAX_SPLIT_BOXES = 12, 4  # boxes of a subgoal in one iteration: without pairs, an iteration costs more than its boxes
-MIN_PIECES = 48, 16  # that these are split into: pairs of boxes take longer
+from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
 
 
 class Certificate:
-    """Proves that no choice costs less than `bound`; anytime, resumable and without random draws.
+    """Proves that no choice costs less than `bound`; anytime and resumable.
 
-    The proof may find a choice that is better than the given one: `best`, which costs `value`.
-
-    Args:
-      objective: Cost that was minimised.
-      blocks: Columns of each subgoal.
-      bounds: Lower bounds of the objective's stages.
-      best: The given choice, shape (d,).
-      settings: Accepted gap and number of checks.
+    It holds its proof and the proof's steps, which do not hold it: an abandoned one is freed without a collection.
     """
 
-    def __init__(
-        self,
-        objective: SequenceObjective,
-        blocks: tuple[Columns, ...],
-        bounds: Sequence[StageBound],
-        best: Array,
-        settings: RefinementSettings,
-    ) -> None:
-        self.bound = -np.inf  # seconds
-        self.best = best
-        self.value = float(objective(best[None])[0])
-        self._given_value = self.value
+    def __init__(self, proof: Proof, settings: RefinementSettings) -> None:
+        """Nothing is proven before `advance`."""
         self.checks = 0
         self.finished = False
-        self._objective = objective
-        self._blocks = blocks
-        self._settings = settings
-        self._bounds = bounds
-        self._several = sum(map(bool, map(len, blocks))) > 1  # subgoals with free parameters
-        self._steps = self._prove()
+        self._proof = proof
+        self._given_value = proof.value
+        self._steps = proof.steps()
+        self._most_checks = settings.certify_checks
+
+    @property
+    def bound(self) -> float:
+        """Seconds; no choice costs less."""
+        return self._proof.bound
+
+    @property
+    def best(self) -> Array:
+        """The given choice, shape (d,), or a better one that the proof has found."""
+        return self._proof.best
+
+    @property
+    def value(self) -> float:
+        """Seconds that `best` costs."""
+        return self._proof.value
 
     @property
     def gap_pct(self) -> float | None:
         """Upper bound on the gap between the given choice and the optimum, in percent; None without a proof."""
-        return 100 * (self._given_value / self.bound - 1) if 0 < self.bound <= self.value < np.inf else None
+        return 100 * (self._given_value / self.bound - 1) if 0 < self.bound <= self.value < float("inf") else None
 
     def advance(self, budget: Budget) -> None:
         """Resume the proof until the budget is spent or no more can be proven."""
         while not self.finished and not budget.spent():
             self.checks += 1
             done = next(self._steps, True)
-            self.finished = done is not None or self.checks >= self._settings.certify_checks
-
-    @property
-    def _limit(self) -> float:
-        """Bound at which the gap is accepted."""
-        return self.value / (1 + self._settings.certify_gap_pct / 100)
-
-    def _prove(self) -> Iterator[None]:
-        """The proof, in steps of one check each."""
-        weight = sensitivity(self._objective)
-        yield
-        chain = yield from self._initial_chain(weight)
-        if chain.steps > MAX_SETUP_SHARE * self._settings.certify_checks:
-            return
-        yield from chain.begin()
-        stagnation, free = BoundStagnation(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
-        for iteration in count():
-            index = free[iteration % len(free)]
-            costs = chain.costs()
-            if self._raise_bound(costs) or stagnation.update(self.bound, self.value):
-                return
-            if iteration % PROBE_PERIOD == PROBE_PERIOD - 1:
-                self._probe_cheapest_chain(chain, costs)
-            kept, chosen = self._select_boxes(chain, costs, index)
-            if len(chosen):
-                yield from chain.split(index, kept, chosen, weight[self._blocks[index]], costs, self._limit)
-
-    def _initial_chain(self, weight: Array) -> Generator[None, None, BoxChain]:
-        """Initial boxes, and bounds restricted to them: one check for each action."""
-        boxes = [box_of(self._objective.ranges.part(block)) for block in self._blocks]
-        bounds = []
-        for bound, *ends in zip(self._bounds, [NO_PARAMETERS, *boxes], boxes, strict=False):
-            bounds.append(bound.within(*ends))
-            yield
-        free = [i for i, block in enumerate(self._blocks) if len(block)]
-        for i in free * INITIAL_SPLITS[self._several]:
-            boxes[i] = boxes[i].halves(weight[self._blocks[i]])
-        return BoxChain(bounds, boxes, EFFORT, MIN_PIECES[self._several])
-
-    def _raise_bound(self, costs: Costs) -> bool:
-        """Raise the bound to the cheapest chain; whether the gap is accepted."""
-        # Discarded boxes cost at least the limit of their time, which only falls.
-        self.bound = max(self.bound, min(float(costs.through[-1].min(initial=np.inf)), self._limit))
-        return self.bound >= self._limit
-
-    def _probe_cheapest_chain(self, chain: BoxChain, costs: Costs) -> None:
-        """Adopt the middle of the cheapest chain of boxes if it is a better choice."""
-        if not np.isfinite(costs.through[-1]).any():
-            return
-        candidate = self.best.copy()
-        for block, boxes, chosen in zip(self._blocks, chain.boxes, chain.cheapest(costs), strict=True):
-            candidate[block] = boxes.middle[chosen]
-        value = float(self._objective(candidate[None])[0])
-        if value < self.value:
-            self.best, self.value = candidate, value
-
-    def _select_boxes(self, chain: BoxChain, costs: Costs, index: int) -> tuple[Columns, Columns]:
-        """Indices of a subgoal's boxes to keep unchanged, and of those to split: the cheapest that are wide enough."""
-        boxes, through = chain.boxes[index], costs.through[index]
-        kept = through < self._limit
-        open_boxes = np.flatnonzero(kept)
-        ranges = self._objective.ranges.width[self._blocks[index]]
-        widest = (boxes.width[open_boxes] / ranges).max(axis=1, initial=0.0)
-        wide = open_boxes[widest > MIN_WIDTH]
-        wide = wide[np.argsort(through[wide], kind="stable")] if len(boxes) < MAX_BOXES else wide[:0]
-        chosen = wide[: MAX_SPLIT_BOXES[self._several]]
-        kept[chosen] = False
-        return np.flatnonzero(kept), chosen
+            self.finished = done is not None or self.checks >= self._most_checks
 
 
 def certificate(objective: SequenceObjective, best: Array, settings: RefinementSettings) -> Certificate | NoBound:
@@ -158,4 +65,4 @@ def certificate(objective: SequenceObjective, best: Array, settings: RefinementS
         if isinstance(bound, NoBound):
             return bound
         bounds.append(bound)
-    return Certificate(objective, blocks, bounds, best, settings)
+    return Certificate(Proof(objective, blocks, bounds, best, settings), settings)

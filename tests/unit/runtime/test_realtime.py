@@ -8,13 +8,12 @@ import weakref
 
 import pytest
 
-from tailor.runtime.gc_freeze import gc_disabled
-from tailor.runtime.realtime import OLD_TICKS, collect_garbage
+from tailor.runtime.gc_freeze import gc_disabled, gc_frozen
+from tailor.runtime.realtime import MAX_OLD_OBJECTS, OLD_TICKS, collect_garbage
 from tests.support.bus_system import free_endpoint
 
 REPORT = """
 import gc, json, os
-from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import prepare
 before = {"policy": os.sched_getscheduler(0)}
 granted = prepare()
@@ -75,8 +74,8 @@ def test_a_routers_threads_are_not_starved_by_ordinary_work():
     assert {policy for name, policy in policies.items() if name != "python"} == {os.SCHED_FIFO}
 
 
-class Search:
-    """Refers to itself through its generator, as searches do."""
+class Cycle:
+    """Refers to itself through its generator."""
 
     def __init__(self):
         self.work = self.steps()
@@ -87,25 +86,28 @@ class Search:
 
 
 @pytest.fixture
-def old_search():
-    """A reference to an abandoned search that earlier collections have passed on, without the automatic collection."""
-    with gc_disabled():
-        search = Search()
+def old_cycle():
+    """A reference to an abandoned cycle that earlier collections have passed on; what is loaded is frozen, as live."""
+    with gc_frozen(), gc_disabled():
+        cycle = Cycle()
         for tick in range(1, 20):
             collect_garbage(tick)
-        abandoned = weakref.ref(search)
-        del search
+        abandoned = weakref.ref(cycle)
+        del cycle
         yield abandoned
 
 
-def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds(old_search):
+def test_garbage_that_has_lived_for_many_ticks_is_collected_in_ten_seconds(old_cycle):
     for tick in range(20, 20 + OLD_TICKS):
         collect_garbage(tick)
-    assert old_search() is None
+    assert old_cycle() is None
 
 
-def test_abandoned_work_is_collected_after_its_tick(old_search):
-    collect_garbage(20)
-    assert old_search() is not None
-    collect_garbage(21, abandoned=True)
-    assert old_search() is None
+def test_old_garbage_waits_while_so_much_is_alive_that_its_collection_would_delay_a_tick(old_cycle):
+    alive = [[] for _ in range(MAX_OLD_OBJECTS)]
+    for tick in (1, 2, OLD_TICKS):
+        collect_garbage(tick)
+    assert old_cycle() is not None
+    alive.clear()
+    collect_garbage(2 * OLD_TICKS)
+    assert old_cycle() is None

@@ -1,6 +1,7 @@
 """The search: results are values, work is resumable and repeatable, every option does what it says."""
 
 import dataclasses
+import weakref
 
 import pytest
 
@@ -18,6 +19,7 @@ from tailor.executive.planning import (
 )
 from tailor.executive.planning.flaws.flaw_orders import NAMED, parse_flaw_order
 from tailor.executive.planning.flaws.ranking import NAMES
+from tailor.runtime.gc_freeze import gc_disabled
 from tailor.schemas.errors import UsageError
 from tests.support.planning_problems import own, read, solve
 
@@ -112,6 +114,19 @@ def test_a_search_in_slices_is_the_same_search(checks, settings):
     assert result == whole
     assert slices > 1 or checks == 100
     assert search.advance(CheckBudget(0)) == result
+
+
+@pytest.mark.parametrize("engine", ["pocl", "forward", "auto"])
+@pytest.mark.parametrize("checks", [3, 100_000])
+def test_an_abandoned_search_is_freed_without_a_collection(engine, checks):
+    """Else its plans stay beside those of the next one until all that is alive has been visited."""
+    with gc_disabled():
+        search = Search(*own("kitchen-s2"), dataclasses.replace(DEFAULT, engine=engine))
+        result = search.advance(CheckBudget(checks))
+        assert (result is None) == (checks == 3)
+        held = weakref.ref(search._course)
+        del search, result
+        assert held() is None
 
 
 def test_an_empty_budget_does_nothing():

@@ -1,0 +1,130 @@
+"""Branch and bound over the boxes of all subgoals, which form chains.
+
+Boxes on the cheapest chains are bisected until no chain is cheaper than the choice less the accepted gap. The bound of
+a box comes from the tree leaves that it intersects, so that thresholds and kinks count, not slopes alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from itertools import count
+
+import numpy as np
+
+from tailor.executive.interfaces.values import Array
+from tailor.executive.refinement.certificates.bound_stagnation import BoundStagnation
+from tailor.executive.refinement.certificates.box_chain import BoxChain, Costs
+from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, box_of
+from tailor.executive.refinement.certificates.sensitivity import sensitivity
+from tailor.executive.refinement.certificates.stage_bounds import StageBound
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.chain_structure import Columns
+
+EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 ms while boxes are wide
+MAX_SETUP_SHARE = 0.3  # of the checks for the initial bounds: a proof with a larger share does not converge
+PROBE_PERIOD = 4  # iterations
+MAX_BOXES = 1000  # of a subgoal: the passes over more take longer than their bounds
+MIN_WIDTH = 1e-5  # share of a range: below, the gain is within single precision
+# Two values each: for the only subgoal that has free parameters, and for each of several
+INITIAL_SPLITS = 6, 4  # before the first bounds
+MAX_SPLIT_BOXES = 12, 4  # boxes of a subgoal in one iteration: without pairs, an iteration costs more than its boxes
+MIN_PIECES = 48, 16  # that these are split into: pairs of boxes take longer
+
+
+class Proof:
+    """Proves that no choice costs less than `bound`, in steps and without random draws.
+
+    It may find a choice that is better than the given one: `best`, which costs `value`.
+
+    Args:
+      objective: Cost that was minimised.
+      blocks: Columns of each subgoal.
+      bounds: Lower bounds of the objective's stages.
+      best: The given choice, shape (d,).
+      settings: Accepted gap and number of checks.
+    """
+
+    def __init__(
+        self,
+        objective: SequenceObjective,
+        blocks: tuple[Columns, ...],
+        bounds: Sequence[StageBound],
+        best: Array,
+        settings: RefinementSettings,
+    ) -> None:
+        self.bound = -np.inf  # seconds
+        self.best = best
+        self.value = float(objective(best[None])[0])
+        self._objective = objective
+        self._blocks = blocks
+        self._settings = settings
+        self._bounds = bounds
+        self._several = sum(map(bool, map(len, blocks))) > 1  # subgoals with free parameters
+
+    @property
+    def _limit(self) -> float:
+        """Bound at which the gap is accepted."""
+        return self.value / (1 + self._settings.certify_gap_pct / 100)
+
+    def steps(self) -> Iterator[None]:
+        """The proof, in steps of one check each."""
+        weight = sensitivity(self._objective)
+        yield
+        chain = yield from self._initial_chain(weight)
+        if chain.steps > MAX_SETUP_SHARE * self._settings.certify_checks:
+            return
+        yield from chain.begin()
+        stagnation, free = BoundStagnation(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
+        for iteration in count():
+            index = free[iteration % len(free)]
+            costs = chain.costs()
+            if self._raise_bound(costs) or stagnation.update(self.bound, self.value):
+                return
+            if iteration % PROBE_PERIOD == PROBE_PERIOD - 1:
+                self._probe_cheapest_chain(chain, costs)
+            kept, chosen = self._select_boxes(chain, costs, index)
+            if len(chosen):
+                yield from chain.split(index, kept, chosen, weight[self._blocks[index]], costs, self._limit)
+
+    def _initial_chain(self, weight: Array) -> Generator[None, None, BoxChain]:
+        """Initial boxes, and bounds restricted to them: one check for each action."""
+        boxes = [box_of(self._objective.ranges.part(block)) for block in self._blocks]
+        bounds = []
+        for bound, *ends in zip(self._bounds, [NO_PARAMETERS, *boxes], boxes, strict=False):
+            bounds.append(bound.within(*ends))
+            yield
+        free = [i for i, block in enumerate(self._blocks) if len(block)]
+        for i in free * INITIAL_SPLITS[self._several]:
+            boxes[i] = boxes[i].halves(weight[self._blocks[i]])
+        return BoxChain(bounds, boxes, EFFORT, MIN_PIECES[self._several])
+
+    def _raise_bound(self, costs: Costs) -> bool:
+        """Raise the bound to the cheapest chain; whether the gap is accepted."""
+        # Discarded boxes cost at least the limit of their time, which only falls.
+        self.bound = max(self.bound, min(float(costs.through[-1].min(initial=np.inf)), self._limit))
+        return self.bound >= self._limit
+
+    def _probe_cheapest_chain(self, chain: BoxChain, costs: Costs) -> None:
+        """Adopt the middle of the cheapest chain of boxes if it is a better choice."""
+        if not np.isfinite(costs.through[-1]).any():
+            return
+        candidate = self.best.copy()
+        for block, boxes, chosen in zip(self._blocks, chain.boxes, chain.cheapest(costs), strict=True):
+            candidate[block] = boxes.middle[chosen]
+        value = float(self._objective(candidate[None])[0])
+        if value < self.value:
+            self.best, self.value = candidate, value
+
+    def _select_boxes(self, chain: BoxChain, costs: Costs, index: int) -> tuple[Columns, Columns]:
+        """Indices of a subgoal's boxes to keep unchanged, and of those to split: the cheapest that are wide enough."""
+        boxes, through = chain.boxes[index], costs.through[index]
+        kept = through < self._limit
+        open_boxes = np.flatnonzero(kept)
+        ranges = self._objective.ranges.width[self._blocks[index]]
+        widest = (boxes.width[open_boxes] / ranges).max(axis=1, initial=0.0)
+        wide = open_boxes[widest > MIN_WIDTH]
+        wide = wide[np.argsort(through[wide], kind="stable")] if len(boxes) < MAX_BOXES else wide[:0]
+        chosen = wide[: MAX_SPLIT_BOXES[self._several]]
+        kept[chosen] = False
+        return np.flatnonzero(kept), chosen
