@@ -31,6 +31,17 @@ NEEDS: dict[str, tuple[str, ...]] = {
     "make-models": ("sim", "learn"),
     "evaluate": ("sim", "learn", "plots"),
 }
+BENCHMARKS_NEED: dict[str, tuple[str, ...]] = {
+    "ticks": ("sim",),
+    "refine": ("learn",),
+    "models": ("learn",),
+    "gather": ("sim",),
+    "memory": ("sim",),
+    "recording": ("sim",),
+    "soak": ("sim", "learn"),
+    "growth": ("sim", "learn", "plots"),
+    "cluster": ("sim", "learn", "cluster"),
+}
 
 
 def require(*extras: str) -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tailor.tools.extras import EXTRAS, NEEDS
+from tailor.tools.commands.measure.bench import BENCHMARKS, ON_REQUEST
+from tailor.tools.extras import BENCHMARKS_NEED, EXTRAS, NEEDS
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import MODULES, ROOT, imported_names
 
@@ -72,7 +73,10 @@ def test_the_table_of_extras_names_what_they_bring() -> None:
 
 def test_commands_that_need_an_extra_exist() -> None:
     assert NEEDS.keys() <= COMMANDS.keys()
-    assert {extra for extras in NEEDS.values() for extra in extras} <= EXTRAS.keys()
+    assert BENCHMARKS_NEED.keys() <= {*BENCHMARKS, *ON_REQUEST}
+    assert {
+        extra for needs in (NEEDS, BENCHMARKS_NEED) for extras in needs.values() for extra in extras
+    } <= EXTRAS.keys()
 
 
 def test_every_dependency_is_imported() -> None:

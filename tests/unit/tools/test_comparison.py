@@ -90,6 +90,7 @@ def test_info_in_words_names_the_actions(tmp_path, capsys):
     output = capsys.readouterr().out
     assert "goToPose done 4.00 5.00 +25%" in " ".join(output.split())
     assert "driver stopped: agilo: r" in output
+    assert "ticks, ms: late p50 10.5, p99 19.8, max 20.0; work p50 " in output
 
 
 def test_info_of_a_damaged_file_reports_it_and_returns_1(tmp_path, capsys):

@@ -100,6 +100,7 @@ GOLDEN = "tests/data/golden/soccer-approach.mcap"
     [
         (("train", "agilo"), "learn"),
         (("sim", "agilo"), "sim"),
+        (("bench", "ticks"), "sim"),
         (("picture", GOLDEN), "plots"),
         (("models", "plot", "agilo/goToPose"), "plots"),
     ],

@@ -124,8 +124,12 @@ def _show(summary: dict[str, Any]) -> None:
     if summary["modes"]:
         ticks = summary["ticks"]
         console.print("ticks by mode: " + ", ".join(f"{mode} {count}" for mode, count in summary["modes"].items()))
-        console.print(f"ticks late (ms): {ticks['late_ms']}, work (ms): {ticks['work_ms']}")
+        console.print(f"ticks, ms: {_spread('late', ticks['late_ms'])}; {_spread('work', ticks['work_ms'])}")
         console.print(f"periods skipped: {ticks['skipped_periods']}")
+
+
+def _spread(name: str, percentile: dict[str, float]) -> str:
+    return f"{name} " + ", ".join(f"{key} {value:.1f}" for key, value in percentile.items())
 
 
 def _topics(rows: list[dict[str, Any]]) -> Table:

@@ -13,6 +13,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
+from tailor.tools.extras import BENCHMARKS_NEED, require
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and beside CPU burners; delay from percept to command",
@@ -61,14 +62,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Run each benchmark; 0 if all have measured something and no invariant of a soak was violated, otherwise 1.
 
     Raises:
-      UsageError: An unknown name.
+      UsageError: An unknown name, or a missing extra.
     """
     known = (*BENCHMARKS, *ON_REQUEST)
     unknown = sorted(set(arguments.names) - set(known))
     if unknown:
         raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join(known)}")
+    names = arguments.names or list(BENCHMARKS)
+    require(*dict.fromkeys(extra for name in names for extra in BENCHMARKS_NEED.get(name, ())))
     console, code = table_console(), 0
-    for name in arguments.names or BENCHMARKS:
+    for name in names:
         if not arguments.json:
             console.rule(name)
         try:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -90,13 +92,14 @@ def _write(tracks: Sequence[Track], folder: Path) -> None:
 def next_lines(folder: Path) -> list[str]:
     """What was written, and what to try next."""
     refined = folder / "refined.mcap"
+    tailor = "tailor" if shutil.which("tailor") else sys.argv[0]  # after `make demo` no environment is active
     return [
         f"both runs in step: {(folder / 'index.html').resolve().as_uri()}",
         f"also written: {folder}/greedy.mcap, {refined}, {folder}/paths.png",
-        f"next: tailor why {refined}          # why each subgoal was chosen",
-        f"next: tailor verify {refined}       # the recording through the core again, compared bit for bit",
-        "next: tailor up soccer --seed 2      # a whole system; `tailor view --live` shows it in a browser",
-        "next: tailor letters                 # the same executive writes with an arm",
+        f"next: {tailor} why {refined}          # why each subgoal was chosen",
+        f"next: {tailor} verify {refined}       # the recording through the core again, compared bit for bit",
+        f"next: {tailor} up soccer --seed 2      # a whole system; `{tailor} view --live` shows it in a browser",
+        f"next: {tailor} letters                 # the same executive writes with an arm",
     ]
 
 
