@@ -12,8 +12,8 @@ from typing import NoReturn
 
 from tailor import __version__
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.extras import NEEDS, advice, extra_of, require
 
 # command -> (module, one line of help); each module has configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tailor.tools.cli.extras import BENCHMARKS_NEED, EXTRAS, NEEDS
 from tailor.tools.commands.measure.bench import BENCHMARKS, ON_REQUEST
-from tailor.tools.extras import BENCHMARKS_NEED, EXTRAS, NEEDS
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import MODULES, ROOT, imported_names
 

@@ -9,7 +9,7 @@ from contextlib import redirect_stdout
 import pytest
 
 import tailor
-from tailor.tools.extras import EXTRAS
+from tailor.tools.cli.extras import EXTRAS
 from tailor.tools.main import COMMANDS, main
 from tests.support.bus_system import ROOT
 

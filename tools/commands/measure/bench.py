@@ -11,9 +11,9 @@ from rich.console import Console
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
+from tailor.tools.cli.extras import BENCHMARKS_NEED, require
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
-from tailor.tools.extras import BENCHMARKS_NEED, require
 
 BENCHMARKS = {
     "ticks": "lateness and work of live ticks, idle and beside CPU burners; delay from percept to command",
