@@ -1,4 +1,4 @@
-"""Loads, checks and runs ONNX action models. The only module that imports onnxruntime.
+"""Loads and checks ONNX action models.
 
 A model is used only if its bytes, its card and its predictions agree: onnxruntime does not detect a flipped bit.
 """
@@ -6,15 +6,12 @@ A model is used only if its bytes, its card and its predictions agree: onnxrunti
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 
-from tailor.models.bounds.interval_boxes import UPPER_SCORE
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
 from tailor.models.cards.card import (
     KINDS,
@@ -27,105 +24,11 @@ from tailor.models.cards.card import (
     sha256_of,
 )
 from tailor.models.cards.checks import check_identity, check_place, check_ranges
+from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session
 from tailor.schemas.errors import UsageError
-
-Array = NDArray[np.float64]
 
 ZOO = Path(__file__).resolve().parent / "zoo"
 GOLDEN_TOLERANCE = 1e-4  # seconds, joules or probability: the tolerance of export (learning.md)
-
-
-@dataclass(frozen=True, slots=True)
-class OnnxDuration:
-    """Predicts the duration of an action in seconds, or its energy in joules; the card holds which.
-
-    Attributes:
-      session: Inference session of onnxruntime.
-      card: The model's card.
-      output_min: Smallest valid mean.
-      output_max: Largest valid mean.
-      bounds: Bounds of the predictions; None if the model does not consist of trees.
-    """
-
-    session: Any
-    card: Card
-    output_min: float
-    output_max: float
-    bounds: ModelBounds | None = None
-
-    def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Predict durations or energies.
-
-        Args:
-          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
-
-        Returns:
-          Mean and standard deviation in seconds (or joules), shapes (n,); NaN where the prediction is invalid. The
-          deviation of a model with intervals is that of a normal distribution with the same 95 % quantile.
-        """
-        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
-        std = (rest[1] - mean) / UPPER_SCORE if self.calibrated else rest[0]
-        mean, std = self._valid(mean, (mean, std), std)
-        return mean, std
-
-    def interval(self, arguments: Array) -> tuple[Array, Array, Array]:
-        """Predict durations or energies with intervals that hold 90 % of them.
-
-        Args:
-          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
-
-        Returns:
-          Mean, lower and upper end in seconds (or joules), shapes (n,); NaN where the prediction is invalid.
-        """
-        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
-        half = float(self.card["test"].get("interval90_factor", UPPER_SCORE)) * rest[0]
-        lower, upper = rest if self.calibrated else (mean - half, mean + half)
-        mean, lower, upper = self._valid(mean, (mean, lower, upper), upper - mean)
-        return mean, lower, upper
-
-    @property
-    def calibrated(self) -> bool:
-        """Whether the graph has intervals of its own, and not only a standard deviation."""
-        return len(self.card["outputs"]) == 3
-
-    def _run(self, arguments: Array) -> Any:
-        return self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
-
-    def _valid(self, mean: Array, values: tuple[Array, ...], width: Array) -> Any:
-        """The values, NaN where the mean is out of range or the width is negative."""
-        valid = (mean >= self.output_min) & (mean <= self.output_max) & (width >= 0)
-        return values if valid.all() else tuple(np.where(valid, each, np.nan) for each in values)
-
-
-@dataclass(frozen=True, slots=True)
-class OnnxSuccess:
-    """Predicts whether an action succeeds.
-
-    Attributes:
-      session: Inference session of onnxruntime.
-      card: The model's card.
-      threshold: Probability of success from which success is predicted, 0..1.
-      bounds: Bounds of the predictions; None if the model does not consist of trees.
-    """
-
-    session: Any
-    card: Card
-    threshold: float
-    bounds: ModelBounds | None = None
-
-    def probability(self, arguments: Array) -> Array:
-        """Predict probabilities of success.
-
-        Args:
-          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
-
-        Returns:
-          Probabilities, 0..1, shape (n,); NaN where the prediction is invalid.
-        """
-        return _probability(self.session, arguments)
-
-
-OnnxModel = OnnxDuration | OnnxSuccess
 
 
 def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
@@ -199,17 +102,6 @@ def _in_zoo(name: str, zoo: Path) -> Path:
     return zoo.joinpath(*parts[:2], f"{parts[2]}.onnx")
 
 
-def open_session(content: bytes) -> Any:
-    """Inference session of an ONNX model that starts no threads; exceptions of onnxruntime are not caught."""
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
-    options.enable_mem_reuse = False  # saves 2 us per call: results do not wait for each other's memory
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    options.log_severity_level = 3  # errors are raised as exceptions
-    return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
-
-
 def _session(content: bytes, path: Path) -> Any:
     try:
         return open_session(content)
@@ -226,24 +118,11 @@ def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -
     raise UsageError(f"{path}: kind '{card['kind']}' is unknown (expected one of: {', '.join(KINDS)})")
 
 
-def _probability(session: Any, arguments: Array) -> Array:
-    rows = np.ascontiguousarray(arguments, np.float64)
-    (probability,) = session.run(None, {"arguments": rows})
-    # a tree assigns NaN to some leaf, so the inputs are checked, too
-    valid = (probability >= 0) & (probability <= 1) & np.isfinite(rows.sum(axis=1))
-    return np.where(valid, probability, np.nan).astype(np.float64)
-
-
 def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
     """Compare predictions of the golden examples with the card; also warms up the session."""
     golden = card["golden"]
     arguments = np.array(golden["arguments"], np.float64)
-    match model:
-        case OnnxDuration():
-            predictions: tuple[Array, ...] = model.interval(arguments) if model.calibrated else model.predict(arguments)
-        case OnnxSuccess():
-            predictions = (model.probability(arguments),)
-    for name, values in zip(card["outputs"], predictions, strict=True):
+    for name, values in zip(card["outputs"], _predictions(model, arguments), strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)
         if not (off <= GOLDEN_TOLERANCE).all():
@@ -252,3 +131,10 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
                 f"{path}: golden example {worst} gives {name} = {values[worst]:.6g}, "
                 f"expected {expected[worst]:.6g} by its card"
             )
+
+
+def _predictions(model: OnnxModel, arguments: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    """All outputs of a model, in the order of its card."""
+    if isinstance(model, OnnxSuccess):
+        return (model.probability(arguments),)
+    return model.interval(arguments) if model.calibrated else model.predict(arguments)

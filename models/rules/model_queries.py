@@ -9,7 +9,7 @@ from sklearn.tree import DecisionTreeRegressor
 from tailor.models.cards.card import Card
 from tailor.models.features.features import FeatureSpace
 from tailor.models.features.spaces import feature_space
-from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.trees.distillation import distill
 from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.sklearn_trees import means_of, splits_of

@@ -17,7 +17,15 @@ ROOT = Path(__file__).resolve().parents[2]
 DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, scenes
 CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_run.py")
 REASONING = ("executive/core/*", "executive/interfaces/*", "executive/planning/**/*", "executive/refinement/**/*")
-WHOLE = (*CONTROL, *REASONING, "simnodes/*", "models/features/*", "models/runtime.py", "tools/lockstep/*")
+WHOLE = (
+    *CONTROL,
+    *REASONING,
+    "simnodes/*",
+    "models/features/*",
+    "models/runtime.py",
+    "models/inference.py",
+    "tools/lockstep/*",
+)
 
 LEARNING = ("models/*/*.py", "models/*.py", "tools/learning/*.py", "tools/lockstep/episode_extraction.py")
 

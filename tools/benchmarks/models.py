@@ -15,8 +15,9 @@ from tailor.executive.interfaces.values import Array
 from tailor.models.cards.card import Card
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.planar import projective
+from tailor.models.inference import open_session
 from tailor.models.rules.model_queries import random_arguments
-from tailor.models.runtime import load_robot, open_session
+from tailor.models.runtime import load_robot
 from tailor.models.training import learners
 from tailor.models.trees.model_tree import BaggedModelTrees
 

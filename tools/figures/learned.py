@@ -13,7 +13,7 @@ from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.episodes import UNOBSERVED, Episode, read_data_set
 from tailor.models.episodes.examples import Examples, success_examples
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
-from tailor.models.runtime import OnnxDuration, OnnxSuccess
+from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
 from tailor.tools.figures import learned_regions, learned_shapes
 

@@ -13,7 +13,7 @@ from tailor.models.episodes.examples import Examples
 from tailor.models.features.features import FeatureSpace
 from tailor.models.features.joints import joints
 from tailor.models.features.planar import projective
-from tailor.models.runtime import OnnxDuration
+from tailor.models.inference import OnnxDuration
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tailor.models.cards.card import UNITS
+from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules.model_queries import distilled_duration, space_of
 from tailor.models.rules.rule_text import QUANTITY_NAMES, conditions, formula, leaf_boxes
-from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.tools.figures.learned_regions import Region, swept
 
 Array = NDArray[np.float64]

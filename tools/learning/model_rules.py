@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.tree_boxes import TreeBoxes, tree_boxes
 from tailor.models.cards.card import UNITS, Card
+from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules import leaf_rules
 from tailor.models.rules.model_queries import distilled_duration, distilled_success, random_arguments, space_of
 from tailor.models.rules.rule_text import duration_rules, success_rules
-from tailor.models.runtime import OnnxDuration, OnnxSuccess
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]

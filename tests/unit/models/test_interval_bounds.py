@@ -9,10 +9,10 @@ from tailor.models.bounds.interval_boxes import UPPER_SCORE
 from tailor.models.bounds.model_bounds import model_bounds
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.planar import projective
+from tailor.models.inference import open_session
 from tailor.models.regression import network_training
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import CalibratedRegressor
-from tailor.models.runtime import open_session
 
 SHAPE = (1, 1, 1)
 LIMITS = np.array([[-3.5, -2.25, -np.pi, 0] * 2, [3.5, 2.25, np.pi, 0.6] * 2])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tailor.executive.composition import load_models
-from tailor.models import runtime
+from tailor.models import inference, runtime
 from tailor.models.cards.card import card_path, read_card, sha256_of, write_card
 from tailor.models.features.planar import projective
 from tailor.schemas.errors import UsageError
@@ -53,7 +53,7 @@ def test_a_model_loads_by_name_too() -> None:
 @pytest.mark.promise("P32")
 def test_an_answer_out_of_range_is_invalid() -> None:
     model = runtime.load_model("agilo/goToPose/duration")
-    narrow = runtime.OnnxDuration(model.session, model.card, 0.0, 0.1)
+    narrow = inference.OnnxDuration(model.session, model.card, 0.0, 0.1)
     assert np.isnan(narrow.predict(np.array([[0, 0, 0, 0, 2.0, 0, 0, 0]]))[0]).all()
 
 

@@ -24,7 +24,7 @@ from tailor.models.bounds.leaf_bounds import LeafBounds
 from tailor.models.bounds.model_bounds import ModelBounds
 from tailor.models.bounds.tree_boxes import TreeBoxes
 from tailor.models.features.spaces import feature_space
-from tailor.models.runtime import OnnxDuration
+from tailor.models.inference import OnnxDuration
 from tailor.tools.benchmarks.refinement.cases import Case
 
 GAPS_PCT = (5.0, 1.0)

@@ -14,7 +14,8 @@ from rich.table import Column, Table
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
-from tailor.models.runtime import ZOO, OnnxModel, load_model
+from tailor.models.inference import OnnxModel
+from tailor.models.runtime import ZOO, load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.terminal import table_console

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.interfaces.values import Array
-from tailor.models.runtime import OnnxDuration
+from tailor.models.inference import OnnxDuration
 
 
 def coverage_columns(model: OnnxDuration, arguments: Array, observed_s: Array, spread_s: Array) -> dict[str, Any]:

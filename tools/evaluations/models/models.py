@@ -15,7 +15,8 @@ import numpy as np
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.examples import duration_examples, success_examples
-from tailor.models.runtime import OnnxDuration, OnnxSuccess, load_robot
+from tailor.models.inference import OnnxDuration, OnnxSuccess
+from tailor.models.runtime import load_robot
 from tailor.models.training import scores
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder

@@ -12,7 +12,8 @@ from tailor.executive import domains
 from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.models.episodes.context_columns import beside_context, without_context
 from tailor.models.episodes.episodes import merge, read_data_set
-from tailor.models.runtime import OnnxSuccess, load_model
+from tailor.models.inference import OnnxSuccess
+from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec

@@ -1,0 +1,124 @@
+"""ONNX action models that predict. The only module that imports onnxruntime."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import onnxruntime
+from numpy.typing import NDArray
+
+from tailor.models.bounds.interval_boxes import UPPER_SCORE
+from tailor.models.bounds.model_bounds import ModelBounds
+from tailor.models.cards.card import Card
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class OnnxDuration:
+    """Predicts the duration of an action in seconds, or its energy in joules; the card holds which.
+
+    Attributes:
+      session: Inference session of onnxruntime.
+      card: The model's card.
+      output_min: Smallest valid mean.
+      output_max: Largest valid mean.
+      bounds: Bounds of the predictions; None if the model does not consist of trees.
+    """
+
+    session: Any
+    card: Card
+    output_min: float
+    output_max: float
+    bounds: ModelBounds | None = None
+
+    def predict(self, arguments: Array) -> tuple[Array, Array]:
+        """Predict durations or energies.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Mean and standard deviation in seconds (or joules), shapes (n,); NaN where the prediction is invalid. The
+          deviation of a model with intervals is that of a normal distribution with the same 95 % quantile.
+        """
+        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
+        std = (rest[1] - mean) / UPPER_SCORE if self.calibrated else rest[0]
+        mean, std = self._valid(mean, (mean, std), std)
+        return mean, std
+
+    def interval(self, arguments: Array) -> tuple[Array, Array, Array]:
+        """Predict durations or energies with intervals that hold 90 % of them.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Mean, lower and upper end in seconds (or joules), shapes (n,); NaN where the prediction is invalid.
+        """
+        mean, *rest = (values.astype(np.float64) for values in self._run(arguments))
+        half = float(self.card["test"].get("interval90_factor", UPPER_SCORE)) * rest[0]
+        lower, upper = rest if self.calibrated else (mean - half, mean + half)
+        mean, lower, upper = self._valid(mean, (mean, lower, upper), upper - mean)
+        return mean, lower, upper
+
+    @property
+    def calibrated(self) -> bool:
+        """Whether the graph has intervals of its own, and not only a standard deviation."""
+        return len(self.card["outputs"]) == 3
+
+    def _run(self, arguments: Array) -> Any:
+        return self.session.run(None, {"arguments": np.ascontiguousarray(arguments, np.float64)})
+
+    def _valid(self, mean: Array, values: tuple[Array, ...], width: Array) -> Any:
+        """The values, NaN where the mean is out of range or the width is negative."""
+        valid = (mean >= self.output_min) & (mean <= self.output_max) & (width >= 0)
+        return values if valid.all() else tuple(np.where(valid, each, np.nan) for each in values)
+
+
+@dataclass(frozen=True, slots=True)
+class OnnxSuccess:
+    """Predicts whether an action succeeds.
+
+    Attributes:
+      session: Inference session of onnxruntime.
+      card: The model's card.
+      threshold: Probability of success from which success is predicted, 0..1.
+      bounds: Bounds of the predictions; None if the model does not consist of trees.
+    """
+
+    session: Any
+    card: Card
+    threshold: float
+    bounds: ModelBounds | None = None
+
+    def probability(self, arguments: Array) -> Array:
+        """Predict probabilities of success.
+
+        Args:
+          arguments: Arguments of the action, shape (n, k), in the order and units of the card.
+
+        Returns:
+          Probabilities, 0..1, shape (n,); NaN where the prediction is invalid.
+        """
+        rows = np.ascontiguousarray(arguments, np.float64)
+        (probability,) = self.session.run(None, {"arguments": rows})
+        # a tree assigns NaN to some leaf, so the inputs are checked, too
+        valid = (probability >= 0) & (probability <= 1) & np.isfinite(rows.sum(axis=1))
+        return np.where(valid, probability, np.nan).astype(np.float64)
+
+
+OnnxModel = OnnxDuration | OnnxSuccess
+
+
+def open_session(content: bytes) -> Any:
+    """Inference session of an ONNX model that starts no threads; exceptions of onnxruntime are not caught."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
+    options.enable_mem_reuse = False  # saves 2 us per call: results do not wait for each other's memory
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    options.log_severity_level = 3  # errors are raised as exceptions
+    return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
