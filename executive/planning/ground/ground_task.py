@@ -47,7 +47,8 @@ class GroundTask:
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> Generator[None, None, GroundTask]:
     """The task of a problem, given the ground actions of its static world; yields as a unit of budget is used."""
     facts = FactTable(grounded.facts, GroundingLimit(subject="the goal"))
-    goal = conjuncts((yield from ground_in_portions(problem.goal, grounded.world, facts)))
+    whole_goal = yield from ground_in_portions(problem.goal, grounded.world, facts)
+    goal = tuple(dict.fromkeys(conjuncts(whole_goal)))  # each once, or each would be an open condition
     if contradictory(goal):
         goal = (FALSE,)
     holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
