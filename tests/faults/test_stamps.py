@@ -3,14 +3,11 @@
 import itertools
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.schemas.messages import ArmRequest, Sample, VelocityCommand
-from tailor.simnodes.agilo.body import AgiloBody
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import CommandRefusal, Limit, Mode
@@ -58,11 +55,8 @@ def test_a_sender_whose_clock_jumps_ahead_stops_the_robot():
 def run_with(stamped):
     """A run of the soccer robot whose sensors' messages, numbered from 0, `stamped` changes."""
     context = build_context(ExecutiveConfig("soccer", "approach-dribble", Settings()), SENDER)
-    _, start = domains.load_scenario("soccer", "approach-dribble", np.random.default_rng([0, 0]))
-    events, numbers = make_world("agilo", "approach-dribble", 0).events, itertools.count()
-    return run_lockstep(
-        context, AgiloBody(), start, 0, events, transport=lambda message: stamped(next(numbers), message)
-    )
+    world, numbers = make_world("agilo", "approach-dribble", 0), itertools.count()
+    return run_lockstep(context, world, transport=lambda message: stamped(next(numbers), message))
 
 
 def ahead(message, by_ns):

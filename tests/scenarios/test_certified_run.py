@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
-from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import replay
 from tailor.schemas.messages import RefinementReport, Subgoals
@@ -30,9 +31,8 @@ def run(certify_checks: int, checks: int = 12):
         ticks.append(tick)
         outputs.append(published)
 
-    _, start = domains.seeded_scenario("soccer", "waypoints", 3)
-    body = make_world(context.domain.robot, "waypoints", 3).body
-    run_lockstep(context, body, start, 3, limit_s=5.0, checks=checks, on_tick=on_tick)
+    world = make_world(context.domain.robot, "waypoints", 3)
+    run_lockstep(context, world, limit_s=5.0, new_budget=partial(CheckBudget, checks), on_tick=on_tick)
     return context, ticks, outputs
 
 

@@ -7,23 +7,18 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.schemas.messages import PlanReport
-from tailor.simnodes.agilo.body import AgiloBody
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
-
-BODY = AgiloBody()
 
 
 def play(scenario, seed, horizon=2):
     settings = Settings(seed=seed)
     settings = dataclasses.replace(settings, refinement=dataclasses.replace(settings.refinement, horizon=horizon))
     context = build_context(ExecutiveConfig("soccer", scenario, settings), SENDER)
-    _, start = domains.load_scenario("soccer", scenario, np.random.default_rng([seed, 0]))
-    return run_lockstep(context, BODY, start, seed, make_world("agilo", scenario, seed).events)
+    return run_lockstep(context, make_world("agilo", scenario, seed))
 
 
 def done(episode):

@@ -15,6 +15,7 @@ import numpy as np
 from tailor.executive import domains
 from tailor.executive.core.context import Context, Settings, make_context
 from tailor.schemas.installed.source import runs_sha256
+from tailor.simnodes.world import World
 from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.journal import Journal
@@ -81,7 +82,8 @@ def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     """
     context, start = _context(task, variant, seed)
     body, events = body_of(task.domain, task.profile), events_of(context.scenario)
-    return run_lockstep(context, body, start, seed + variant.noise, events, LIMIT_S), context
+    world = World(body, start, seed + variant.noise, events)
+    return run_lockstep(context, world, limit_s=LIMIT_S), context
 
 
 def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple[list[float], list[float]]:

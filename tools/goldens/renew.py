@@ -11,11 +11,13 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context, provenance
 from tailor.executive.core.context import Settings
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
 from tailor.tools.goldens.changes import changes, outcome
@@ -55,20 +57,11 @@ def record(golden: Golden, path: Path) -> None:
     """Run the scenario in lock-step and write the recording; equal bytes on every platform of the same kind."""
     config = ExecutiveConfig(golden.domain, golden.scenario, Settings(seed=golden.seed))
     context = build_context(config, SENDER)
-    _, start = domains.seeded_scenario(golden.domain, golden.scenario, golden.seed)
     world = make_world(context.domain.robot, golden.scenario, golden.seed)
     writer = RunWriter(path, context, {**provenance(config, context), "machine": platform_fingerprint()}, compact=True)
     recording = LockstepRecording(writer)
-    run_lockstep(
-        context,
-        world.body,
-        start,
-        golden.seed,
-        world.events,
-        checks=CHECKS,
-        on_tick=recording.on_tick,
-        transport=recording.transport,
-    )
+    budgets = partial(CheckBudget, CHECKS)
+    run_lockstep(context, world, new_budget=budgets, on_tick=recording.on_tick, transport=recording.transport)
     writer.close()
 
 

@@ -13,6 +13,7 @@ from tailor.executive.interfaces.action import Action
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals
 from tailor.simnodes.body import Body
+from tailor.simnodes.world import World
 from tailor.tools.learning.run_gathering import UNPROVEN, cached_models
 
 DECISION_S = 5.0  # by then the first refinement is finished, or the situation is left out
@@ -64,7 +65,7 @@ def refined_choices(domain_name: str, scenario: str, seed: int, zoo: str, body: 
     context = make_context(domain, drawn, cached_models(domain.robot, zoo), settings, SENDER)
     decision = _FirstDecision()
     try:
-        run_lockstep(context, body, start, seed, limit_s=DECISION_S, on_tick=decision)
+        run_lockstep(context, World(body, start, seed), limit_s=DECISION_S, on_tick=decision)
     except _DecidedError:
         assert decision.subgoals is not None
         return [

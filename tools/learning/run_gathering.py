@@ -23,6 +23,7 @@ from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
+from tailor.simnodes.world import World
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.lockstep import action_run
@@ -227,7 +228,8 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     settings = Settings(seed=seed, refinement=UNPROVEN)
     context = make_context(domain, drawn, cached_models(domain.robot, policy.zoo), settings, SENDER)
-    return EpisodeExtractor(domain).read(run_lockstep(context, action_run.new_body(domain), start, seed).messages)
+    world = World(action_run.new_body(domain), start, seed)
+    return EpisodeExtractor(domain).read(run_lockstep(context, world).messages)
 
 
 @lru_cache(maxsize=2)

@@ -6,8 +6,9 @@ Core, driver and guard are the same as in a live run over the bus.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 from tailor.executive.core.context import PERIOD_NS, Context
 from tailor.executive.core.state import Inputs, Output, State, initial_state
@@ -15,11 +16,11 @@ from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals
-from tailor.simnodes.body import Body
-from tailor.simnodes.world import Event, World
+from tailor.simnodes.world import World
 from tailor.tools.lockstep.driver_link import DriverLink, Transport
 
 CHECKS_PER_TICK = 300  # about what an idle machine grants in 60 ms
+DELIBERATION = partial(CheckBudget, CHECKS_PER_TICK)
 SENDER = "00" * 16
 
 TickObserver = Callable[[RecordedTick, tuple[Output, ...]], None]  # receives inputs and outputs of each tick
@@ -51,39 +52,32 @@ class Run:
 
 def run_lockstep(
     context: Context,
-    body: Body,
-    start: Mapping[str, float],
-    seed: int,
-    events: Sequence[Event] = (),
+    world: World,
+    *,
     limit_s: float = 90.0,
-    checks: int = CHECKS_PER_TICK,
+    new_budget: Callable[[], Budget] = DELIBERATION,
     on_tick: TickObserver | None = None,
     transport: Transport | None = None,
-    new_budget: Callable[[], Budget] | None = None,
 ) -> Run:
-    """Pursue the scenario's goal from `start` until it is achieved, has failed, or the time limit is reached.
+    """Pursue the scenario's goal until it is achieved, has failed, or the time limit is reached.
 
     Args:
       context: Built with sender `SENDER`.
-      body: Reset here; its noise is drawn from stream 1 of `seed`.
-      start: Start state, as `Body.reset` takes it.
-      seed: Seed of the body's noise.
-      events: Disturbances during the run.
+      world: At its start.
       limit_s: Limit of the simulated time.
-      checks: Budget of each tick's deliberation.
+      new_budget: Returns the budget of a tick's deliberation; called at the start of each tick.
       on_tick: Called after each tick.
       transport: Passes readings on as the bus does; None: the core receives the very values.
-      new_budget: Called at the start of each tick; None: every budget is of `checks`.
 
     Returns:
       Result, actions, subgoals, ground truth and all messages of the run.
     """
-    link = DriverLink(context.domain, World(body, start, seed, events), SENDER, transport)
+    link = DriverLink(context.domain, world, SENDER, transport)
     run, state = Run(), initial_state(context)
     goal, samples = context.problem.goal_text, _advance(link, 0, run)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):
         now_ns = tick * PERIOD_NS
-        inputs, budget = Inputs(samples, goal), new_budget() if new_budget else CheckBudget(checks)
+        inputs, budget = Inputs(samples, goal), new_budget()
         state, outputs = step(context, state, now_ns, inputs, budget)
         if on_tick is not None:
             on_tick(RecordedTick(tick, now_ns, inputs, budget.granted), outputs)

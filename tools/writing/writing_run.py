@@ -14,6 +14,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.schemas.messages import JointState, Message
 from tailor.simnodes.body import Reading
 from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.simnodes.world import World
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.writing.writing_mode import WritingMode
 from tailor.tools.writing.writing_track import WritingTrack, writing_track
@@ -66,7 +67,7 @@ def run_writing(
     # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(mode.refinement, certify_checks=0))
     context = make_context(domains.load("arm"), scenario, models, settings, SENDER)
-    run = run_lockstep(context, body, start, seed)
+    run = run_lockstep(context, World(body, start, seed))
     body.command((0.0, 0.0))
     body.advance(round(0.2e9))  # until the last state is out
     outputs = [message for message in run.messages if not isinstance(message, JointState)]  # the truth is one, too

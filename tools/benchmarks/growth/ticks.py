@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -50,10 +51,10 @@ def _crowd(start: Mapping[str, float], count: int) -> dict[str, float]:
 def _longest_ms(domain: str, scenario: str, start: Mapping[str, float], seconds: float) -> float:
     """Of the median of three replays of each tick, the longest."""
     ticks: list[RecordedTick] = []
-    body = make_world(domains.load(domain).robot, scenario, 0).body
-    run_lockstep(
-        _context(domain, scenario), body, start, 0, limit_s=seconds, checks=CHECKS, on_tick=lambda t, _: ticks.append(t)
-    )
+    context, budgets = _context(domain, scenario), partial(CheckBudget, CHECKS)
+    world = make_world(context.domain.robot, scenario, 0)
+    world.reset(start=start)
+    run_lockstep(context, world, limit_s=seconds, new_budget=budgets, on_tick=lambda t, _: ticks.append(t))
     replays = [_replayed_ms(_context(domain, scenario), ticks) for _ in range(3)]
     return float(np.max(np.median(replays, axis=0)))
 

@@ -49,8 +49,9 @@ def driven(seed: int, costs: Costs) -> Run:
     scenario = replace(context.scenario, problem=PROBLEM, places={}, settings=settings)
     problem = planning.parse_problem(PROBLEM, context.pddl_domain, "errands")
     start = {name: value for name, value in start.items() if not name.startswith("cup")} | _cups(start, spots)
-    body = make_world(context.domain.robot, SCENARIO, seed).body
-    return run_lockstep(replace(context, scenario=scenario, problem=problem), body, start, seed, limit_s=LIMIT_S)
+    world = make_world(context.domain.robot, SCENARIO, seed)
+    world.reset(start=start)
+    return run_lockstep(replace(context, scenario=scenario, problem=problem), world, limit_s=LIMIT_S)
 
 
 def _cups(start: dict[str, float], spots: Spots) -> dict[str, float]:

@@ -45,7 +45,6 @@ def shares(domain: str, scenario: str, seconds: float) -> list[float]:
 
 def _shares(domain: str, scenario: str, seconds: float) -> list[float]:
     world = make_world(domains.load(domain).robot, scenario, 0)
-    _, start = domains.seeded_scenario(domain, scenario, 0)
     context = build_context(ExecutiveConfig(domain, scenario), SENDER)
     marks = [0]
 
@@ -55,7 +54,7 @@ def _shares(domain: str, scenario: str, seconds: float) -> list[float]:
 
     with _timed(PlanSource, "advance") as searched, _timed(Preparation, "advance") as prepared:
         run_lockstep(
-            context, world.body, start, 0, world.events, limit_s=seconds, on_tick=on_tick,
+            context, world, limit_s=seconds, on_tick=on_tick,
             new_budget=lambda: ClockBudget(time.process_time_ns() + DELIBERATION_NS, time.process_time_ns),
         )  # fmt: skip
     return [100.0 * float(ns) / PERIOD_NS for ns in np.diff(marks)]

@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive import domains, planning
+from tailor.executive import planning
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
@@ -28,10 +28,9 @@ Costs = Literal["steps", "models"]
 def driven(seed: int, costs: Costs) -> Run:
     """One tour through the places of the scenario, in an order of the planner's choice."""
     context = build_context(ExecutiveConfig(DOMAIN, SCENARIO, Settings(seed=seed, plan_costs=costs)), SENDER)
-    _, start = domains.seeded_scenario(DOMAIN, SCENARIO, seed)
     problem = planning.parse_problem(PROBLEM, context.pddl_domain, "tour")
     context = replace(context, scenario=replace(context.scenario, problem=PROBLEM), problem=problem)
-    return run_lockstep(context, make_world(context.domain.robot, SCENARIO, seed).body, start, seed)
+    return run_lockstep(context, make_world(context.domain.robot, SCENARIO, seed))
 
 
 def run(console: Console, quick: bool) -> None:

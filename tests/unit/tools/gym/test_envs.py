@@ -1,6 +1,7 @@
 """Environments of gymnasium over every robot: its own checker, equality with lock-step runs, rewards, refusals."""
 
 import warnings
+from functools import partial
 
 import gymnasium
 import numpy as np
@@ -11,11 +12,13 @@ from gymnasium.utils.seeding import np_random
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
 from tailor.tools.gym import env_ids, register_envs
 from tailor.tools.lockstep.action_run import new_body, run_action, sampler_of
 from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.worlds import make_world
 
 FEW = 20  # checks of a tick: the refined choice matters little here
 OWN_WARNINGS = ("infinity", "symmetric and normalized")  # beliefs have no bounds; commands are in units of the robot
@@ -58,8 +61,8 @@ def test_the_executive_s_own_commands_repeat_its_run_bit_for_bit():
     observations, rewards, infos = followed(env, seed=4)
     seed = infos[0]["seed"]
     context = build_context(ExecutiveConfig("arm", "letter-I", Settings(seed=seed)), SENDER)
-    _, start = domains.seeded_scenario("arm", "letter-I", seed)
-    run = run_lockstep(context, new_body(context.domain), start, seed, checks=FEW)
+    world = make_world(context.domain.robot, "letter-I", seed)
+    run = run_lockstep(context, world, new_budget=partial(CheckBudget, FEW))
     assert (run.result, infos[-1]["result"]) == ("achieved", "achieved")
     ticks = run.status[-len(observations) :]
     assert [tuple(each["belief"]) for each in observations] == [status.belief for status in ticks]
