@@ -17,13 +17,8 @@ if TYPE_CHECKING:
     from tailor.executive.planning.pddl.problem_reader import parse_problem
     from tailor.executive.planning.pddl.problem_text import format_problem
     from tailor.executive.planning.plan_quality import quality
-    from tailor.executive.planning.plans.action_effects import apply_action
-    from tailor.executive.planning.plans.completion import completed, completion
     from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
     from tailor.executive.planning.plans.portions import PacedWork, Work
-    from tailor.executive.planning.plans.state import Objects
-    from tailor.executive.planning.plans.suffix import relink, shortest_suffix, suffix
-    from tailor.executive.planning.plans.validator import validate, validation
     from tailor.executive.planning.plans.vhpop_reader import PlanTextError, parse_plan
     from tailor.executive.planning.plans.vhpop_text import (
         EXCERPT_STEPS,
@@ -33,6 +28,11 @@ if TYPE_CHECKING:
         number_of_steps,
     )
     from tailor.executive.planning.search import GroundCache, Search
+    from tailor.executive.planning.semantics.action_effects import apply_action
+    from tailor.executive.planning.semantics.completion import completed, completion
+    from tailor.executive.planning.semantics.state import Objects
+    from tailor.executive.planning.semantics.suffix import relink, shortest_suffix, suffix
+    from tailor.executive.planning.semantics.validator import validate, validation
     from tailor.executive.planning.settings import DEFAULT, MATCHING, EngineName, FlawOrder, Settings
 
 __all__ = [
@@ -84,9 +84,9 @@ __all__ = [
 _MODULES = {
     "AnytimeSearch": "anytime",
     "quality": "plan_quality",
-    "apply_action": "plans.action_effects",
-    "completed": "plans.completion",
-    "completion": "plans.completion",
+    "apply_action": "semantics.action_effects",
+    "completed": "semantics.completion",
+    "completion": "semantics.completion",
     "DEFAULT": "settings",
     "Domain": "pddl.language",
     "EngineName": "settings",
@@ -102,7 +102,7 @@ _MODULES = {
     "Literal": "pddl.language",
     "MATCHING": "settings",
     "number_of_steps": "plans.vhpop_text",
-    "Objects": "plans.state",
+    "Objects": "semantics.state",
     "PacedWork": "plans.portions",
     "parse_domain": "pddl.domain_reader",
     "parse_plan": "plans.vhpop_reader",
@@ -112,18 +112,18 @@ _MODULES = {
     "PlanEnumeration": "enumeration",
     "PlanTextError": "plans.vhpop_reader",
     "Problem": "pddl.problem",
-    "relink": "plans.suffix",
+    "relink": "semantics.suffix",
     "Result": "plans.plan",
     "Search": "search",
     "Settings": "settings",
-    "shortest_suffix": "plans.suffix",
+    "shortest_suffix": "semantics.suffix",
     "Step": "plans.plan",
-    "suffix": "plans.suffix",
+    "suffix": "semantics.suffix",
     "UndecidedError": "orders.every_order",
     "Unsupported": "pddl.errors",
-    "validate": "plans.validator",
+    "validate": "semantics.validator",
     "validate_every_order": "orders.every_order",
-    "validation": "plans.validator",
+    "validation": "semantics.validator",
     "Work": "plans.portions",
 }
 

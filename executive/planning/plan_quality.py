@@ -6,8 +6,8 @@ from fractions import Fraction
 from typing import Literal as OneOf
 
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.durations import evaluated
 from tailor.executive.planning.plans.plan import Plan
+from tailor.executive.planning.semantics.durations import evaluated
 
 Measure = OneOf["makespan", "cost", "steps"]
 

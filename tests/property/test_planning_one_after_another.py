@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tailor.executive.planning import Settings, validate
-from tailor.executive.planning.plans.state import Objects, fact_of, holds
+from tailor.executive.planning.semantics.state import Objects, fact_of, holds
 from tests.property.test_planning_lifted import DURATIVE, tasks
 from tests.support.planning_problems import read, solve
 

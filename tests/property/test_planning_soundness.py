@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.planning import FlawOrder, Settings, validate
-from tailor.executive.planning.plans.action_effects import apply_action
-from tailor.executive.planning.plans.state import Objects, holds
+from tailor.executive.planning.semantics.action_effects import apply_action
+from tailor.executive.planning.semantics.state import Objects, holds
 from tests.support.planning_problems import read, solve
 
 FACTS = ["(p a)", "(p b)", "(q a)", "(q b)", "(r)"]

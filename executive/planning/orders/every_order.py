@@ -10,9 +10,9 @@ from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Plan
-from tailor.executive.planning.plans.regression import NotClassical
-from tailor.executive.planning.plans.state import Objects, State, holds
-from tailor.executive.planning.plans.validator import Unsound, bind_step
+from tailor.executive.planning.semantics.regression import NotClassical
+from tailor.executive.planning.semantics.state import Objects, State, holds
+from tailor.executive.planning.semantics.validator import Unsound, bind_step
 
 MAX_STATES = 20_000  # of walking through all orders: about a second
 

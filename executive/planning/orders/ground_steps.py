@@ -9,9 +9,9 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Action, Literal
 from tailor.executive.planning.plans.plan import Plan, Step
-from tailor.executive.planning.plans.regression import NotClassical, conjunction
-from tailor.executive.planning.plans.state import Binding, Objects, State, holds
-from tailor.executive.planning.plans.validator import affected
+from tailor.executive.planning.semantics.action_effects import affected
+from tailor.executive.planning.semantics.regression import NotClassical, conjunction
+from tailor.executive.planning.semantics.state import Binding, Objects, State, holds
 
 
 @dataclass(frozen=True, slots=True)

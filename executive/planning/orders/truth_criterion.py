@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from tailor.executive.planning.orders.ground_steps import GroundStep
 from tailor.executive.planning.pddl.language import Literal
-from tailor.executive.planning.plans.regression import conjunction
-from tailor.executive.planning.plans.state import Objects
+from tailor.executive.planning.semantics.regression import conjunction
+from tailor.executive.planning.semantics.state import Objects
 
 
 @dataclass(slots=True)

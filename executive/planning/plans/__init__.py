@@ -1,1 +1,1 @@
-"""Finished plans: text formats, validation, completion, suffixes. Shares nothing with the search."""
+"""Finished plans as values: text formats, schedules, work in portions."""

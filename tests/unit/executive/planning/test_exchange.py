@@ -19,9 +19,9 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
-from tailor.executive.planning.plans.links import linking
 from tailor.executive.planning.plans.portions import completed_work
-from tailor.executive.planning.plans.state import Objects
+from tailor.executive.planning.semantics.links import linking
+from tailor.executive.planning.semantics.state import Objects
 from tailor.schemas.installed import domain_names
 from tests.support.planning_problems import DATA, OWN, own, printed, read, solve
 

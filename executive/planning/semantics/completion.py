@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.links import linking
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.plans.state import Objects
-from tailor.executive.planning.plans.suffix import relinking
-from tailor.executive.planning.plans.validator import validation
+from tailor.executive.planning.semantics.links import linking
+from tailor.executive.planning.semantics.state import Objects
+from tailor.executive.planning.semantics.suffix import relinking
+from tailor.executive.planning.semantics.validator import validation
 
 
 def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:

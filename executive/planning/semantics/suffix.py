@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.links import linking, orderings_for
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.plans.regression import Regression
 from tailor.executive.planning.plans.schedule import closure, scheduling
-from tailor.executive.planning.plans.state import Objects
-from tailor.executive.planning.plans.validator import validation
+from tailor.executive.planning.semantics.links import linking, orderings_for
+from tailor.executive.planning.semantics.regression import Regression
+from tailor.executive.planning.semantics.state import Objects
+from tailor.executive.planning.semantics.validator import validation
 
 
 def suffix(plan: Plan, done: Collection[int], domain: Domain, problem: Problem) -> Plan | None:

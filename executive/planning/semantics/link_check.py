@@ -6,7 +6,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, Effect
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.plans.state import Binding, Objects, fact_of
+from tailor.executive.planning.semantics.state import Binding, Objects, fact_of
 
 LINKS = 16  # as much work as the simulation of one step
 Bound = dict[int, tuple[Action, Binding]]  # schema and binding of each step

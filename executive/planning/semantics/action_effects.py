@@ -1,12 +1,13 @@
-"""Effects of an executed action, for an executive that tracks facts without sensors."""
+"""Effects of actions on states, and of an executed one for an executive that tracks facts without sensors."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.pddl.language import Domain
+from tailor.executive.planning.pddl.language import Domain, Effect
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.state import Objects
-from tailor.executive.planning.plans.validator import affected
+from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of, holds
 
 
 def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
@@ -30,3 +31,17 @@ def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], actio
         changed = affected(effect, binding, facts, Objects(problem))
         (added if effect.positive else removed).update(changed)
     return (facts - removed) | added
+
+
+def affected(
+    effect: Effect, binding: Binding, state: State, objects: Objects, began: State | None = None
+) -> Iterator[Fact]:
+    """The facts that an effect makes true or false in a state.
+
+    Its conditions at start are evaluated in `began`, the state before the action, if given; conditions over all only
+    in the state of the effect.
+    """
+    before = state if began is None else began
+    for inner in objects.bindings(effect.variables, binding):
+        if all(holds(c.formula, inner, before if c.when == "start" else state, objects) for c in effect.condition):
+            yield fact_of(effect.atom, inner)

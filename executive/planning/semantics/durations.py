@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric
-from tailor.executive.planning.plans.state import Binding
+from tailor.executive.planning.semantics.state import Binding
 
 _OPERATORS: dict[str, Callable[[Fraction, Fraction], Fraction]] = {
     "+": operator.add,

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, And, Atom, Domain, Equal, Formula, Literal, Not
 from tailor.executive.planning.plans.plan import GOAL, Step
-from tailor.executive.planning.plans.state import Binding, Objects, fact_of
+from tailor.executive.planning.semantics.state import Binding, Objects, fact_of
 
 
 class NotClassical(Exception):

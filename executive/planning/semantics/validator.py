@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_text import format_atom
-from tailor.executive.planning.pddl.language import Action, Domain, Effect
+from tailor.executive.planning.pddl.language import Action, Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.durations import allowed_durations
-from tailor.executive.planning.plans.link_check import Bound, faulty_link
 from tailor.executive.planning.plans.plan import Plan, Step
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.plans.state import Binding, Objects, State, conditions_at, fact_of, holds
+from tailor.executive.planning.semantics.action_effects import affected
+from tailor.executive.planning.semantics.durations import allowed_durations
+from tailor.executive.planning.semantics.happenings import Event, happenings
+from tailor.executive.planning.semantics.link_check import Bound, faulty_link
+from tailor.executive.planning.semantics.state import Binding, Objects, State, conditions_at, holds
 
-SAME_TIME_S = 1e-6  # events closer than this, or than half a tick, happen together
 SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
 SLACK_S = 1e-7  # of a float
 
 
 class Unsound(Exception):
     """The reason why a plan is unsound."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Event:
-    """The start or end of a step, a whole step without duration, or a timed literal."""
-
-    time: float
-    rank: int  # order of simultaneous events: ends first
-    label: str
-    step: Step | None
-    ends: bool
-    added: frozenset[Fact] = frozenset()
-    removed: frozenset[Fact] = frozenset()
 
 
 def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
@@ -105,7 +90,7 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
     state = objects.initial
     running: list[Step] = []
     began: dict[int, State] = {}  # state just before the start of each step
-    for events in _happenings(plan, objects):
+    for events in happenings(plan, objects.problem.timed):
         starting = [event.step for event in events if event.step and event.step.id not in bound]
         for step in starting:
             bound[step.id] = bind_step(step, domain, objects)
@@ -124,53 +109,21 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
     return state
 
 
-def _happenings(plan: Plan, objects: Objects) -> Iterator[list[_Event]]:
-    """Events grouped by time; without durations every step is a group."""
-    timed = objects.problem.timed
-    if not (timed or plan.durative):  # one after another: most suffixes of a plan fail at their first event
-        for step in sorted(plan.steps, key=lambda step: step.start):
-            yield [_Event(step.start, 1, f"step {step.id}", step, ends=True)]
-        return
-    events = [_literal_event(t.time_s, t.literal.fact, t.literal.positive) for t in timed]
-    for step in plan.steps:
-        events.append(_Event(step.start, 1, f"step {step.id}", step, ends=not plan.durative))
-        if plan.durative:
-            events.append(_Event(step.start + step.duration, 0, f"step {step.id}", step, ends=True))
-    if not plan.durative:
-        yield from ([event] for event in sorted(events, key=lambda event: event.time))
-        return
-    same_s = min(SAME_TIME_S, plan.tick_s / 2)
-    group: list[_Event] = []
-    for event in sorted(events, key=lambda event: (event.time, event.rank)):
-        if group and event.time - group[0].time > same_s:
-            yield group
-            group = []
-        group.append(event)
-    if group:
-        yield group
-
-
-def _literal_event(time_s: float, fact: Fact, positive: bool) -> _Event:
-    facts, none = frozenset([fact]), frozenset[Fact]()
-    label = f"the timed literal {format_atom(fact)}"
-    return _Event(time_s, 0, label, None, False, facts if positive else none, none if positive else facts)
-
-
-def _moments(event: _Event, action: Action) -> tuple[str, ...]:
+def _moments(event: Event, action: Action) -> tuple[str, ...]:
     """The moments of its action that an event covers."""
     if action.duration is None:
         return ("start", "end") if event.ends else ()
     return ("end",) if event.ends else ("start",)
 
 
-def _check_conditions(events: list[_Event], state: State, objects: Objects, bound: Bound) -> None:
+def _check_conditions(events: list[Event], state: State, objects: Objects, bound: Bound) -> None:
     for event in events:
         when = _unmet(event, state, objects, bound)
         if when and event.step is not None:
             raise Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
 
 
-def _unmet(event: _Event, state: State, objects: Objects, bound: Bound) -> str:
+def _unmet(event: Event, state: State, objects: Objects, bound: Bound) -> str:
     """The moment of an event's first condition that fails in a state; "" if all hold."""
     if event.step is None:
         return ""
@@ -190,7 +143,7 @@ def _check_invariants(running: list[Step], state: State, objects: Objects, bound
 
 
 def _changes(
-    event: _Event, state: State, began: dict[int, State], objects: Objects, bound: Bound
+    event: Event, state: State, began: dict[int, State], objects: Objects, bound: Bound
 ) -> tuple[frozenset[Fact], frozenset[Fact]]:
     """The facts that an event adds and removes; add effects win over delete effects of the same event."""
     if event.step is None:
@@ -205,21 +158,7 @@ def _changes(
     return frozenset(added), frozenset(removed - added)
 
 
-def affected(
-    effect: Effect, binding: Binding, state: State, objects: Objects, began: State | None = None
-) -> Iterator[Fact]:
-    """The facts that an effect makes true or false in a state.
-
-    Its conditions at start are evaluated in `began`, the state before the action, if given; conditions over all only
-    in the state of the effect.
-    """
-    before = state if began is None else began
-    for inner in objects.bindings(effect.variables, binding):
-        if all(holds(c.formula, inner, before if c.when == "start" else state, objects) for c in effect.condition):
-            yield fact_of(effect.atom, inner)
-
-
-_Change = tuple[_Event, frozenset[Fact], frozenset[Fact]]
+_Change = tuple[Event, frozenset[Fact], frozenset[Fact]]
 
 
 def _check_interference(changes: list[_Change], state: State, objects: Objects, bound: Bound) -> None:

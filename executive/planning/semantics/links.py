@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 from tailor.executive.planning.pddl.language import Domain, Literal
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.plans.simulation import Event, Requirement, simulate
-from tailor.executive.planning.plans.state import Objects, fact_of
+from tailor.executive.planning.semantics.simulation import Event, Requirement, simulate
+from tailor.executive.planning.semantics.state import Objects, fact_of
 
 LINKS = 4  # as much work as the simulation of one step
 

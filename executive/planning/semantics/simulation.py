@@ -12,7 +12,7 @@ from tailor.executive.planning.pddl.language import Action, Domain, Effect, Form
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Plan
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.plans.state import Binding, Objects, State, fact_of, holds, support
+from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of, holds, support
 
 
 @dataclass(frozen=True, slots=True)
