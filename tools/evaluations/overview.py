@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from tailor.tools.cli.column_titles import column_title
 from tailor.tools.evaluations.report import shown
 from tailor.tools.figures.report_page import page, table
 
@@ -55,5 +56,6 @@ def _section(folder: Path, name: str) -> str:
     rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
     columns = [column for column in MAIN if any(column in row for row in rows)]
     cells = [["" if row.get(column) is None else shown(row[column]) for column in columns] for row in rows]
+    titles = [column_title(column) for column in columns]
     heading = f'<h2><a href="{name}.html">{html.escape(report["title"])}</a></h2>'
-    return f"{heading}{table(f'{name}, {when}', columns, cells)}"
+    return f"{heading}{table(f'{name}, {when}', titles, cells)}"

@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.column_titles import column_title
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.figures.report_page import image, page, table
 from tailor.tools.parallel.cluster import configure_cluster
@@ -121,7 +122,8 @@ def _print(report: Report) -> None:
 def _tabled(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
     """Head and cells; transposed if there are more columns than fit a screen."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    lines = [columns, *([shown(row.get(column, "")) for column in columns] for row in rows)]
+    titles = [column_title(column) for column in columns]
+    lines = [titles, *([shown(row.get(column, "")) for column in columns] for row in rows)]
     if len(columns) > MAX_COLUMNS and len(columns) > len(rows):
         lines = [list(line) for line in zip(*lines, strict=True)]
     return lines[0], lines[1:]

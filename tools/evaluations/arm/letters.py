@@ -34,8 +34,8 @@ DOMAINS = ("arm",)
 PAPER = "paper: 4-5 actions, n = 4: 10.6 s greedy, 10.0 s refined, 5.7 %, p = 0.08"
 REMARKS = (
     "each mode against stopping at each waypoint, against greedy by the learned model and against greedy by the "
-    "simulator's own outcome; ci95: over letters, the mean of a letter's seeds counts once; energy and arrival_… with "
-    "the difference to learned greedy",
+    "simulator's own outcome; 95 % interval: over letters, the mean of a letter's seeds counts once; energy and "
+    "arrival with the difference to learned greedy",
     "an oracle chooses by the controller's own rule, averaged over temperatures; all ahead is the ceiling",
 )
 SHOWN = "FTAS"  # in the picture

@@ -26,9 +26,9 @@ REMARKS = (
     "before: the same controllers, nothing is predicted to fail. after: learned success, asserted subgoals. baseline: "
     "the same controllers on ways around the believed objects, from a graph of poses and arcs.",
     "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
-    "succeeds. *_slower_pct: in the mean, against before, where both succeed; of after where the subgoal was needless; "
-    "baseline_needless_slower_pct: of the baseline from these starts, where before may have been lucky.",
-    "after_to_baseline_pct: how much slower after is than the baseline where both succeed; 95 % interval by start.",
+    "succeeds. slower: in the mean, against before, where both succeed; of after where the subgoal was needless; "
+    "baseline needless slower: of the baseline from these starts, where before may have been lucky.",
+    "after to baseline: how much slower after is than the baseline where both succeed; 95 % interval by start.",
 )
 
 Outcomes = Mapping[int, Outcome]  # by seed

@@ -44,8 +44,8 @@ Repeats = Mapping[int, Sequence[Outcome]]
 REMARKS = (
     "Each run against the lock-step runs of the same start, which differ only by their noise. The second row is one "
     "more lock-step run of each start: the reference of perfect agreement with so few starts.",
-    "difference_pct, ci95_pct, p_value: of the geometric means, paired; p_rank: whether the ranks of the runs among "
-    "their start's lock-step runs are uniform; within_range_pct: runs between the shortest and longest of their start.",
+    "difference, 95 % interval, p value: of the geometric means, paired; p rank: whether the ranks of the runs among "
+    "their start's lock-step runs are uniform; within range: runs between the shortest and longest of their start.",
     f"equivalent: both one-sided t-tests (TOST) reject at 5 % a difference of the means of {MARGIN_PCT:g} % or more.",
 )
 

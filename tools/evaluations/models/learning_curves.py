@@ -43,8 +43,8 @@ GREEDY, REFINED = Variant("h1", replace(DEFAULT, horizon=1)), Variant("h2", DEFA
 REMARKS = (
     "episodes: most of each action; on-policy: half random, half from runs of the scenario with the models of the "
     "random half; active: that half from choices on which these models disagree most",
-    "improvement: refined over greedy with the same models; ci95 over sets of models, each learned anew; all sets are "
-    "judged from the same starts; error: mean absolute, of the mean duration, on fresh random episodes",
+    "improvement: refined over greedy with the same models; 95 % interval over sets of models, each learned anew; all "
+    "sets are judged from the same starts; error: mean absolute, of the mean duration, on fresh random episodes",
 )
 
 

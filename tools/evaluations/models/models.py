@@ -29,8 +29,8 @@ from tailor.tools.evaluations.seeds import seeds_of
 
 Row = dict[str, Any]
 REMARKS = (
-    "mae_s: of the fresh episodes that finished, ci95 over episodes; bias: predicted minus observed; noise_floor: "
-    "repeated runs of the same tasks with other noise; failures: predicted_observed, percent of all fresh episodes; "
+    "MAE: of the fresh episodes that finished, 95 % interval over episodes; bias: predicted minus observed; noise "
+    "floor: repeated runs of the same tasks with other noise; failures: predicted and observed, of all fresh episodes; "
     "coverage: share of durations within the interval that is to hold 90 %, and in thirds of predicted spread",
 )
 

@@ -30,7 +30,7 @@ TASK = ("soccer", "approach-dribble")
 REMARKS = (
     "angle: the robot's heading at the ball in the field's frame, the free angle of approach; its speed there is free "
     "too, and as refinement chose it",
-    "regret_pct: how much longer the simulated episode takes at the model's best angle than at the best angle of all "
+    "regret: how much longer the simulated episode takes at the model's best angle than at the best angle of all "
     "(the best of many noisy runs: a perfect model has a little regret, too)",
     "ring: the executive asserts a subgoal before the approach, which is part of that action's time",
 )

@@ -23,12 +23,12 @@ from tailor.tools.evaluations.seeds import seeds_of
 REMARKS = (
     "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "
     "failures and contacts: share of all runs; arrival: mean error at the ends of the actions, by the ground truth",
-    "ci95: of the improvement, over independent units; more_ci95: of the difference, refined minus greedy; p: paired "
+    "95 % interval: of the improvement, over independent units; difference: refined minus greedy; p: paired "
     "t-test, for shares McNemar's exact test; bias: predicted minus actual duration of an action",
 )
 ORACLE_REMARK = (
-    "oracle: the best of all simulated choices, the ceiling; oracle_again: its choices with other noise; "
-    "share_of_oracle: of the ceiling's gain; oracle_greedy: the choice whose first action ends soonest; zero: all free "
+    "oracle: the best of all simulated choices, the ceiling; oracle again: its choices with other noise; "
+    "share of oracle: of the ceiling's gain; oracle greedy: the choice whose first action ends soonest; zero: all free "
     "parameters zero"
 )
 
