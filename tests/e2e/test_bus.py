@@ -157,6 +157,7 @@ def test_requests_are_served_from_a_loop(pair):
     assert a.call("exec/goal", "(good)", timeout_s=0.2) == (False, "no response within 0.2 s")
 
 
+@pytest.mark.promise("P41")
 def test_a_look_at_all_keys_is_no_request(pair):
     """An empty request to this service is one for the scenario's goal: an armed robot would set off."""
     a, b = pair

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -128,3 +130,14 @@ def test_the_summary_adds_up_tries_over_parameters_and_takes_the_worst_value() -
         ["P7", "a.py::test_c", "0", "FAILED"],
         ["P7", "a.py::test_d", "1", "passed"],
     ]
+
+
+@pytest.mark.slow
+def test_make_test_faults_collects_each_test_of_the_page_and_no_other() -> None:
+    """A marker that pytest does not collect, e.g. of a test that is defined twice, passes for a kept promise."""
+    makefile = (ROOT / "Makefile").read_text()
+    assert "pytest -m promise --promises" in makefile
+    argv = [sys.executable, "-m", "pytest", "-m", "promise", "--collect-only", "tests"]
+    lines = subprocess.run(argv, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    collected = {"::".join(line.partition("[")[0].split("::")[:2]) for line in lines if "::" in line}
+    assert collected == {test for promise in PROMISES for test in promise.tests}

@@ -109,6 +109,7 @@ def test_a_sensor_that_ceased_is_judged_by_its_age_alone():
     ]
 
 
+@pytest.mark.promise("P6")
 def test_a_second_sender_of_a_sensor_counts_only_once_the_first_is_silent():
     """As of a simulator that was started twice, or a recording that is replayed beside the robot."""
 

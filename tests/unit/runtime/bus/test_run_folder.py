@@ -137,6 +137,7 @@ def test_a_folder_of_another_user_is_refused(base, monkeypatch, which):
         pass
 
 
+@pytest.mark.promise("P16")
 @pytest.mark.parametrize("which", ["of all runs", "of the bus"])
 def test_a_router_in_a_folder_that_others_may_write_is_not_ours(monkeypatch, which):
     """Without a login session the folder lies in /tmp: whoever makes it first would be sent our e-stops."""
