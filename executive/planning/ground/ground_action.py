@@ -28,7 +28,8 @@ class GroundAction:
 
     Durations are in units of the time grid, `longest` is None without an upper limit; both are 0 if the
     domain has no durative actions. `bits` maps each literal that the action may make true to a bit mask of moments.
-    `external_conditions` must be achieved by other steps: see the function of that name.
+    `external_conditions` must be achieved by other steps: see the function of that name. `restored` are deletions of
+    what the action adds again at that moment: no effects.
     """
 
     number: int  # grounding order
@@ -42,6 +43,7 @@ class GroundAction:
     duration_s: float = 0.0  # shortest duration
     simple: bool = True  # no conditional effects
     cost: float = 0.0  # by which it increases the total cost
+    restored: tuple[GroundEffect, ...] = ()
 
     def __str__(self) -> str:
         return f"({' '.join(self.name)})"

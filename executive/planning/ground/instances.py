@@ -41,7 +41,7 @@ def instance(
     cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
     if bounds is None or conditions is None or cost is None or cost < 0:
         return None
-    effects = _useful(conditions, _effects(schema, binding, world, facts))
+    effects, restored = _useful(conditions, _effects(schema, binding, world, facts))
     if not effects:
         return None
     bits: dict[int, int] = {}
@@ -59,6 +59,7 @@ def instance(
         float(bounds[0]),
         not any(effect.conditions for effect in effects),
         float(cost),
+        restored,
     )
 
 
@@ -100,10 +101,10 @@ def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTa
 
 def _useful(
     conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
-) -> tuple[GroundEffect, ...]:
+) -> tuple[tuple[GroundEffect, ...], tuple[GroundEffect, ...]]:
     """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
 
-    An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
+    The latter are returned apart. An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
     same action adds at that moment neither achieves nor threatens: add effects win.
     """
     required = {(part, span[1]) for part, span in conditions}
@@ -111,11 +112,14 @@ def _useful(
     for effect in effects:
         at.setdefault((effect.literal, effect.moment), []).append(effect)
     kept: list[GroundEffect] = []
+    restored: list[GroundEffect] = []
     for effect in effects:
         if (effect.literal, effect.moment) not in required:
             additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
-            kept += _unless_added(effect, additions)
-    return tuple(kept)
+            variants = _unless_added(effect, additions)
+            kept += variants
+            restored += [] if variants else [effect]
+    return tuple(kept), tuple(restored)
 
 
 def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:

@@ -31,12 +31,20 @@ class GroundFlawMeasures:
         return False
 
     def is_unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
-        """See `FlawMeasures`."""
-        late, masks = plan.orderings.late, plan.effects.masks()
+        """See `FlawMeasures`; as for VHPOP 2.2.1, also by a step that restores at once what it deletes."""
         if isinstance(condition.condition, Disjunction):
             return False
-        literals = literals_of(condition.condition)
-        return any(masks[x ^ 1] & ~late[condition.last] & ~(1 << condition.first) for x in literals)
+        masks, earlier = plan.effects.masks(), ~plan.orderings.late[condition.last] & ~(1 << condition.first)
+        undoing = {literal ^ 1 for literal in literals_of(condition.condition)}
+        return any(masks[literal] & earlier for literal in undoing) or self._is_restored(plan, undoing, earlier)
+
+    def _is_restored(self, plan: PartialPlan, undoing: set[int], nodes: int) -> bool:
+        """Whether a step makes one of the literals true at one of the nodes, and false again at once."""
+        return any(
+            effect.literal in undoing and nodes >> (self._first + number * self._moments + effect.moment) & 1
+            for number, action in enumerate(plan.steps)
+            for effect in action.restored
+        )
 
     def count_condition_refinements(self, plan: PartialPlan, condition: OpenCondition) -> int:
         """See `FlawMeasures`."""

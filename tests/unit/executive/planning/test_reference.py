@@ -103,8 +103,9 @@ def test_reads_what_the_original_prints(name, form):
 IPC = {key: row for key, row in reference(SHARED, "22-ipc3").items() if key[0].startswith("ipc/")}
 # within the first 1000 plans only the first flaw order is used: these are its counts
 FIRST_ROUND = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
-# rovers' {u} criterion asks for steps that delete a condition; the original also takes those that restore it at once
-LATER_ROUNDS = {key: row for key, row in IPC.items() if key not in FIRST_ROUND and key[0] != "ipc/rovers-strips"}
+LATER_ROUNDS = {key: row for key, row in IPC.items() if key not in FIRST_ROUND}
+# Beside steps that restore at once what they delete, such as (stack x x), {u} chooses differently in rare cases.
+NEARLY = {("ipc/blocks", "p02"), ("ipc/blocks", "p05"), ("ipc/rovers-strips", "p07")}
 given = pytest.mark.skipif(not IPC, reason="../shared/pddl is absent: no competition problems to compare with")
 
 
@@ -129,8 +130,9 @@ def test_ipc_counts_in_turns_are_the_originals(key):
     domain, problem = ipc(*key)
     result = solve(domain, problem, IPC3)
     assert validate(result.plan, domain, problem) == ""
-    if key in {("ipc/blocks", "p02"), ("ipc/blocks", "p05")}:  # (stack x x) restores what it deletes, see above
+    if key in NEARLY:
         assert result.generated == pytest.approx(int(LATER_ROUNDS[key]["plans_generated"]), rel=0.001)
+        assert result.visited == pytest.approx(int(LATER_ROUNDS[key]["plans_visited"]), rel=0.005)
     else:
         assert_same_counts(result, LATER_ROUNDS[key])
 
