@@ -104,8 +104,8 @@ def _useful(
 ) -> tuple[tuple[GroundEffect, ...], tuple[GroundEffect, ...]]:
     """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
 
-    The latter are returned apart. An effect is a no-op if a condition of the action holds up to that very moment. A delete effect whose literal the
-    same action adds at that moment neither achieves nor threatens: add effects win.
+    The latter are returned apart. An effect is a no-op if a condition of the action holds up to that very moment. A
+    delete effect whose literal the same action adds at that moment neither achieves nor threatens: add effects win.
     """
     required = {(part, span[1]) for part, span in conditions}
     at: dict[tuple[int, int], list[GroundEffect]] = {}
