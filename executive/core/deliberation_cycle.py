@@ -148,11 +148,11 @@ def _starts_another(decision: Decision, running: Running) -> bool:
 
 
 def _situation_changed(context: Context, state: State) -> bool:
-    """Whether a believed value to which the running sequence is bound has moved, or objects now put it at risk."""
+    """Whether the belief has left values or ranges of the running sequence, or objects now put it at risk."""
     decision = state.task.decision
     if decision is None or state.task.running is None:
         return False
-    if decision.watch.bindings_violated(state.belief):
+    if decision.watch.outdated(state.belief, decision.choice.values):
         return True
     now, choice = decision.watch.among_changed_objects(state.belief), decision.choice
     if now is None:

@@ -84,7 +84,7 @@ class Parameter:
       upper: Upper end of the default range.
       periodic: Whether the ends of the default range are the same value.
       tolerance: Change of the believed value, in `unit`, beyond which a running action is deliberated anew; None: any
-        change is accepted.
+        change is accepted. Of a free parameter: how far its value may lie outside of its range; None: a tenth of it.
     """
 
     name: str

@@ -1,21 +1,22 @@
-"""Monitors the believed values that a running sequence is bound to, and the objects near its actions.
+"""Monitors the believed values that a running sequence is bound to, the ranges of its choice, and the objects near it.
 
-Runs in every tick, so it looks up only values with a tolerance.
+Runs in every tick, so it looks up only values with a tolerance, and the ranges of the running action.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.context_monitor import ContextMonitor
 from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
+from tailor.executive.refinement.range_monitor import RangeMonitor
 
 
 class BeliefMonitor:
-    """Bound values of one sequence, each with the tolerance beyond which the executive deliberates again.
+    """Values and ranges of one sequence, each with the tolerance beyond which the executive deliberates again.
 
     Args:
       pattern: Pattern of the plan that the sequence comes from.
@@ -25,12 +26,19 @@ class BeliefMonitor:
     def __init__(self, pattern: Pattern, sequence: ActionSequence) -> None:
         self._pattern = pattern
         self._bindings = tuple(dict.fromkeys(_bindings(pattern, sequence)))
+        self._ranges = RangeMonitor(pattern, sequence)
         self._objects = ContextMonitor(sequence)
 
-    def bindings_violated(self, belief: Belief) -> bool:
-        """Whether a value has moved beyond its tolerance and the plan can still be instantiated."""
+    def outdated(self, belief: Belief, chosen: Mapping[int, float]) -> bool:
+        """Whether a value is beyond its tolerance and the plan can still be instantiated.
+
+        Args:
+          belief: The belief of now.
+          chosen: Values of the sequence's free variables, by id.
+        """
         try:
-            if not any(self._violated(*binding, belief) for binding in self._bindings):
+            moved = any(self._violated(*binding, belief) for binding in self._bindings)
+            if not moved and not self._ranges.left_by(chosen, belief):
                 return False
         except Conflict:
             return False

@@ -81,11 +81,19 @@ class Pattern:
         interval = self._interval(self._slots[identifier], belief)
         if interval is not None and interval.lower == interval.upper:
             return interval.lower
+        return self.variable(identifier, belief).value
+
+    def variable(self, identifier: int, belief: Belief) -> Variable:
+        """One variable of `sequence(belief)`.
+
+        Raises:
+          Conflict: There is no sequence for this belief.
+        """
         variable = self._variable(identifier, belief)
         for use in self._uses:
             if use.variable == identifier:
                 variable = _narrow(variable, use.parameter)
-        return variable.value
+        return variable
 
     def _action(self, symbolic: tuple[str, ...], step: int, ids: dict[tuple[str, str], int]) -> InstantiatedAction:
         name, *labels = symbolic

@@ -73,22 +73,22 @@ def test_violation_is_what_a_new_instantiation_shows(belief):
     plan, domain = paper_plan(), ShiftingDomain()
     then = instantiate(plan, domain, START, None)
     monitor = BeliefMonitor(Pattern(plan, domain, None), then)
-    assert monitor.bindings_violated(belief) == violated_by_definition(plan, domain, then, belief)
+    assert monitor.outdated(belief, {}) == violated_by_definition(plan, domain, then, belief)
 
 
 def test_moved_ball_is_a_violation_but_one_out_of_sight_is_not():
     plan, domain = paper_plan(), ShiftingDomain()
     monitor = BeliefMonitor(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
-    assert not monitor.bindings_violated(START)
-    assert monitor.bindings_violated({**START, "ball": {"x": 3.0, "y": 0.2}})
-    assert not monitor.bindings_violated({**START, "ball": None})
+    assert not monitor.outdated(START, {})
+    assert monitor.outdated({**START, "ball": {"x": 3.0, "y": 0.2}}, {})
+    assert not monitor.outdated({**START, "ball": None}, {})
 
 
 def test_only_values_with_a_tolerance_are_looked_up():
     plan, domain = paper_plan(), ShiftingDomain()
     sequence = instantiate(plan, domain, START, None)
     monitor, domain.queries = BeliefMonitor(Pattern(plan, domain, None), sequence), 0
-    monitor.bindings_violated(START)
+    monitor.outdated(START, {})
     monitored = {
         v for a in sequence.actions for p, v in zip(a.action.parameters, a.variables, strict=True) if p.tolerance
     }
@@ -102,4 +102,4 @@ def test_asserted_subgoal_is_not_monitored():
     first = sequence.actions[0]
     to_subgoal = InstantiatedAction(replace(first.action, name="goToPose"), first.step, first.variables, asserted=True)
     alone = replace(sequence, actions=(to_subgoal,))
-    assert not BeliefMonitor(pattern, alone).bindings_violated({**START, "ball": {"x": 9.0, "y": 9.0}})
+    assert not BeliefMonitor(pattern, alone).outdated({**START, "ball": {"x": 9.0, "y": 9.0}}, {})
