@@ -7,18 +7,19 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tailor.runtime.bus.service import ServiceRequest, ServiceServer
-from tailor.simnodes.world import World
+from tailor.simnodes.world import Event, World
 
 NAMES = ("reset", "place", "pause", "step")
 MAX_STEPS = 6000  # in one request: a minute of 10 ms
+MAX_EVENTS = 100  # of one start
 MAX_VALUE = 1000.0  # m, rad, m/s or rad/s: the physics diverge far beyond
 
 
 class Services:
     """Answers the service requests of one node, once a period.
 
-    reset: {"seed": 3, "start": {"x": 1.0}}, both optional · place: {"ball_x": 1.0} · pause: true or false ·
-    step: number of periods, only while paused.
+    reset: {"seed": 3, "start": {"x": 1.0}, "events": [{"at_s": 2.0, "ball_x": 1.0}]}, all optional, events only with
+    a start · place: {"ball_x": 1.0} · pause: true or false · step: number of periods, only while paused.
 
     Attributes:
       paused: The world stands still, except for requested steps.
@@ -49,14 +50,29 @@ class Services:
             request.accept(reply)
 
     def _reset(self, argument: Any) -> str:
-        if not isinstance(argument, dict) or argument.keys() - {"seed", "start"}:
-            raise ValueError('expected {"seed": whole number, "start": {name: number}}, both optional')
+        if not isinstance(argument, dict) or argument.keys() - {"seed", "start", "events"}:
+            raise ValueError('expected {"seed": whole number, "start": {name: number}, "events": [...]}, all optional')
         seed = argument.get("seed")
         if seed is not None and (type(seed) is not int or seed < 0):
             raise ValueError(f"seed is {seed!r}, expected a whole number of at least 0")
-        self._world.reset(seed, self._numbers(argument["start"]) if "start" in argument else None)
+        if "events" in argument and "start" not in argument:
+            raise ValueError("events without a start, expected both or neither")
+        events = self._events(argument.get("events", []))
+        self._world.reset(seed, self._numbers(argument["start"]) if "start" in argument else None, events)
         self._on_reset()
         return "reset"
+
+    def _events(self, argument: Any) -> list[Event]:
+        if not isinstance(argument, list) or len(argument) > MAX_EVENTS:
+            raise ValueError(f"expected a list of at most {MAX_EVENTS} events")
+        return [self._event(each) for each in argument]
+
+    def _event(self, argument: Any) -> Event:
+        values = self._numbers(argument, "at_s")
+        at_s = values.pop("at_s", -1.0)
+        if at_s < 0.0:
+            raise ValueError('expected events like {"at_s": 2.0, "ball_x": 1.0}, in seconds since the first command')
+        return Event(at_s, values)
 
     def _place(self, argument: Any) -> str:
         self._world.body.place(self._numbers(argument))
@@ -76,13 +92,14 @@ class Services:
         self.steps_due += argument
         return f"{argument} periods"
 
-    def _numbers(self, argument: Any) -> dict[str, float]:
+    def _numbers(self, argument: Any, *others: str) -> dict[str, float]:
+        """Values of the body by name, and of these other names."""
         legal = isinstance(argument, dict) and all(
             type(value) in (int, float) and abs(value) <= MAX_VALUE for value in argument.values()
         )
         if not legal:
             raise ValueError(f"expected an object of numbers up to {MAX_VALUE:g}, e.g. " + '{"x": 1.0}')
-        names = self._world.body.names
+        names = (*others, *self._world.body.names)
         unknown = sorted(argument.keys() - set(names))
         if unknown:
             raise ValueError(f"unknown name {', '.join(unknown)[:100]}, expected some of: {', '.join(names)}")

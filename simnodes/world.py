@@ -36,22 +36,26 @@ class World:
         self.body = body
         self.time_ns = 0
         self._start, self._seed = dict(start), seed
-        self.events = tuple(sorted(events, key=lambda event: event.at_s))
+        self.events = _in_order(events)
         self._pending: list[Event] = []
         self._begun_ns: int | None = None
         self.reset()
 
-    def reset(self, seed: int | None = None, start: Mapping[str, float] | None = None) -> None:
+    def reset(
+        self, seed: int | None = None, start: Mapping[str, float] | None = None, events: Sequence[Event] = ()
+    ) -> None:
         """Return to the start.
 
         Args:
           seed: Seed of the noise; None: the world's own, which repeats the noise.
-          start: Start values by name, see `Body.names`; None: the world's own.
+          start: Start values by name, see `Body.names`; None: the world's own, with its own events.
+          events: Those of another start. The world's own have places that fit theirs alone: a ball could be put
+            into the robot, which throws the one metres away or the other on its back.
         """
         noise = np.random.default_rng([self._seed if seed is None else seed, NOISE_STREAM])
         self.body.reset(noise, self._start if start is None else start)
         self.time_ns = 0
-        self._pending = list(self.events)
+        self._pending = list(self.events if start is None else _in_order(events))
         self._begun_ns = None
 
     def begin(self) -> None:
@@ -80,3 +84,7 @@ class World:
 
     def _due_ns(self, begun_ns: int) -> int:
         return begun_ns + round(self._pending[0].at_s * 1e9)
+
+
+def _in_order(events: Sequence[Event]) -> tuple[Event, ...]:
+    return tuple(sorted(events, key=lambda event: event.at_s))

@@ -112,7 +112,8 @@ def _content(soak: Soak) -> dict[str, Any]:
 
 def _system(party: Party) -> dict[str, Any]:
     recordings = recording_rows(party.system.recordings)
-    return {**asdict(party.system.totals), "tasks": party.tasks, "own_stops": party.stops, "recordings": recordings}
+    people = {"tasks": party.tasks, "latched_faults": party.faults}
+    return {**asdict(party.system.totals), **people, "own_stops": party.stops, "recordings": recordings}
 
 
 def _print(console: Console, content: dict[str, Any]) -> None:
@@ -128,6 +129,8 @@ def _print(console: Console, content: dict[str, Any]) -> None:
             f"{system['tasks']} tasks, {system['motion_s']:.0f} s in motion, {system['own_stops']} stops by itself; "
             f"{readable} of {len(system['recordings'])} recordings readable"
         )
+        for cause in system["latched_faults"]:
+            console.print(f"{robot}: people cleared a fault of the executive: {cause}", markup=False)
     for line in content["not_injected"]:
         console.print(f"not injected: {line}", markup=False)
     for each in content["violations"]:

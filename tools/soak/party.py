@@ -33,4 +33,5 @@ class Party:
     record: FaultRecord | None = None  # of its last fault
     ending: bool = False
     tasks: int = 0  # set by people
+    faults: list[str] = field(default_factory=list)  # causes of those of the executive that people cleared
     stops: int = 0  # of the driver, that nobody caused

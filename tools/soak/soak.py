@@ -108,6 +108,7 @@ class Soak:
     def _end(self, party: Party, sign: signal.Signals = signal.SIGINT) -> None:
         party.ending = True
         party.tasks += party.people.count
+        party.faults += party.people.faults
         end = party.system.end(self.wait, sign)
         robot, now_ns = party.system.robot.name, time.monotonic_ns()
         expected = 0 if sign is signal.SIGINT else -sign

@@ -41,6 +41,11 @@ def test_services_execute_legal_requests():
     services, reply, resets = call("reset", json.dumps({"seed": 9, "start": {"x": 5}}))
     assert (reply, resets, services._world.body.state["x"]) == ((True, "reset"), [1], 5.0)
     assert call("reset", "")[1] == (True, "reset")
+    events = [{"at_s": 0.0, "ball_x": 7}]
+    services, reply, _ = call("reset", json.dumps({"start": {"x": 5}, "events": events}))
+    services._world.begin()
+    services._world.advance(10_000_000)
+    assert (reply, services._world.body.state["ball_x"]) == ((True, "reset"), 7.0)
     services, reply, _ = call("place", '{"ball_x": 4}')
     assert (reply, services._world.body.state["ball_x"]) == ((True, "placed"), 4.0)
     assert call("pause", "true")[0].paused
@@ -56,6 +61,13 @@ def test_services_execute_legal_requests():
         ("reset", '{"seed": -1}'),
         ("reset", '{"seed": true}'),
         ("reset", '{"start": {"x": NaN}}'),
+        ("reset", '{"events": []}'),
+        ("reset", '{"start": {"x": 1}, "events": [3]}'),
+        ("reset", '{"start": {"x": 1}, "events": {}}'),
+        ("reset", '{"start": {"x": 1}, "events": [{"ball_x": 1}]}'),
+        ("reset", '{"start": {"x": 1}, "events": [{"at_s": -1, "ball_x": 1}]}'),
+        ("reset", '{"start": {"x": 1}, "events": [{"at_s": 1, "ball_z": 1}]}'),
+        ("reset", json.dumps({"start": {"x": 1}, "events": [{"at_s": 1}] * 101})),
         ("place", "3"),
         ("place", '{"x": "1"}'),
         ("place", '{"x": Infinity}'),

@@ -41,3 +41,24 @@ def test_a_reset_brings_back_start_noise_and_events():
 def test_a_world_steps_in_whole_body_steps():
     with pytest.raises(ValueError, match="multiple"):
         make_world().advance(1)
+
+
+def test_another_start_has_its_own_events_and_none_of_the_world():
+    """A soak put a ball into its robot: of 72 tasks after another start, one robot lay on its back."""
+    world = make_world(Event(0.0, {"ball_x": 9.0}))
+
+    def ball_after(milliseconds):
+        world.begin()
+        world.advance(milliseconds * MS)
+        return world.body.state["ball_x"]
+
+    world.reset(start={"x": 1.0})
+    assert ball_after(500) == 1.0
+    world.reset(start={"x": 1.0}, events=[Event(0.4, {"ball_x": 8.0}), Event(0.2, {"ball_x": 7.0})])
+    assert ball_after(100) == 1.0
+    world.advance(200 * MS)
+    assert ball_after(50) == 7.0
+    world.advance(100 * MS)
+    assert ball_after(50) == 8.0
+    world.reset()
+    assert ball_after(50) == 9.0

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import time
 
-from tailor.schemas.messages import ArmRequest, EStop
+from tailor.schemas.messages import ArmRequest, EStop, ExecStatus
 from tailor.tools.soak.systems.system import System
 from tailor.tools.soak.systems.tasks import Tasks
 
 QUIET_NS = 2_000_000_000  # after a stop, before people arm: whatever moves then moves unasked
 AGAIN_NS = 2_500_000_000  # between two attempts to arm
+FAULT = "FAULT"  # mode of the executive
 RESULT_NS = 300_000_000  # after a new goal: what is older belongs to the last one
+
+
+def has_ended(status: ExecStatus) -> bool:
+    """Whether the task needs people: it has a result, or its fault is latched until they set a new goal."""
+    return bool(status.result) or status.mode == FAULT
 
 
 class People:
@@ -21,6 +27,7 @@ class People:
       armed_for_task: Whether a task waited for it.
       prepared_ns: Time at which they last prepared a task, which may disarm; 0: never.
       count: Number of tasks that they set.
+      faults: Faults of the executive that they cleared with a task: their causes.
       hurry: Somebody waits for motion.
     """
 
@@ -32,6 +39,7 @@ class People:
         self._executive = ""  # sender id
         self._goal_ns = 0  # a goal is due then; 0: none
         self._set_ns = 0  # time of the last goal
+        self.faults: list[str] = []
 
     def arm(self, now_ns: int) -> None:
         """Arm for the executive that runs, with a reset if the e-stop is latched."""
@@ -39,7 +47,7 @@ class People:
         if link is None or link.view.driver is None or not link.view.sender:
             return
         self.armed_ns = now_ns
-        self.armed_for_task = link.view.status is not None and not link.view.status.result
+        self.armed_for_task = link.view.status is not None and not has_ended(link.view.status)
         self._system.judge.people_arm(now_ns)
         link.arming.publish(ArmRequest(True, link.view.driver.mode == "estopped", link.view.sender, 0))
 
@@ -65,9 +73,11 @@ class People:
             return
         if view.sender != self._executive:
             self._executive, self._goal_ns = view.sender, self._tasks.begin(now_ns)
-        elif view.status.result and not self._goal_ns and view.status_ns > self._set_ns + RESULT_NS:
-            self._goal_ns = self._tasks.prepare(now_ns, self.hurry)
+        elif has_ended(view.status) and not self._goal_ns and view.status_ns > self._set_ns + RESULT_NS:
+            self._goal_ns = self._tasks.prepare(now_ns, self.hurry or not view.status.result)
             self.prepared_ns = now_ns if self._goal_ns else self.prepared_ns
+            if self._goal_ns and not view.status.result:
+                self.faults.append(f"{view.status.reason}: {view.status.detail}")
         if not system.judge.permitted:
             long_ago = now_ns - self.armed_ns > AGAIN_NS
             if long_ago and view.driver.mode != "armed" and system.judge.at_rest_since(now_ns, QUIET_NS):

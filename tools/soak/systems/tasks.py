@@ -55,8 +55,9 @@ class SoccerTasks:
     def prepare(self, now_ns: int, hurry: bool) -> int:
         """Another start of the same scenario; that disarms the robot."""
         robot, seed = self._system.robot, self._draw.randrange(10_000)
-        _, start = domains.seeded_scenario(robot.domain, self.scenario, seed)
-        accepted, _ = self._system.call(f"{robot.name}/sim/reset", json.dumps({"seed": seed, "start": start}))
+        scenario, start = domains.seeded_scenario(robot.domain, self.scenario, seed)
+        world = {"seed": seed, "start": start, "events": scenario.settings["events"]}
+        accepted, _ = self._system.call(f"{robot.name}/sim/reset", json.dumps(world))
         return now_ns + BELIEF_NS if accepted else 0
 
     def goal(self) -> str:
