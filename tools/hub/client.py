@@ -62,7 +62,7 @@ def download(repository: str, kind: str, revision: str | None, patterns: Sequenc
 
 
 def _endpoint() -> str | None:
-    """Address of another hub; None: the client's own."""
+    """`HF_ENDPOINT` as it is now, which the client reads only when it is imported; None: the client's own."""
     return os.environ.get("HF_ENDPOINT") or None
 
 
