@@ -13,7 +13,8 @@ from tailor.executive.core.context import Settings
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning.plans import links, portions, regression, simulation, validator
+from tailor.executive.planning.plans import portions
+from tailor.executive.planning.semantics import links, regression, simulation, validator
 from tailor.executive.refinement.instantiation import MAX_ACTIONS
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.codec import encode
