@@ -1,4 +1,4 @@
-"""A node of zenoh-ros2-sdk: it keeps one session a process, and reads definitions from a folder."""
+"""A node of zenoh-ros2-sdk: it keeps one session and one registry a process, and reads definitions from a folder."""
 
 from contextlib import contextmanager
 
@@ -12,7 +12,7 @@ from tests.support.ros2.definitions import write_definitions
 def sdk_node(endpoint, folder):
     """Yields make(kind, name, type, ...), which makes its publishers, subscribers and clients on the bus."""
     write_definitions(folder)
-    message_registry.get_registry().messages_dir = folder
+    message_registry._registry = message_registry.MessageRegistry(str(folder))  # or it recalls types of another session
     port = int(endpoint.rpartition(":")[2])
     session = ZenohSession.get_instance("127.0.0.1", port)
     made = []
