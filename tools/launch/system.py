@@ -132,7 +132,7 @@ class _System:
 
     def _report_hardware(self, driver: DriverState) -> None:
         """What a real robot waits for, on change: a person arms it."""
-        line = f"{self._robot} is {driver.mode}: {reason_text(driver.reason, driver.detail)}"
+        line = reason_text(f"{self._robot} is {driver.mode}", reason_text(driver.reason, driver.detail))
         if self._config.hardware and line != self._reported:
             self._reported = line
             hint = "" if driver.mode == "armed" else f" (`tailor arm {self._robot}` arms it)"
