@@ -62,6 +62,27 @@ class ModelBounds(Protocol):
         """Upper bound of the mean; arguments as in `lower_bound`."""
         ...
 
+    @property
+    def is_linear(self) -> bool:
+        """Whether there is a `linear_bound`."""
+        ...
+
+    def linear_bound(
+        self, lower: Columns, upper: Columns, radius: Columns, k_std: float = 0.0
+    ) -> tuple[Array, dict[int, Array]]:
+        """Lower bound of the mean plus `k_std` standard deviations, averaged over displaced copies of boxes.
+
+        Args:
+          lower: Lower ends of the copies, one array per argument; they broadcast to (copies, n, m).
+          upper: Upper ends, in the same form.
+          radius: Half of each argument's range before it was displaced.
+          k_std: Weight of the standard deviation, >= 0.
+
+        Returns:
+          The bound in the middle of the boxes, and its slope by index of the argument, each (n, m).
+        """
+        ...
+
     def within(self, lower: Columns, upper: Columns) -> ModelBounds:
         """Bounds that are valid only for arguments in this box, and faster to compute."""
         ...

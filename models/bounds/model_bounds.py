@@ -11,12 +11,14 @@ import numpy as np
 from tailor.models.bounds.bag_bounds import bag_lower_bound
 from tailor.models.bounds.interval_boxes import interval_boxes
 from tailor.models.bounds.leaf_bounds import Floats, LeafBounds, Overlap, Side
+from tailor.models.bounds.linear_bounds import linear_bound
 from tailor.models.bounds.network_bounds import NetworkBounds, network_bounds
 from tailor.models.bounds.onnx_reader import read_graph
 from tailor.models.bounds.possible_boxes import select_possible
 from tailor.models.bounds.tree_boxes import trees_of_graph
 from tailor.models.features.feature_intervals import FEATURE_SPANS
 from tailor.models.features.intervals import Array, Span
+from tailor.models.features.linear_pieces import LINEAR_PIECES
 from tailor.models.features.sight_intervals import Spans
 
 Columns = tuple[Array, ...]  # one array per argument; they broadcast to one shape of three axes
@@ -71,6 +73,22 @@ class ModelBounds:
         return -self._over_cases(arguments, lambda features, overlap: self._mean(features, overlap, Side.OPPOSITE))
 
     @property
+    def is_linear(self) -> bool:
+        """Whether there is a `linear_bound`."""
+        return self.trees is None and self.networks is not None and self.space in LINEAR_PIECES
+
+    def linear_bound(
+        self, lower: Columns, upper: Columns, radius: Columns, k_std: float = 0.0
+    ) -> tuple[Array, dict[int, Array]]:
+        """Lower bound of the mean plus `k_std` standard deviations, as `linear_bounds.linear_bound`."""
+        assert self.networks is not None
+        value, slopes = linear_bound(self.networks, self.space, lower, upper, radius)
+        if k_std > 0:
+            arguments = tuple(map(Span, lower, upper))
+            value = value + k_std * self._over_cases(arguments, self._least_spread).mean(axis=0)
+        return value, slopes
+
+    @property
     def effort(self) -> int:
         """Maximum number of leaves that one bound considers."""
         leaves = sum(part.leaves for part in (self.trees, self.spread) if part is not None)
@@ -100,8 +118,8 @@ class ModelBounds:
         if k_std <= 0:
             return self._mean(features, overlap, Side.LEAST)
         if self.spread is not None:
-            spread = self.spread.least(self.spread.overlap((*features, ANY_STD)), Side.LEAST)[0, 0] - OFFSET_ROUNDING
-            total: Floats = self._mean(features, overlap, Side.LEAST) + np.float32(k_std) * spread
+            spread = np.float32(k_std) * self._least_spread(features, overlap)
+            total: Floats = self._mean(features, overlap, Side.LEAST) + spread
             return total
         trees = self.trees
         if trees is None or overlap is None:
@@ -111,6 +129,13 @@ class ModelBounds:
             return np.asarray(trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack)
         least, opposite = trees.least(overlap, Side.BOTH)
         return bag_lower_bound(least, 2 * slack - opposite, k_std) - slack
+
+    def _least_spread(self, features: Spans, _: Overlap | None) -> Floats:
+        """Lower bound of the standard deviation by the tree of intervals, shape (...)."""
+        if self.spread is None:
+            raise ValueError("a network without intervals has no bounds of its standard deviation")
+        least: Floats = self.spread.least(self.spread.overlap((*features, ANY_STD)), Side.LEAST)[0, 0]
+        return least - OFFSET_ROUNDING
 
     def _mean(self, features: Spans, overlap: Overlap | None, side: Side) -> Floats:
         """Lower bound of the mean, or of minus the mean (Side.OPPOSITE), shape (...)."""

@@ -12,8 +12,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.models.bounds.feature_boxes import FeatureBoxes, boxes_between
 from tailor.models.bounds.leaf_bounds import FARTHEST, ROUNDING
 from tailor.models.bounds.onnx_reader import Contents
+from tailor.models.bounds.rectified import Rectified
 from tailor.models.features.intervals import Span
 from tailor.models.trees import tree_names
 
@@ -45,13 +47,19 @@ class NetworkBounds:
             np.stack([np.broadcast_to(end, shape).ravel() for end in ends]).astype(np.float32)
             for ends in zip(*((span.lower, span.upper) for span in features), strict=True)
         )
-        half = np.float32(0.5)
-        middle, radius = half * (lower + upper), half * (upper - lower)
-        parts = (slice(first, first + CHUNK) for first in range(0, middle.shape[1], CHUNK))
-        bound = np.concatenate([self._linear_bound(middle[:, n], radius[:, n], np.float32(sign)) for n in parts])
+        boxes = boxes_between(lower, upper)
+        constant, slopes = self.plane(boxes, sign)
+        bound = constant + (slopes * boxes.middle).sum(axis=0) - (np.abs(slopes) * boxes.radius).sum(axis=0)
         low, high = sorted((sign * self.low, sign * self.high))
-        clipped: Floats = np.clip(bound - np.float32(self.slack), np.float32(low), np.float32(high))
+        clipped: Floats = np.clip(bound, np.float32(low), np.float32(high))
         return clipped.reshape(shape)
+
+    def plane(self, boxes: FeatureBoxes, sign: int = 1) -> tuple[Floats, Floats]:
+        """Linear lower bound of `sign` times the mean without clipping: constants, (n,), and slopes, (f, n)."""
+        count = boxes.middle.shape[1]
+        parts = (boxes.part(slice(first, first + CHUNK)) for first in range(0, count, CHUNK))
+        constants, slopes = zip(*(self._plane(part, np.float32(sign)) for part in parts), strict=True)
+        return np.concatenate(constants) - np.float32(self.slack), np.concatenate(slopes, axis=1)
 
     @cached_property
     def slack(self) -> float:
@@ -61,21 +69,19 @@ class NetworkBounds:
             size = np.abs(weights) @ size + np.abs(bias)
         return 4 * ROUNDING * float(size.mean())
 
-    def _linear_bound(self, middle: Floats, radius: Floats, sign: np.float32) -> Floats:
-        """Minimum of the linear lower bound over boxes (f, n), shape (n,)."""
+    def _plane(self, boxes: FeatureBoxes, sign: np.float32) -> tuple[Floats, Floats]:
         (w1, w2, w3), (b1, b2, b3) = self.weights, self.bias
-        inputs = w1 @ middle + b1
-        first = _Rectified(*_ends(inputs, np.abs(w1) @ radius))
-        second = _Rectified(*self._second_inputs(first, inputs, radius))
+        inputs = w1 @ boxes.middle + b1
+        first = Rectified(*boxes.ends(inputs, w1))
+        second = Rectified(*self._second_inputs(first, inputs, boxes))
         factor, constant = second.below(sign / np.float32(len(w3)) * w3.transpose(0, 2, 1))
         constant = sign * b3.mean() + constant + _total(factor, b2)
         factor, offset = first.below(w2.transpose(0, 2, 1) @ factor)
         constant += offset + _total(factor, b1)
-        slopes = w1.reshape(-1, len(middle)).T @ factor.reshape(-1, middle.shape[1])  # of all networks together
-        bound: Floats = constant + (slopes * middle).sum(axis=0) - (np.abs(slopes) * radius).sum(axis=0)
-        return bound
+        slopes: Floats = w1.reshape(-1, len(boxes.middle)).T @ factor.reshape(-1, len(constant))  # of all networks
+        return constant, slopes
 
-    def _second_inputs(self, first: _Rectified, inputs: Floats, radius: Floats) -> tuple[Floats, Floats]:
+    def _second_inputs(self, first: Rectified, inputs: Floats, boxes: FeatureBoxes) -> tuple[Floats, Floats]:
         """Both ends of the second layer's inputs: two relaxations of the first layer, intersected.
 
         Each output apart lies between the ends of its range; as a function of the features it lies in a strip.
@@ -84,44 +90,17 @@ class NetworkBounds:
         half, size = np.float32(0.5), np.abs(w2)
         low: Floats = np.maximum(first.lower, 0)
         centre: Floats = half * (low + first.high)
-        apart = _ends(w2 @ centre + b2, size @ (first.high - centre))
+        middle, reach = w2 @ centre + b2, size @ (first.high - centre)
         width: Floats = half * first.offset
-        reach: Floats = size @ width
-        for feature, extent in enumerate(radius):
-            slopes = w2 @ (w1[:, :, feature, None] * first.above)
-            reach += np.abs(slopes, out=slopes) * extent
-        strip = _ends(w2 @ (first.above * inputs + width) + b2, reach)
-        return np.maximum(apart[0], strip[0]), np.minimum(apart[1], strip[1])
-
-
-def _ends(middle: Floats, radius: Floats) -> tuple[Floats, Floats]:
-    return middle - radius, middle + radius
+        slopes = [w2 @ (w1[:, :, feature, None] * first.above) for feature in range(w1.shape[2])]
+        strip = boxes.ends_of_slopes(w2 @ (first.above * inputs + width) + b2, size @ width, slopes)
+        return np.maximum(middle - reach, strip[0]), np.minimum(middle + reach, strip[1])
 
 
 def _total(factor: Floats, bias: Floats) -> Floats:
     """Sum over networks and neurons of (k, h, n) times (k, h, 1), shape (n,)."""
     total: Floats = bias.ravel() @ factor.reshape(bias.size, -1)
     return total
-
-
-class _Rectified:
-    """Lines below and above max(x, 0) for inputs between `lower` and `upper`, (k, h, n).
-
-    The line above has the slope `above` and passes `offset` over 0; that below passes 0, with slope 0 or 1.
-    """
-
-    def __init__(self, lower: Floats, upper: Floats) -> None:
-        self.lower = lower
-        low, self.high = np.minimum(lower, 0), np.maximum(upper, 0)
-        self.above = self.high / np.maximum(self.high - low, np.float32(1e-12))
-        self.offset = -self.above * low
-        self._steep = self.high > -low
-
-    def below(self, factor: Floats) -> tuple[Floats, Floats]:
-        """Lower bound of `factor` times the outputs: factors of the inputs, and the sum of all offsets, (n,)."""
-        negative = np.minimum(factor, 0)
-        offset: Floats = (negative * self.offset).sum(axis=(0, 1))
-        return np.maximum(factor, 0) * self._steep + negative * self.above, offset
 
 
 def network_bounds(graph: Contents) -> NetworkBounds | None:

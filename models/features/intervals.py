@@ -43,6 +43,10 @@ class Span:
             return self
         return Span(np.minimum(self.lower, other.lower), np.maximum(self.upper, other.upper))
 
+    def hull_of_copies(self) -> Span:
+        """Smallest interval that contains all along the first axis, which stays."""
+        return Span(self.lower.min(axis=0, keepdims=True), self.upper.max(axis=0, keepdims=True))
+
     def wider(self, by: Array | float) -> Span:
         """The interval with a margin on both sides."""
         return Span(self.lower - by, self.upper + by)

@@ -9,11 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, box_of
+from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
+from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.refinement.cases import Case, cases
 
@@ -47,8 +50,16 @@ def assert_no_stage_costs_less(cost, chosen, lower, upper, inside) -> None:
         everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
         bound = stage_bound(stage, link, chosen)
         assert isinstance(bound, StageBound)
-        least = bound.within(whole, everywhere).lower_bound(before, own).item()
-        assert least <= stage.cost(inside[:, stage.columns]).min()
+        bounds = bound.within(whole, everywhere).lower_bounds(before, own)
+        cost_inside = stage.cost(inside[:, stage.columns])
+        samples = inside[:, stage.columns]
+        first, second = np.zeros((len(inside), before.lower.shape[1])), np.zeros((len(inside), own.lower.shape[1]))
+        first[:, link.before], second[:, link.own] = samples[:, link.from_before], samples[:, ~link.from_before]
+        linear = bounds.middle[0, 0]
+        if bounds.slopes is not None:
+            slopes = [slope[0, 0] for slope in bounds.slopes]
+            linear = linear + (first - before.middle) @ slopes[0] + (second - own.middle) @ slopes[1]
+        assert (linear <= cost_inside).all()
         whole, before = everywhere, own
 
 
@@ -62,3 +73,32 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, ta
     share = rng.choice([0.0, 1.0, 0.5, np.nan], (400, cost.ranges.count))
     inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
     assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
+
+
+def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models):
+    chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
+    cost = cases(models, 2)["8 free"][1].objective(models, chosen)
+    solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
+    solver.advance(CheckBudget(25))
+    assert solver.best is not None
+    proof = certificate(cost, solver.best, chosen)
+    assert isinstance(proof, Certificate)
+    proof.advance(CheckBudget(45))
+    assert proof.gap_pct is not None
+    assert proof.gap_pct <= 5.0 + 1e-9
+
+
+def test_stages_bound_a_single_choice_within_a_hundredth_of_its_cost(models, tasks):
+    for task in tasks[: 2 * TASKS]:  # whose bounds are linear
+        cost = task.objective(models, RefinementSettings())
+        blocks = blocks_of(cost.stages)
+        assert blocks is not None
+        for choice in cost.ranges.draw(10, np.random.default_rng(0)):
+            points = [Boxes(choice[None, block], choice[None, block]) for block in blocks]
+            links = links_of(cost.stages, blocks)
+            bounds = [
+                stage_bound(stage, link, RefinementSettings()) for stage, link in zip(cost.stages, links, strict=True)
+            ]
+            pairs = zip(bounds, [NO_PARAMETERS, *points], points, strict=False)
+            least = sum(bound.lower_bounds(before, own).middle[0, 0] for bound, before, own in pairs)
+            assert least >= 0.99 * cost(choice[None])[0]

@@ -27,6 +27,11 @@ class Boxes:
         return self.upper - self.lower
 
     @property
+    def radius(self) -> Array:
+        """Half of the width, shape (n, d)."""
+        return (self.upper - self.lower) / 2
+
+    @property
     def middle(self) -> Array:
         """Shape (n, d)."""
         return (self.lower + self.upper) / 2

@@ -15,6 +15,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.bound_stagnation import BoundStagnation
 from tailor.executive.refinement.certificates.box_chain import BoxChain, Costs
 from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, box_of
+from tailor.executive.refinement.certificates.partition import partition
 from tailor.executive.refinement.certificates.sensitivity import sensitivity
 from tailor.executive.refinement.certificates.stage_bounds import StageBound
 from tailor.executive.refinement.objective.objective import SequenceObjective
@@ -26,10 +27,6 @@ MAX_SETUP_SHARE = 0.3  # of the checks for the initial bounds: a proof with a la
 PROBE_PERIOD = 4  # iterations
 MAX_BOXES = 1000  # of a subgoal: the passes over more take longer than their bounds
 MIN_WIDTH = 1e-5  # share of a range: below, the gain is within single precision
-# Two values each: for the only subgoal that has free parameters, and for each of several
-INITIAL_SPLITS = 6, 4  # before the first bounds
-MAX_SPLIT_BOXES = 12, 4  # boxes of a subgoal in one iteration: without pairs, an iteration costs more than its boxes
-MIN_PIECES = 48, 16  # that these are split into: pairs of boxes take longer
 
 
 class Proof:
@@ -60,12 +57,19 @@ class Proof:
         self._blocks = blocks
         self._settings = settings
         self._bounds = bounds
-        self._several = sum(map(bool, map(len, blocks))) > 1  # subgoals with free parameters
+        self._free = [index for index, block in enumerate(blocks) if len(block)] or [0]
+        self._partition = partition(len(self._free), all(bound.is_linear for bound in bounds))
 
     @property
     def _limit(self) -> float:
         """Bound at which the gap is accepted."""
         return self.value / (1 + self._settings.certify_gap_pct / 100)
+
+    @property
+    def _goal(self) -> float:
+        """The next bound to reach, at most the limit."""
+        goals = [self.value / (1 + gap_pct / 100) for gap_pct in self._partition.goals_pct]
+        return min([self._limit, *(goal for goal in goals if goal > self.bound)])
 
     def steps(self) -> Iterator[None]:
         """The proof, in steps of one check each."""
@@ -75,9 +79,9 @@ class Proof:
         if chain.steps > MAX_SETUP_SHARE * self._settings.certify_checks:
             return
         yield from chain.begin()
-        stagnation, free = BoundStagnation(), [index for index, block in enumerate(self._blocks) if len(block)] or [0]
+        stagnation = BoundStagnation(self._partition.patience)
         for iteration in count():
-            index = free[iteration % len(free)]
+            index = self._free[iteration % len(self._free)]
             costs = chain.costs()
             if self._raise_bound(costs) or stagnation.update(self.bound, self.value):
                 return
@@ -85,7 +89,7 @@ class Proof:
                 self._probe_cheapest_chain(chain, costs)
             kept, chosen = self._select_boxes(chain, costs, index)
             if len(chosen):
-                yield from chain.split(index, kept, chosen, weight[self._blocks[index]], costs, self._limit)
+                yield from chain.split(index, kept, chosen, weight[self._blocks[index]], costs, self._goal)
 
     def _initial_chain(self, weight: Array) -> Generator[None, None, BoxChain]:
         """Initial boxes, and bounds restricted to them: one check for each action."""
@@ -94,10 +98,9 @@ class Proof:
         for bound, *ends in zip(self._bounds, [NO_PARAMETERS, *boxes], boxes, strict=False):
             bounds.append(bound.within(*ends))
             yield
-        free = [i for i, block in enumerate(self._blocks) if len(block)]
-        for i in free * INITIAL_SPLITS[self._several]:
+        for i in self._free * self._partition.initial_splits:
             boxes[i] = boxes[i].halves(weight[self._blocks[i]])
-        return BoxChain(bounds, boxes, EFFORT, MIN_PIECES[self._several])
+        return BoxChain(bounds, boxes, EFFORT, self._partition.min_pieces)
 
     def _raise_bound(self, costs: Costs) -> bool:
         """Raise the bound to the cheapest chain; whether the gap is accepted."""
@@ -110,7 +113,7 @@ class Proof:
         if not np.isfinite(costs.through[-1]).any():
             return
         candidate = self.best.copy()
-        for block, boxes, chosen in zip(self._blocks, chain.boxes, chain.cheapest(costs), strict=True):
+        for block, boxes, chosen in zip(self._blocks, chain.boxes, costs.cheapest(), strict=True):
             candidate[block] = boxes.middle[chosen]
         value = float(self._objective(candidate[None])[0])
         if value < self.value:
@@ -120,11 +123,11 @@ class Proof:
         """Indices of a subgoal's boxes to keep unchanged, and of those to split: the cheapest that are wide enough."""
         boxes, through = chain.boxes[index], costs.through[index]
         kept = through < self._limit
-        open_boxes = np.flatnonzero(kept)
+        open_boxes = np.flatnonzero(through < self._goal)
         ranges = self._objective.ranges.width[self._blocks[index]]
         widest = (boxes.width[open_boxes] / ranges).max(axis=1, initial=0.0)
         wide = open_boxes[widest > MIN_WIDTH]
         wide = wide[np.argsort(through[wide], kind="stable")] if len(boxes) < MAX_BOXES else wide[:0]
-        chosen = wide[: MAX_SPLIT_BOXES[self._several]]
+        chosen = wide[: self._partition.max_split_boxes]
         kept[chosen] = False
         return np.flatnonzero(kept), chosen

@@ -6,6 +6,7 @@ Boxes count as INVALID only if every choice in them fails too probably.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from tailor.executive.interfaces.action import unchanged
 from tailor.executive.interfaces.models import ModelBounds
 from tailor.executive.interfaces.values import Array, Columns, Spans
 from tailor.executive.refinement.certificates.boxes import Boxes
+from tailor.executive.refinement.certificates.pair_bounds import PairBounds, unknown
 from tailor.executive.refinement.objective.context_success import ContextBounds
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage import Stage
@@ -22,6 +24,10 @@ from tailor.executive.refinement.solvers.chain_structure import Link
 
 FIXED, BEFORE, OWN = -1, 0, 1  # owner of a parameter: no box, the box before, the own box
 AXES = {BEFORE: (slice(None), slice(None), None), OWN: (slice(None), None, slice(None))}  # arrivals, before, own
+PAIRED = {BEFORE: AXES[BEFORE], OWN: AXES[BEFORE]}  # each own box with one box before
+
+
+Axes = Mapping[int, tuple[slice | None, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +45,7 @@ class StageBound:
     link: Link
     settings: RefinementSettings
     owners: NDArray[np.intp]  # (p,) FIXED, BEFORE or OWN for each parameter of the action
+    places: NDArray[np.intp]  # (p,) column of the parameter in the boxes of its owner
     spans: Spans  # parameters to arguments
     duration: ModelBounds
     success: ModelBounds | None
@@ -47,8 +54,14 @@ class StageBound:
     @property
     def effort(self) -> int:
         """Approximate number of elementary comparisons for one pair of boxes."""
-        models = [model for model in (self.duration, self.success, self.energy) if model is not None]
-        return self.stage.n_arrivals * sum(model.effort for model in models)
+        models = [model for model in (self.success, self.energy) if model is not None]
+        duration = self.duration.effort * (1 if self.is_linear else self.stage.n_arrivals)
+        return duration + self.stage.n_arrivals * sum(model.effort for model in models)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the bound on the duration is linear in the parameters."""
+        return self.duration.is_linear and self.spans is _identity
 
     def within(self, before: Boxes, own: Boxes) -> StageBound:
         """The bound restricted to boxes inside the given ones: faster to compute."""
@@ -58,18 +71,33 @@ class StageBound:
         assert duration is not None
         return replace(self, duration=duration, success=success, energy=energy)
 
-    def lower_bound(self, before: Boxes, own: Boxes) -> Array:
-        """Lower bound in seconds, shape (len(before), len(own)); +inf: all values in the two boxes are INVALID."""
-        arguments = self.spans(*self._parameters(before, own))
-        settings = self.settings
-        cost = self.duration.lower_bound(*arguments, settings.k_std).mean(axis=0)
+    def lower_bounds(self, before: Boxes, own: Boxes, paired: bool = False) -> PairBounds:
+        """Lower bounds in seconds for each pair of boxes; +inf: all values in the two boxes are INVALID.
+
+        Args:
+          before: Boxes of the subgoal before.
+          own: Boxes of the own subgoal.
+          paired: Bound each box before with the own box of the same index only.
+        """
+        shape = (len(own),) if paired else (len(before), len(own))
+        axes, settings = PAIRED if paired else AXES, self.settings
+        bounds = unknown(shape, before, own, self.is_linear)
+        arguments = self.spans(*self._parameters(before, own, axes))
+        if bounds.slopes is not None:
+            cost, slopes = self.duration.linear_bound(*arguments, self._radius(before, own, axes), settings.k_std)
+            for j, slope in slopes.items():
+                if self.owners[j] != FIXED:
+                    bounds.slopes[self.owners[j]][..., self.places[j]] += slope.reshape(shape)
+        else:
+            cost = self.duration.lower_bound(*arguments, settings.k_std).mean(axis=0)
         if self.energy is not None:
             cost = cost + settings.energy_weight * self.energy.lower_bound(*arguments).mean(axis=0)
         if self.success is not None:
             failure = np.maximum(1 - self.success.upper_bound(*arguments), 0.0)
             cost = cost + self._least_price(failure, arguments)
             cost = np.where(failure.max(axis=0) > self.stage.p_fail_max, np.inf, cost)
-        return np.broadcast_to(cost, (len(before), len(own)))
+        bounds.middle[:] = cost.reshape(shape) if paired else cost
+        return bounds
 
     def _least_price(self, failure: Array, arguments: tuple[Columns, Columns]) -> Array:
         """Least expected price of failures; one that meets an object has a price of its own."""
@@ -81,7 +109,7 @@ class StageBound:
         price = self.settings.risk_cost_s * own.mean(axis=0) + self.stage.context_cost_s * met.mean(axis=0)
         return price
 
-    def _parameters(self, before: Boxes, own: Boxes) -> tuple[Columns, Columns]:
+    def _parameters(self, before: Boxes, own: Boxes, axes: Axes = AXES) -> tuple[Columns, Columns]:
         """Lower and upper ends of the action's parameters; each column broadcasts to (n_arrivals, before, own)."""
         sides = {
             BEFORE: self._ends(self.link.from_before, self.link.before, before),
@@ -92,8 +120,16 @@ class StageBound:
             side = BEFORE if owner == FIXED else owner
             boxes = slice(0, 1) if owner == FIXED else slice(None)
             for columns, parameters in zip(ends, sides[side], strict=True):
-                columns.append(parameters[:, boxes, j][AXES[side]])
+                columns.append(parameters[:, boxes, j][axes[side]])
         return tuple(ends[0]), tuple(ends[1])
+
+    def _radius(self, before: Boxes, own: Boxes, axes: Axes) -> Columns:
+        """Half of each parameter's range, as the columns of `_parameters`."""
+        radii = {FIXED: np.zeros((1, 1, 1)), BEFORE: before.radius[None], OWN: own.radius[None]}
+        owners = zip(self.owners.tolist(), self.places, strict=True)
+        return tuple(
+            radii[owner] if owner == FIXED else radii[owner][..., place][axes[owner]] for owner, place in owners
+        )
 
     def _ends(self, mask: NDArray[np.bool_], indices: NDArray[np.intp], boxes: Boxes) -> tuple[Array, Array]:
         """All parameters at both ends of one side's boxes, shapes (n_arrivals, n, p).
@@ -119,7 +155,11 @@ def stage_bound(stage: Stage, link: Link, settings: RefinementSettings) -> Stage
         return NoBound(f"{action.name}: its models have no bounds")
     owners = np.full(len(action.parameters), FIXED)
     owners[stage.slots] = np.where(link.from_before[stage.sources], BEFORE, OWN)
-    return StageBound(stage, link, settings, owners, spans, duration, success, energy)
+    columns = np.empty(len(link.from_before), dtype=np.intp)
+    columns[link.from_before], columns[~link.from_before] = link.before, link.own
+    places = np.zeros(len(owners), dtype=np.intp)
+    places[stage.slots] = columns[stage.sources]
+    return StageBound(stage, link, settings, owners, places, spans, duration, success, energy)
 
 
 def _identity(lower: Columns, upper: Columns) -> tuple[Columns, Columns]:

@@ -78,6 +78,8 @@ class ContextBounds:
         own = None if self.own is None else restricted.pop(0)
         return ContextBounds(own, tuple(restricted), self.rows)
 
+    is_linear = False
+
     @property
     def effort(self) -> int:
         """Approximate number of elementary comparisons for one bound."""
