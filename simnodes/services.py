@@ -56,7 +56,7 @@ class Services:
         if seed is not None and (type(seed) is not int or seed < 0):
             raise ValueError(f"seed is {seed!r}, expected a whole number of at least 0")
         if "events" in argument and "start" not in argument:
-            raise ValueError("events without a start, expected both or neither")
+            raise ValueError("events without a start, expected a start of their own")
         events = self._events(argument.get("events", []))
         self._world.reset(seed, self._numbers(argument["start"]) if "start" in argument else None, events)
         self._on_reset()
