@@ -16,8 +16,10 @@ from tailor.executive.core.plan_source import PlanSource, current_problem, reque
 from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.refinement.course_check import is_likelier_to_fail
+from tailor.executive.refinement.course_check import risen_failure
 from tailor.schemas.messages import PlanAnswer, PlanRequest
+
+HALT_NS = 600_000_000  # in which a robot brakes before it decides anew: from 0.5 m/s at 0.8 m/s²
 
 
 def pending_request(state: State) -> PlanRequest | None:
@@ -66,8 +68,14 @@ def _with_deliberation(context: Context, state: State) -> State:
     task = state.task
     ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
     idle = task.running is None and task.decision is None
-    if ongoing or not (idle or _situation_changed(context, state)):
+    if ongoing or state.now_ns < state.halted_until_ns:
         return state
+    if not idle:
+        risk = _risk_of_course(context, state)
+        if risk > context.settings.refinement.p_fail_settle:
+            return _halted(context, state)
+        if not (risk or _bindings_outdated(state)):
+            return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
@@ -147,18 +155,31 @@ def _starts_another(decision: Decision, running: Running) -> bool:
     return (first.action.name, first.step, first.asserted) != same
 
 
-def _situation_changed(context: Context, state: State) -> bool:
-    """Whether the belief has left values or ranges of the running sequence, or objects now put it at risk."""
+def _bindings_outdated(state: State) -> bool:
+    """Whether the belief has left values or ranges of the running sequence."""
     decision = state.task.decision
     if decision is None or state.task.running is None:
         return False
-    if decision.watch.outdated(state.belief, decision.choice.values):
-        return True
+    return decision.watch.outdated(state.belief, decision.choice.values)
+
+
+def _risk_of_course(context: Context, state: State) -> float:
+    """Predicted probability that the running course fails; 0 unless objects have changed, and raised it."""
+    decision = state.task.decision
+    if decision is None or state.task.running is None:
+        return 0.0
     now, choice = decision.watch.among_changed_objects(state.belief), decision.choice
     if now is None:
-        return False
+        return 0.0
     models, settings = context.models, context.settings.refinement
-    return is_likelier_to_fail(decision.sequence, choice.values, choice.failure, now, models, settings)
+    return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
+
+
+def _halted(context: Context, state: State) -> State:
+    """End an action that objects have made likely to fail. The robot brakes first, and decides at rest."""
+    task = replace(state.task, running=None, decision=None, finished=state.task.finished + 1)
+    until_ns, coasted = state.now_ns + HALT_NS, context.settings.coast_ticks
+    return replace(state, task=task, deliberation=None, coasted=coasted, halted_until_ns=until_ns)
 
 
 def _prepared(context: Context, state: State, budget: Budget) -> State:

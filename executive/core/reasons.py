@@ -30,6 +30,7 @@ class Reason(StrEnum):
     ACTION_TIMEOUT = "action timeout"
     EFFECTS_HOLD = "effects hold"
     SUPERSEDED = "superseded"
+    COURSE_AT_RISK = "course at risk"
     PLANNER_FAILED = "planner failed"
     PLAN_UNREADABLE = "plan unreadable"
     PLAN_UNSOUND = "plan unsound"
@@ -70,6 +71,7 @@ REASONS: dict[Reason, Row] = {
     Reason.ACTION_TIMEOUT: Row(ACTION, "failed: the action exceeded its time limit", "the limit"),
     Reason.EFFECTS_HOLD: Row(ACTION, "done: its effects held before its controller ended", ""),
     Reason.SUPERSEDED: Row(ACTION, "aborted: a new decision begins with another action", ""),
+    Reason.COURSE_AT_RISK: Row(ACTION, "aborted: failure became likely beside objects; decides anew at rest", ""),
     Reason.PLANNER_FAILED: Row(PLAN, "the external planner failed; the search takes over", "outcome, its text"),
     Reason.PLAN_UNREADABLE: Row(PLAN, "the external planner's output is no plan; the search takes over", "first error"),
     Reason.PLAN_UNSOUND: Row(PLAN, "the plan does not reach the goal; the search takes over", "first fault"),

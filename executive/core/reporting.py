@@ -75,7 +75,7 @@ def _overtaken(context: Context, state: State, plan: planning.Plan | None, runni
     facts = state.task.facts
     if action is not None and planning.apply_action(context.pddl_domain, context.problem, facts, action) <= facts:
         return "done", Cause(Reason.EFFECTS_HOLD)
-    return "aborted", Cause(Reason.SUPERSEDED)
+    return "aborted", Cause(Reason.COURSE_AT_RISK if state.now_ns < state.halted_until_ns else Reason.SUPERSEDED)
 
 
 def _searched(deliberation: Deliberation | None) -> tuple[int, float]:

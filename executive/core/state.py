@@ -96,6 +96,7 @@ class State:
     deliberation: Deliberation | None = None
     preparation: Preparation | None = None
     ground: GroundCache = field(default_factory=GroundCache)
+    halted_until_ns: int = 0  # until then the robot brakes, and nothing is decided
     deliberations: int = 0  # number of started ones; seeds their random generators
 
 

@@ -20,15 +20,15 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 MAX_RISE = 0.05  # of the predicted probability of failure since the decision
 
 
-def is_likelier_to_fail(
+def risen_failure(
     decided: ActionSequence,
     values: Mapping[int, float],
     failure: Sequence[float],
     now: ActionSequence,
     models: Models,
     settings: RefinementSettings,
-) -> bool:
-    """Whether the decided course fails with a clearly higher probability than was predicted for it.
+) -> float:
+    """Predicted probability that the decided course fails; 0 if it is not clearly higher than was predicted for it.
 
     Args:
       decided: Sequence whose first action runs.
@@ -41,7 +41,8 @@ def is_likelier_to_fail(
     course = from_here(decided.bind(values), now)
     objective = SequenceObjective(course.within(settings.horizon), course.variables, models, settings)
     predicted = [float(prediction.failure[0]) for prediction in objective.predict(np.empty(0))]
-    return _any_of(predicted) > _any_of(failure) + MAX_RISE
+    risk = _any_of(predicted)
+    return risk if risk > _any_of(failure) + MAX_RISE else 0.0
 
 
 def from_here(course: ActionSequence, now: ActionSequence) -> ActionSequence:

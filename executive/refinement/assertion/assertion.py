@@ -149,11 +149,28 @@ class Assertion:
         self._comparison = None
         if self._last_resort:
             return self._take(comparison)
+        if self._needs_more_subgoals(comparison):
+            return self._assert_all_subgoals()
         if cheaper:
             self._assert_subgoal(with_subgoal(self._sequence, self._position))
         else:
             self._accept_risk(1.0)
         return True
+
+    def _needs_more_subgoals(self, comparison: SubgoalComparison) -> bool:
+        """Whether an action among objects probably fails with one subgoal, too, and more are allowed."""
+        among_objects = bool(self._sequence.actions[self._position].context)
+        several = self._settings.assertion_depth > 1
+        return among_objects and several and comparison.failure > self._settings.p_fail_settle
+
+    def _assert_all_subgoals(self) -> bool | Failure:
+        """Compare with as many subgoals as are allowed, searched together: alone, each leg may be feasible."""
+        action, depth = self._sequence.actions[self._position], self._settings.assertion_depth
+        for _ in range(depth):
+            self._sequence = with_subgoal(self._sequence, self._position)
+        return self._resort(
+            f"{action.action.name} is predicted to fail even after {depth} asserted subgoals", action.context
+        )
 
     def _assert_subgoal(self, sequence: ActionSequence) -> None:
         """Adopt a sequence with a subgoal, and check the subgoal action first: it is now at the current position."""

@@ -14,7 +14,7 @@ from tailor.executive.interfaces.action_context import ActionContext, ContextCol
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.schemas import codec
-from tailor.schemas.messages import ActionObjects, Contexts, Odometry, Subgoals
+from tailor.schemas.messages import ActionFinished, ActionObjects, Contexts, Odometry, Subgoals, VelocityCommand
 from tests.support.toy_domain import SLIDE, LineBelief, LineDomain, LineModel, inputs, line_context
 
 MS = 1_000_000
@@ -104,9 +104,19 @@ def test_nothing_is_published_without_objects():
     ],
 )
 def test_only_an_object_that_puts_the_course_at_risk_starts_a_new_deliberation(later, new):
-    ticks = run([(1, 40.0)] * 6 + [later] * 4)
+    ticks = run([(1, 40.0)] * 6 + [later] * (10 if new else 4))  # it may brake first
     assert ticks[5][0] == 1
     assert (ticks[-1][0] > 1) is new
+
+
+def test_robot_brakes_before_it_decides_anew_where_the_course_will_probably_fail():
+    ticks = run([(1, 40.0)] * 6 + [(2, 9.0)] * 10)
+    (at, ended), *_ = published(ticks, ActionFinished)
+    assert (at, ended.outcome, ended.reason) == (7, "aborted", "course at risk")
+    commands = dict(published(ticks, VelocityCommand))
+    assert commands[7].v > 0
+    assert [commands[tick].v for tick in range(8, 14)] == [0.0] * 6
+    assert [deliberations for deliberations, _ in ticks[6:13]] == [1] * 6 + [2]
 
 
 def test_the_same_inputs_give_the_same_messages():

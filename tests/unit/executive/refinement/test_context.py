@@ -154,6 +154,23 @@ def test_where_every_way_is_risky_the_likeliest_one_is_taken():
     assert search.choice.failure[0] < 1 - success_of(direct.actions[0], ARGUMENTS[:1])[0]
 
 
+def test_trap_that_one_subgoal_does_not_lead_out_of_gets_two():
+    """Walls on three sides of the robot: one subgoal is reached, or the goal from it, but not both."""
+    walls = [(-1.2, y, 0.2) for y in np.arange(-0.9, 0.91, 0.3)]
+    walls += [(x, side * 0.9, 0.2) for x in np.arange(-2.6, -1.3, 0.3) for side in (1, -1)]
+    given, settings = beside(tuple(walls), [GO_AROUND], [START, GOAL]), replace(EXACT, risk_cost_s=30.0)
+    result = asserted(given, settings)
+    assert len(names(result)) == 3
+    search = Refinement(result, BESIDE, settings, np.random.default_rng(0))
+    search.advance(CheckBudget(800))
+    assert max(search.choice.failure) < 0.05
+
+
+def test_hopeless_way_is_not_taken_for_want_of_a_better_one():
+    ring = tuple((-2 + 0.45 * np.cos(a), 0.45 * np.sin(a), 0.3) for a in np.arange(8) * np.pi / 4)
+    assert isinstance(asserted(beside(ring, [GO_AROUND], [START, GOAL])), Failure)
+
+
 def monitor(belief) -> ContextMonitor:
     return ContextMonitor(beside(belief, [GO_AROUND], [START, GOAL]))
 

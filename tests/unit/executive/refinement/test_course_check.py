@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tailor.executive.refinement.course_check import from_here, is_likelier_to_fail
+from tailor.executive.refinement.course_check import from_here, risen_failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tests.unit.executive.refinement.synthetic_context import BESIDE, GO_AROUND, beside
 
@@ -22,7 +22,7 @@ def now(objects, start=START):
 def likelier(objects, start=START, failure=(0.0,)) -> bool:
     decided = now((ASIDE,))
     values = {variable.id: 0.0 for variable in decided.free()}
-    return is_likelier_to_fail(decided, values, failure, now(objects, start), BESIDE, EXACT)
+    return risen_failure(decided, values, failure, now(objects, start), BESIDE, EXACT) > 0
 
 
 @pytest.mark.parametrize(
