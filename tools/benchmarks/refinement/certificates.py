@@ -1,56 +1,26 @@
-"""CPU time of a proof that a choice is within 5 % and 1 % of the models' optimum.
-
-Measures the default objective (mean and std of a bag, displaced arrivals) and the first tree of each bag alone.
-"""
+"""CPU time of a proof that a choice is within 5 % and 1 % of the models' optimum."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Column, Table
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
-from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
-from tailor.models.bounds.leaf_bounds import LeafBounds
-from tailor.models.bounds.model_bounds import ModelBounds
-from tailor.models.bounds.tree_boxes import TreeBoxes
-from tailor.models.features.spaces import feature_space
-from tailor.models.inference import OnnxDuration
 from tailor.tools.benchmarks.refinement.cases import Case
 
 GAPS_PCT = (5.0, 1.0)
 LIMIT_S = 2.0
 MIN_MISSED_PCT = 0.1  # a smaller gain of the proof does not count as missed by the search
-DEFAULT = RefinementSettings(certify_checks=10**6)
-SINGLE = replace(DEFAULT, k_std=0.0, arrival_spread=())
-
-
-@dataclass(frozen=True, slots=True)
-class OneTree:
-    """First tree of a bag as a separate model."""
-
-    space: str
-    boxes: TreeBoxes
-    bounds: ModelBounds
-
-    def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Mean and a standard deviation of zero, each of shape (n,), for arguments of shape (n, k)."""
-        boxes, features = self.boxes, feature_space(self.space)(arguments)
-        inside: NDArray[np.bool_] = np.ones((len(features), len(boxes.low)), bool)
-        for j in range(features.shape[1]):
-            inside &= (features[:, j, None] > boxes.lower[:, j]) & (features[:, j, None] <= boxes.upper[:, j])
-        leaf = np.argmax(inside, axis=1)
-        mean = (features * boxes.slopes[leaf]).sum(axis=1) + boxes.intercept[leaf]
-        return np.clip(mean, boxes.low[leaf], boxes.high[leaf]).astype(np.float64), np.zeros(len(features))
+SETTINGS = RefinementSettings(certify_checks=10**6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,24 +37,18 @@ class Proof:
 
 
 def rows(models: Models, tasks: dict[str, list[Case]]) -> list[dict[str, object]]:
-    """One row for each case with the default objective, and with single trees if there is no success model."""
-    table = []
-    for name, cases in tasks.items():
-        table.append(_row(name, "default", [proof(case, models, DEFAULT) for case in cases]))
-        if not any(action.action.success_model for action in cases[0].actions):
-            single = Models({path: _first_tree(model) for path, model in models.durations.items()}, {})
-            table.append(_row(name, "one tree", [proof(case, single, SINGLE) for case in cases]))
-    return table
+    """One row for each case."""
+    return [_row(name, [proof(case, models) for case in cases]) for name, cases in tasks.items()]
 
 
-def proof(case: Case, models: Models, settings: RefinementSettings) -> Proof:
+def proof(case: Case, models: Models) -> Proof:
     """Search for a choice, then prove its optimality gap."""
-    objective = case.objective(models, settings)
-    solver = solver_for(objective, settings, np.random.default_rng(0), objective.vectors(case.starts))
-    solver.advance(CheckBudget(settings.checks_max))
+    objective = case.objective(models, SETTINGS)
+    solver = solver_for(objective, SETTINGS, np.random.default_rng(0), objective.vectors(case.starts))
+    solver.advance(CheckBudget(SETTINGS.checks_max))
     assert solver.best is not None, "the cases have valid choices"
-    proven = certificate(objective, solver.best, settings)
-    assert isinstance(proven, Certificate), "AGILO's models are trees"
+    proven = certificate(objective, solver.best, SETTINGS)
+    assert isinstance(proven, Certificate), "AGILO's models have bounds"
     until, longest = dict.fromkeys(GAPS_PCT, np.inf), 0.0
     began = before = time.process_time()
     while not proven.finished and before - began < LIMIT_S:
@@ -98,25 +62,11 @@ def proof(case: Case, models: Models, settings: RefinementSettings) -> Proof:
     return Proof(tuple(until.values()), gap_pct, 1e3 * longest, 100 * (solver.value / proven.value - 1))
 
 
-def _first_tree(model: object) -> OneTree:
-    """First tree of a loaded model; AGILO's duration models are bags of trees."""
-    assert isinstance(model, OnnxDuration)
-    assert model.bounds is not None
-    bounds = model.bounds
-    assert bounds.trees is not None
-    boxes = bounds.trees.boxes
-    end = int(boxes.first[1]) if len(boxes.first) > 1 else len(boxes.low)
-    parts = (getattr(boxes, name)[:end] for name in ("lower", "upper", "slopes", "intercept", "low", "high"))
-    alone = TreeBoxes(boxes.first[:1], *parts)
-    return OneTree(bounds.space, alone, ModelBounds(bounds.space, LeafBounds(alone)))
-
-
-def _row(case: str, objective: str, proofs: Sequence[Proof]) -> dict[str, object]:
+def _row(case: str, proofs: Sequence[Proof]) -> dict[str, object]:
     until = np.median([one.until_ms for one in proofs], axis=0)
     reached = np.mean([np.isfinite(one.until_ms) for one in proofs], axis=0)
     return {
         "case": case,
-        "objective": objective,
         "n": len(proofs),
         **{f"median_ms_to_{gap:g}_pct": float(ms) for gap, ms in zip(GAPS_PCT, until, strict=True)},
         **{f"share_within_{gap:g}_pct": float(share) for gap, share in zip(GAPS_PCT, reached, strict=True)},
@@ -131,7 +81,7 @@ def _row(case: str, objective: str, proofs: Sequence[Proof]) -> dict[str, object
 def show(console: Console, models: Models, tasks: dict[str, list[Case]]) -> None:
     """Print the table."""
     table = Table(
-        *(Column(name, no_wrap=True) for name in ("case", "objective")),
+        Column("case", no_wrap=True),
         title="certificate: median CPU ms until 5 % and 1 % are proven, gap in % after 2 s, longest check in ms",
         caption="proven: tasks within 1 %; missed: tasks whose optimum the search missed, by at most so many %",
         box=None,
@@ -146,7 +96,7 @@ def show(console: Console, models: Models, tasks: dict[str, list[Case]]) -> None
             f"{row[name]:.1f}" for name in ("median_gap_pct", "worst_gap_pct", "worst_missed_pct", "longest_check_ms")
         )
         cells = (*ms, shares[0], gap, worst, shares[1], missed, longest)
-        table.add_row(str(row["case"]), str(row["objective"]), *cells)
+        table.add_row(str(row["case"]), *cells)
     console.print(table)
 
 

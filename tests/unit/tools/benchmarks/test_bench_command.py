@@ -11,10 +11,13 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
+from tailor.executive.interfaces.models import Models
+from tailor.models.runtime import load_robot
 from tailor.runtime.recordings.recording import open_recording
 from tailor.tools.benchmarks import planning, recording, ticks
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
-from tailor.tools.benchmarks.refinement import refine
+from tailor.tools.benchmarks.refinement import certificates, refine
+from tailor.tools.benchmarks.refinement.cases import cases
 from tailor.tools.commands.measure import bench
 from tailor.tools.main import main
 
@@ -133,6 +136,12 @@ def test_run_that_was_not_recorded_is_no_measurement(monkeypatch, tmp_path):
     monkeypatch.setattr(recording, "Child", Nothing)
     with pytest.raises(NoMeasurement, match="no soccer run was recorded"):
         recording._soccer(None, tmp_path / "missing.mcap")
+
+
+def test_proofs_with_the_models_that_ship_are_measured():
+    models = Models(*load_robot("agilo"))
+    (row,) = certificates.rows(models, {"2 free": cases(models, 1)["2 free"]})
+    assert (row["case"], row["n"], row["share_within_1_pct"]) == ("2 free", 1, 1.0)
 
 
 def test_solvers_without_a_valid_choice_have_measured_nothing(monkeypatch):
