@@ -15,9 +15,10 @@ from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.replay import RecordedTick
+from tailor.simnodes.world import World
 from tailor.tools.benchmarks.growth.curve import Curve
+from tailor.tools.lockstep.action_run import new_body
 from tailor.tools.lockstep.run import SENDER, run_lockstep
-from tailor.tools.lockstep.worlds import make_world
 
 LETTERS = (1, 2, 4, 8, 12)
 OPPONENTS = (1, 2, 4, 8)
@@ -52,8 +53,7 @@ def _longest_ms(domain: str, scenario: str, start: Mapping[str, float], seconds:
     """Of the median of three replays of each tick, the longest."""
     ticks: list[RecordedTick] = []
     context, budgets = _context(domain, scenario), partial(CheckBudget, CHECKS)
-    world = make_world(context.domain.robot, scenario, 0)
-    world.reset(start=start)
+    world = World(new_body(context.domain), start, 0)
     run_lockstep(context, world, limit_s=seconds, new_budget=budgets, on_tick=lambda t, _: ticks.append(t))
     replays = [_replayed_ms(_context(domain, scenario), ticks) for _ in range(3)]
     return float(np.max(np.median(replays, axis=0)))

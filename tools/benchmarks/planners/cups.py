@@ -15,9 +15,10 @@ from tailor.executive import domains, planning
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.schemas.kitchen.furniture import kitchen, on_table
+from tailor.simnodes.world import World
 from tailor.tools.benchmarks.planners.tours import Costs, compared
+from tailor.tools.lockstep.action_run import new_body
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
-from tailor.tools.lockstep.worlds import make_world
 
 DOMAIN, SCENARIO = "kitchen", "two-cups"
 PROBLEM = """(define (problem two-errands) (:domain kitchen) (:objects dock from1 to1 from2 to2 - place cup1 cup3 - cup)
@@ -49,8 +50,7 @@ def driven(seed: int, costs: Costs) -> Run:
     scenario = replace(context.scenario, problem=PROBLEM, places={}, settings=settings)
     problem = planning.parse_problem(PROBLEM, context.pddl_domain, "errands")
     start = {name: value for name, value in start.items() if not name.startswith("cup")} | _cups(start, spots)
-    world = make_world(context.domain.robot, SCENARIO, seed)
-    world.reset(start=start)
+    world = World(new_body(context.domain), start, seed)
     return run_lockstep(replace(context, scenario=scenario, problem=problem), world, limit_s=LIMIT_S)
 
 
