@@ -88,7 +88,7 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
 
 def _done(context: Context, state: State, running: Running) -> tuple[State, ActionFinished]:
     finished = finished_message(context, state, state.task.finished, running, ("done", None))
-    task = _with_effects(context, replace(_after_action(state.task), failures=()), running)
+    task = _with_effects(context, replace(after_action(state.task), failures=()), running)
     return replace(state, task=task, deliberation=None, coasted=0), finished
 
 
@@ -100,12 +100,13 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
     fault = None
     if failures.count(failure) >= context.settings.replan_failures:
         fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
-    task = replace(_after_action(state.task), failures=failures, plan=None, done=frozenset())
+    task = replace(after_action(state.task), failures=failures, plan=None, done=frozenset())
     zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks
     return replace(state, task=task, deliberation=None, fault=fault, command=zero, coasted=coasted), finished
 
 
-def _after_action(task: Task) -> Task:
+def after_action(task: Task) -> Task:
+    """The task once its action has ended: nothing runs, nothing is decided."""
     return replace(task, running=None, decision=None, finished=task.finished + 1)
 
 

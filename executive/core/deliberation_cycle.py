@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from tailor.executive import planning
+from tailor.executive.core.action_cycle import after_action
 from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running, first_action
@@ -16,6 +17,7 @@ from tailor.executive.core.plan_source import PlanSource, current_problem, reque
 from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.course_check import risen_failure
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
@@ -71,10 +73,12 @@ def _with_deliberation(context: Context, state: State) -> State:
     if ongoing or state.now_ns < state.halted_until_ns:
         return state
     if not idle:
-        risk = _risk_of_course(context, state)
+        if task.decision is None or task.running is None:
+            return state
+        risk = _risk_of_course(context, state.belief, task.decision)
         if risk > context.settings.refinement.p_fail_settle:
             return _halted(context, state)
-        if not (risk or _bindings_outdated(state)):
+        if not (risk or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
             return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
@@ -155,20 +159,9 @@ def _starts_another(decision: Decision, running: Running) -> bool:
     return (first.action.name, first.step, first.asserted) != same
 
 
-def _bindings_outdated(state: State) -> bool:
-    """Whether the belief has left values or ranges of the running sequence."""
-    decision = state.task.decision
-    if decision is None or state.task.running is None:
-        return False
-    return decision.watch.outdated(state.belief, decision.choice.values)
-
-
-def _risk_of_course(context: Context, state: State) -> float:
+def _risk_of_course(context: Context, belief: Belief, decision: Decision) -> float:
     """Predicted probability that the running course fails; 0 unless objects have changed, and raised it."""
-    decision = state.task.decision
-    if decision is None or state.task.running is None:
-        return 0.0
-    now, choice = decision.watch.among_changed_objects(state.belief), decision.choice
+    now, choice = decision.watch.among_changed_objects(belief), decision.choice
     if now is None:
         return 0.0
     models, settings = context.models, context.settings.refinement
@@ -177,9 +170,8 @@ def _risk_of_course(context: Context, state: State) -> float:
 
 def _halted(context: Context, state: State) -> State:
     """End an action that objects have made likely to fail. The robot brakes first, and decides at rest."""
-    task = replace(state.task, running=None, decision=None, finished=state.task.finished + 1)
-    until_ns, coasted = state.now_ns + HALT_NS, context.settings.coast_ticks
-    return replace(state, task=task, deliberation=None, coasted=coasted, halted_until_ns=until_ns)
+    task, until_ns = after_action(state.task), state.now_ns + HALT_NS
+    return replace(state, task=task, deliberation=None, coasted=context.settings.coast_ticks, halted_until_ns=until_ns)
 
 
 def _prepared(context: Context, state: State, budget: Budget) -> State:

@@ -58,12 +58,8 @@ class BeliefMonitor:
 
 def _bindings(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int, float, float]]:
     """Variable of the pattern, bound value and tolerance, for each monitored parameter of the sequence."""
-    planned = {(action.step, action.action.name): action for action in pattern.actions}
     for action in sequence.actions:
-        same = planned.get((action.step, action.action.name))
-        if same is None or action.asserted:
-            continue  # it leads to an asserted subgoal, which is not in the plan
-        for parameter, own, in_pattern in zip(action.action.parameters, action.variables, same.variables, strict=True):
+        for parameter, own, in_pattern in pattern.planned(action):
             value = sequence.variables[own].value
             if parameter.tolerance is not None and value is not None:
                 yield in_pattern, value, parameter.tolerance

@@ -5,7 +5,7 @@ Causal links give the predicates that hold for a label of the plan; the domain t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from tailor.executive.interfaces.action import Action, Parameter
@@ -71,6 +71,16 @@ class Pattern:
             for instance in self.actions
         )
         return ActionSequence(actions, tuple(variables), self._domain.actions, contexts=contexts)
+
+    def planned(self, action: InstantiatedAction) -> Iterator[tuple[Parameter, int, int]]:
+        """Each parameter of an action of a sequence, with its variable there and in this pattern.
+
+        Empty for an action that is not in the plan: one that leads to an asserted subgoal.
+        """
+        at = action.step, action.action.name
+        same = next((each for each in self.actions if (each.step, each.action.name) == at), None)
+        if same is not None and not action.asserted:
+            yield from zip(action.action.parameters, action.variables, same.variables, strict=True)
 
     def value(self, identifier: int, belief: Belief) -> float | None:
         """Value of one variable in `sequence(belief)`; None if it is free.

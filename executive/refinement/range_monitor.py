@@ -70,14 +70,7 @@ class _Choice:
 
 
 def _choices(pattern: Pattern, sequence: ActionSequence) -> Iterator[_Choice]:
-    """The free parameters of the first action; of none that leads to an asserted subgoal, which is not in the plan."""
-    first = sequence.actions[0]
-    planned = (
-        action for action in pattern.actions if (action.step, action.action.name) == (first.step, first.action.name)
-    )
-    same = next(planned, None)
-    if first.asserted or same is None:
-        return
-    for parameter, own, in_pattern in zip(first.action.parameters, first.variables, same.variables, strict=True):
+    """The free parameters of the first action, if it is in the plan."""
+    for parameter, own, in_pattern in pattern.planned(sequence.actions[0]):
         if sequence.variables[own].free:
             yield _Choice(own, in_pattern, parameter)
