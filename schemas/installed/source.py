@@ -15,7 +15,7 @@ from tailor.schemas.packages.spec import DomainSpec
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, scenes
-CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_run.py")
+CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_*.py")
 REASONING = ("executive/core/*", "executive/interfaces/*", "executive/planning/**/*", "executive/refinement/**/*")
 WHOLE = (
     *CONTROL,

@@ -27,7 +27,7 @@ class DomainSpec:
       body: Callable without arguments that returns a tailor.simnodes.body.Body; empty for a robot without simulator.
       topics: Topics of the robot beside those that Tailor ships, by name; loaded with the table of topics.
       messages: Folder of a ROS 2 interface package, `FOLDER/msg/*.msg`; a topic may name its type by the file's name.
-      sampler: Callable without arguments that returns a TaskSampler, see tailor.tools.lockstep.action_run.
+      sampler: Callable without arguments that returns a TaskSampler, see tailor.tools.lockstep.task_sampler.
       features: Tuple of FeatureSpaces beside those that Tailor ships.
       scenarios: Folder of scenario files, from which `draw` draws.
       draw: Function `(declared, rng) -> (start, places, events)` of a scenario file's contents.

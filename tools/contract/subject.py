@@ -17,7 +17,9 @@ from tailor.schemas.packages.scene import SceneView
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.simnodes.body import Body, Reading
 from tailor.tools.lockstep import action_run
-from tailor.tools.lockstep.action_run import PERIOD_NS, ActionRun
+from tailor.tools.lockstep.action_log import ActionRun
+from tailor.tools.lockstep.action_run import PERIOD_NS
+from tailor.tools.lockstep.readings import newest
 
 LOOKING_TICKS = 30  # three seconds in which a robot at rest looks around
 MAX_SCENARIOS = 6  # of those that a domain has
@@ -90,5 +92,5 @@ class Subject:
             self.body.command(zero)
             new = self.body.advance(PERIOD_NS)
             readings += new
-            belief = self.domain.update(belief, tick * PERIOD_NS, action_run.newest(new), zero)
+            belief = self.domain.update(belief, tick * PERIOD_NS, newest(new), zero)
         return belief, readings

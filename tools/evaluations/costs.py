@@ -14,8 +14,8 @@ from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, Message, Subgoals
-from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.messages import Subgoals
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
-from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 FIRST_SEED = 1_000_000  # of evaluations; models are trained and settings are chosen on smaller seeds
 

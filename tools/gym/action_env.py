@@ -19,7 +19,9 @@ from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.gym.spaces import Command, believed, clipped, command_space, numbers, width
-from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S, judged, new_body, newest, sampler_of
+from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S, new_body
+from tailor.tools.lockstep.readings import judged, newest
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 PERIOD_S = PERIOD_NS * 1e-9
 MAX_DRAWS = 100

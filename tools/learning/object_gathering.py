@@ -17,8 +17,9 @@ from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import TICK_S, Episode
 from tailor.schemas.messages import Message
 from tailor.simnodes.body import Body
-from tailor.tools.lockstep.action_run import run_action, sampler_of
+from tailor.tools.lockstep.action_run import run_action
 from tailor.tools.lockstep.samplers.beside import Beside
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 
 class ObjectSampler(Protocol):

@@ -18,7 +18,7 @@ from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Message, Subgoals
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.lockstep.action_run import TaskSampler, sampler_of
+from tailor.tools.lockstep.task_sampler import TaskSampler, sampler_of
 
 MIN_TICKS = 3
 

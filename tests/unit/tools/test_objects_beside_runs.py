@@ -9,8 +9,9 @@ from tailor.executive import domains
 from tailor.schemas.messages.soccer import OpponentsTruth
 from tailor.simnodes.agilo.scene import RAIL
 from tailor.tools.learning.object_gathering import runs_beside_objects
-from tailor.tools.lockstep.action_run import new_body, run_action, sampler_of
+from tailor.tools.lockstep.action_run import new_body, run_action
 from tailor.tools.lockstep.samplers import opponents
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 DOMAIN = domains.load("soccer")
 ACTION = DOMAIN.actions["goToPose"]

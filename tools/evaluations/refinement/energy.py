@@ -19,8 +19,8 @@ from tailor.tools.evaluations.paired_comparison import compare, p_shown
 from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_task
-from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.lockstep.task_sampler import sampler_of
 from tailor.tools.parallel.pool import completed, in_order
 
 WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with

@@ -31,7 +31,7 @@ DISTANCE_RAD = (0.05, 2.2)  # uniform: sampling in a rectangle yields few short 
 
 @dataclass(frozen=True, slots=True)
 class ArmSampler:
-    """See action_run.TaskSampler; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
+    """See task_sampler.TaskSampler; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
         """Controller arguments, shape (8,): uniform, velocities scaled to the distance, some at rest."""

@@ -41,7 +41,7 @@ ASIDE_STOOL = {"stool_x": 2.75, "stool_y": -1.95}  # in a corner: the duration o
 
 @dataclass(frozen=True, slots=True)
 class KitchenSampler:
-    """See action_run.TaskSampler."""
+    """See task_sampler.TaskSampler."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
         """Controller arguments: a drive between two stands or the start, or a spot and a stand before it."""

@@ -42,7 +42,7 @@ DRIBBLE_ASIDE_RAD = 1.5  # between the target's heading and the line to it
 
 @dataclass(frozen=True, slots=True)
 class SoccerSampler:
-    """See action_run.TaskSampler; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
+    """See task_sampler.TaskSampler; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
         """Controller arguments, shape (8,), uniform over the action's ranges; impossible ones are rejected."""

@@ -12,7 +12,8 @@ from tailor.executive.domains.soccer import belief as soccer
 from tailor.executive.domains.soccer import opponents
 from tailor.schemas.messages import Sample
 from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
-from tailor.tools.lockstep.action_run import new_body, newest
+from tailor.tools.lockstep.action_run import new_body
+from tailor.tools.lockstep.readings import newest
 
 POSE = Pose(1.0, -0.5, 0.7, (4e-4, 0.0, 0.0, 4e-4, 0.0, 2e-4))
 PICTURE_NS = 80_000_000

@@ -15,7 +15,8 @@ from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.soccer import BallPercept
-from tailor.tools.lockstep.action_run import new_body, newest
+from tailor.tools.lockstep.action_run import new_body
+from tailor.tools.lockstep.readings import newest
 
 SOCCER = domains.load("soccer")
 PLACES = {"pos3": {"x": 1.0, "y": 3.0, "phi": 2.6, "v": 0.0}}

@@ -16,7 +16,8 @@ from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.detour_graph import DetourGraph
 from tailor.tools.evaluations.outcome import Outcome
-from tailor.tools.lockstep.action_run import new_body, newest
+from tailor.tools.lockstep.action_run import new_body
+from tailor.tools.lockstep.readings import newest
 
 WAYS = ArrivalPath(robot.V_MAX_MPS)
 START, GOAL = (-1.5, 0.0, 0.0), (1.5, 0.0, 0.0)

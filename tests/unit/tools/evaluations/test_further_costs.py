@@ -11,8 +11,8 @@ from tailor.tools.evaluations import task_runs
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.paired_outcomes import columns
-from tailor.tools.lockstep.action_run import sampler_of
 from tailor.tools.lockstep.run import Run
+from tailor.tools.lockstep.task_sampler import sampler_of
 
 DONE = Outcome(1, "h1", True, 10.0, "achieved", (), (), (), (), False, 0.0, (), ())
 

@@ -16,8 +16,9 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
 from tailor.tools.gym import env_ids, register_envs
-from tailor.tools.lockstep.action_run import new_body, run_action, sampler_of
+from tailor.tools.lockstep.action_run import new_body, run_action
 from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.task_sampler import sampler_of
 from tailor.tools.lockstep.worlds import make_world
 
 FEW = 20  # checks of a tick: the refined choice matters little here

@@ -2,7 +2,7 @@
 
 import math
 
-from tailor.tools.lockstep.action_run import TaskSampler
+from tailor.tools.lockstep.task_sampler import TaskSampler
 from truck.warehouse import Seen
 
 
@@ -17,7 +17,7 @@ def draw(declared, rng):
 
 
 class Tasks(TaskSampler):
-    """See tailor.tools.lockstep.action_run.TaskSampler."""
+    """See tailor.tools.lockstep.task_sampler.TaskSampler."""
 
     def sample(self, action, rng):
         return rng.uniform([p.lower for p in action.parameters], [p.upper for p in action.parameters])

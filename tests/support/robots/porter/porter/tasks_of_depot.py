@@ -1,7 +1,7 @@
 """Random places and widths, to learn from and to work at."""
 
 from porter.depot import Seen
-from tailor.tools.lockstep.action_run import TaskSampler
+from tailor.tools.lockstep.task_sampler import TaskSampler
 
 
 def draw(declared, rng):
@@ -17,7 +17,7 @@ def draw(declared, rng):
 
 
 class Tasks(TaskSampler):
-    """See tailor.tools.lockstep.action_run.TaskSampler."""
+    """See tailor.tools.lockstep.task_sampler.TaskSampler."""
 
     def sample(self, action, rng):
         while True:
