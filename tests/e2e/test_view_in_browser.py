@@ -11,13 +11,13 @@ import pytest
 
 from tailor.schemas import messages as m
 from tailor.tools.viewer import timeline as timeline_module
-from tailor.tools.viewer.broadcast import EventBroadcast
 from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
-from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.side_by_side import side_by_side
-from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser

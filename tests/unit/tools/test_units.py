@@ -17,7 +17,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.commands.setup import units
 from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
-from tailor.tools.launch.unit_text import command_line
+from tailor.tools.launch.units.unit_text import command_line
 from tailor.tools.main import COMMANDS, main
 
 SERVICES = {"bus": "bus", "driver": "sim", "executive": "executive", "recorder": "record"}  # part -> command

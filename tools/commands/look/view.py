@@ -18,14 +18,14 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.operator.stop_button import StopButton
-from tailor.tools.viewer.broadcast import EventBroadcast
-from tailor.tools.viewer.bus_listener import BusListener
 from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.bus_listener import BusListener
+from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
-from tailor.tools.viewer.server import serving
 from tailor.tools.viewer.side_by_side import side_by_side
-from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 PORT = 7450

@@ -11,7 +11,7 @@ from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.tools.evaluations.overview import page_is_there, write_overview
+from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 

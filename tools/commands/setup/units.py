@@ -21,7 +21,7 @@ from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
-from tailor.tools.launch.units import PARTS, UnitsConfig, unit_files
+from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files
 
 USER = re.compile(r"[a-z_][a-z0-9_-]{0,30}\$?")
 

@@ -25,8 +25,8 @@ from tailor.tools.evaluations.arm.letter_figures import (
     write_letter,
 )
 from tailor.tools.evaluations.costs import Costs
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import Comparison, compare, compare_means
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.figures.letters import draw_letters
 

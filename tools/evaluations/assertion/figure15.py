@@ -19,8 +19,8 @@ from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_
 from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import share_interval
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run

@@ -12,9 +12,9 @@ from tailor.executive.core.reasons import Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pages.plots import draw_shares
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
-from tailor.tools.evaluations.plots import draw_shares
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.lockstep.samplers.soccer import COLLIDED_M

@@ -28,8 +28,8 @@ from tailor.tools.evaluations.live.agreement import agreement, starts_of
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import dependencies, run_all
 from tailor.tools.launch.hosting import private_bus

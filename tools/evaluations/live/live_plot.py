@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tailor.tools.evaluations.live.agreement import Starts, agreement
-from tailor.tools.evaluations.plots import ACCENT, INK, PALE
+from tailor.tools.evaluations.pages.plots import ACCENT, INK, PALE
 
 COLOURS = (ACCENT, INK)
 

@@ -14,8 +14,8 @@ from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
+from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.report import Report, publish_report
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -15,8 +15,8 @@ from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, seeded
+from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.report import Report, publish_report
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
 N_I = 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.report import configure_report
+from tailor.tools.evaluations.pages.report import configure_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.learning import gathering
 

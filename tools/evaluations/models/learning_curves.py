@@ -22,9 +22,9 @@ from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import models
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
+from tailor.tools.evaluations.pages.plots import draw_curves
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, mean_interval
-from tailor.tools.evaluations.plots import draw_curves
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.task_runs import paired, run_all
 from tailor.tools.learning.fresh_seeds import DIGITS
 from tailor.tools.learning.making import CHOOSING, Making, make

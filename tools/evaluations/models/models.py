@@ -23,8 +23,8 @@ from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 
 Row = dict[str, Any]

@@ -19,8 +19,8 @@ from tailor.models.training.training import fit
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models.learned import configure_learned, seeded
+from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.report import Report, publish_report
 from tailor.tools.learning import gathering
 from tailor.tools.learning.run_gathering import Policy, modelled_actions, models_hash, run_policy
 

@@ -15,9 +15,9 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, share_interval
 from tailor.tools.evaluations.refinement.replicas import Recipe, replica
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 

@@ -15,8 +15,8 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, finite
 from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, p_shown
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_task
 from tailor.tools.lockstep.run import Run

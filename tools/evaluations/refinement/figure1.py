@@ -16,8 +16,8 @@ import numpy as np
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Task, Variant
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.traced_runs import TracedRun, trace_all
 from tailor.tools.figures.paths import draw_paths

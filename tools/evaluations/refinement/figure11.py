@@ -17,9 +17,9 @@ import numpy as np
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.refinement.sweep import Sweep, sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run

@@ -13,11 +13,11 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.bodies import body_of
-from tailor.tools.evaluations.plots import draw_pairs
+from tailor.tools.evaluations.pages.plots import draw_pairs
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.refinement.paired_outcomes import costs_no_more
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import seeds_of
 
 REMARKS = (

@@ -10,8 +10,8 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
-from tailor.tools.evaluations.overview import write_overview
-from tailor.tools.evaluations.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.pages.overview import write_overview
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.main import main
 
 CALLS: list[str] = []

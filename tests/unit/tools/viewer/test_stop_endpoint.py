@@ -10,11 +10,11 @@ import time
 import pytest
 
 from tailor.schemas.messages import DriverState
-from tailor.tools.viewer import server
-from tailor.tools.viewer.broadcast import EventBroadcast
+from tailor.tools.viewer.live import server
+from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.server import serving
-from tailor.tools.viewer.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.timeline import Event
 from tests.support.patience import PATIENCE_S
 from tests.support.stalls import repeat_on_stall

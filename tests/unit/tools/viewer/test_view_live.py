@@ -16,10 +16,10 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
-from tailor.tools.viewer import server
-from tailor.tools.viewer.broadcast import MAX_WAITING, EventBroadcast
-from tailor.tools.viewer.bus_listener import BusListener
-from tailor.tools.viewer.server import serving
+from tailor.tools.viewer.live import server
+from tailor.tools.viewer.live.broadcast import MAX_WAITING, EventBroadcast
+from tailor.tools.viewer.live.bus_listener import BusListener
+from tailor.tools.viewer.live.server import serving
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support.patience import PATIENCE_S
 

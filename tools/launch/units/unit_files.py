@@ -12,10 +12,10 @@ from tailor.runtime import realtime
 from tailor.runtime.processes.child import tailor
 from tailor.schemas.ros2.profiles import PLAIN
 from tailor.tools.cli.bus_settings import BusSettings
-from tailor.tools.launch import unit_settings
 from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
-from tailor.tools.launch.unit_text import command_line, path, path_in_list, unit_text
+from tailor.tools.launch.units import unit_settings
+from tailor.tools.launch.units.unit_text import command_line, path, path_in_list, unit_text
 
 Setting = tuple[str, str]
 TARGET = "tailor.target"

@@ -17,7 +17,7 @@ from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import type_of
-from tailor.tools.viewer.broadcast import EventBroadcast
+from tailor.tools.viewer.live.broadcast import EventBroadcast
 from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 

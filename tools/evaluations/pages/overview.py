@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.tools.cli.column_titles import column_title
-from tailor.tools.evaluations.report import shown
+from tailor.tools.evaluations.pages.report import shown
 from tailor.tools.figures.report_page import page, table
 
 ROWS_MAX = 6

@@ -1,0 +1,1 @@
+"""What the evaluations publish: tables, plots, a page that links them."""

@@ -1,0 +1,1 @@
+"""The live page: from the bus to browsers."""
