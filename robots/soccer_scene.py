@@ -1,4 +1,4 @@
-"""What AGILO, ball, opponents and field look like. Metres, radians."""
+"""What AGILO, balls, opponents and field look like. Metres, radians."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from collections.abc import Iterator, Mapping
 
 from tailor.schemas.messages import Message
 from tailor.schemas.messages.scenes import FrameTransform, Shape
-from tailor.schemas.messages.soccer import OpponentsTruth, SoccerGroundTruth
+from tailor.schemas.messages.soccer import BallTruth, OpponentsTruth, SoccerGroundTruth
 from tailor.schemas.packages.pose3 import Pose3, on_plane
 from tailor.schemas.packages.scene import BASE, BLUE, DARK, Scene, box, cylinder, frame, line, sphere
 
 BALL_M = 0.11
 FIELD_M = (3.5, 2.25)  # half its length and width
+YELLOW = (0.9, 0.75, 0.1, 1.0)
 FAR_M = 20.0  # a ball so far away is none of the scenario
 OPPONENT_HEIGHT_M = 0.6
 AXLE_M = 0.0625  # height of the axle
@@ -21,10 +22,12 @@ RAIL_M = ((0.288, 0.119), (0.255, 0.106), (0.227, 0.083), (0.207, 0.053), (0.196
 
 
 def of_belief(values: Mapping[str, float]) -> Scene:
-    """Believed pose, ball once seen, opponents once seen."""
+    """Believed pose, balls once seen, opponents once seen."""
     shapes = [*ROBOT, *FIELD]
     if values.get("ball_sigma", -1.0) >= 0.0:
         shapes += _ball(values["ball_x"], values["ball_y"])
+    if values.get("ball2_sigma", -1.0) >= 0.0:
+        shapes += _second_ball(values["ball2_x"], values["ball2_y"])
     for number in range(1, MOST_OPPONENTS + 1):
         if values.get(f"opponent{number}_sigma", -1.0) >= 0.0:
             x, y, radius_m = (values[f"opponent{number}_{quantity}"] for quantity in ("x", "y", "radius"))
@@ -33,10 +36,12 @@ def of_belief(values: Mapping[str, float]) -> Scene:
 
 
 def of_truth(message: Message) -> Scene:
-    """True pose and ball, or true opponents."""
+    """True pose and ball, or true second ball, or true opponents."""
     if isinstance(message, SoccerGroundTruth):
         shapes = (*ROBOT, *FIELD, *_ball(message.ball_x, message.ball_y))
         return Scene((_base(message.x, message.y, message.phi),), shapes, BASE, message.v)
+    if isinstance(message, BallTruth):
+        return Scene(shapes=tuple(_second_ball(message.x, message.y)))
     if isinstance(message, OpponentsTruth):
         standing = enumerate(message.opponents, 1)
         return Scene(shapes=tuple(_opponent(number, each.x, each.y, each.radius_m) for number, each in standing))
@@ -55,6 +60,10 @@ def _base(x: float, y: float, phi: float) -> FrameTransform:
 def _ball(x: float, y: float) -> Iterator[Shape]:
     if math.hypot(x, y) < FAR_M:
         yield sphere("ball", BALL_M, on_plane(x, y, z=BALL_M))
+
+
+def _second_ball(x: float, y: float) -> Iterator[Shape]:
+    yield sphere("second ball", BALL_M, on_plane(x, y, z=BALL_M), YELLOW)
 
 
 def _opponent(number: int, x: float, y: float, radius_m: float) -> Shape:

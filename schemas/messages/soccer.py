@@ -41,6 +41,19 @@ class SoccerGroundTruth(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class BallTruth(Message):
+    """True state of a second ball in the simulator, map frame; the executive never reads it."""
+
+    FRAME_ID: ClassVar[str] = "map"
+
+    stamp_ns: int
+    x: float  # m
+    y: float  # m
+    vx: float  # m/s
+    vy: float  # m/s
+
+
+@dataclass(frozen=True, slots=True)
 class OpponentPercept:
     """One opponent as the camera measures it: centre and radius of a standing cylinder, in base_link."""
 

@@ -1,15 +1,16 @@
-"""The AGILO robot and its ball in MuJoCo, behind the body contract."""
+"""The AGILO robot and its ball, or two, in MuJoCo, behind the body contract."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
 import mujoco
 import numpy as np
 
-from tailor.schemas.messages.soccer import SoccerGroundTruth
+from tailor.schemas.messages.soccer import BallTruth, SoccerGroundTruth
+from tailor.simnodes.agilo import ball
 from tailor.simnodes.agilo import firmware as fw
 from tailor.simnodes.agilo.opponents import NAMES, Opponents
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
@@ -19,53 +20,63 @@ from tailor.simnodes.body import Reading
 from tailor.simnodes.planar_sensing import POSE_PERIOD_NS
 
 TRUTH_PERIOD_NS = 100_000_000
-FAR_M = 50.0  # a ball that the start does not place
 ROBOT = ("x", "y", "phi", "v", "omega")
-BALL = ("ball_x", "ball_y", "ball_vx", "ball_vy")
+BALL, BALL2 = ball.names("ball"), ball.names("ball2")
 
 
 class AgiloBody:
-    """See `Body`. Start values: ROBOT, BALL and opponents.NAMES (SI, field frame)."""
+    """See `Body`. Start values: ROBOT, BALL, opponents.NAMES and BALL2 (SI, field frame).
+
+    A second ball is simulated from when it is placed until the next reset.
+    """
 
     robot = "agilo"
-    names: tuple[str, ...] = (*ROBOT, *BALL, *NAMES)
+    names: tuple[str, ...] = (*ROBOT, *BALL, *NAMES, *BALL2)
 
     def __init__(self, parameters: PhysicalParameters | None = None, sensing: Sensing | None = None) -> None:
+        self._parameters = parameters or PhysicalParameters()
         self._sensing = sensing or Sensing()
-        self._model = model = load_scene(parameters or PhysicalParameters())
+        self._sensors = Sensors(self._sensing)
+        self._time_ns = 0
+        self._pending: list[Reading] = []
+        self._load(second_ball=False)
+        self._firmware = fw.Firmware(self._track_m)
+
+    def _load(self, second_ball: bool) -> None:
+        """Compile the scene anew, everything at its place in scene.xml."""
+        self._model = model = load_scene(self._parameters, second_ball)
         self._data = data = mujoco.MjData(model)
         self._step_ns = round(model.opt.timestep * 1e9)
         self._wheel_radius_m: float = model.geom("left").size.item(0)
         self._track_m: float = 2 * model.body("left").pos.item(1)
-        self._ball_radius_m: float = model.geom("ball").size.item(0)
         # views into the state, looked up once: a look-up by name costs as much as a physics step
         self._robot_qpos, self._robot_qvel = data.joint("robot").qpos, data.joint("robot").qvel
-        self._ball_qpos, self._ball_qvel = data.joint("ball").qpos, data.joint("ball").qvel
         self._left_qvel, self._right_qvel = data.joint("left").qvel, data.joint("right").qvel
         self._left_ctrl, self._right_ctrl = data.actuator("left").ctrl, data.actuator("right").ctrl
-        self._sensors = Sensors(self._sensing)
-        self._firmware = fw.Firmware(self._track_m)
+        self._ball = ball.Ball(model, data)
+        self._ball2 = ball.Ball(model, data, "ball2") if second_ball else None
         self._opponents = Opponents(model, data)
-        self._time_ns = 0
-        self._pending: list[Reading] = []
 
     def reset(self, rng: np.random.Generator, start: Mapping[str, float]) -> None:
-        """See Body.reset; defaults are 0, a ball far away, and no opponents."""
+        """See Body.reset; defaults are 0, a ball far away, no opponents and no second ball."""
+        if self._ball2 is not None:
+            self._load(second_ball=False)
         mujoco.mj_resetData(self._model, self._data)
         self._opponents.reset()
         self._sensors.reset(rng)
         self._firmware.reset(0.0, 0.0)
         self._time_ns = 0
         self._pending = []
-        self.place({**dict.fromkeys((*ROBOT, *BALL), 0.0), "ball_x": FAR_M, "ball_y": FAR_M, **start})
+        self.place({**dict.fromkeys((*ROBOT, *BALL), 0.0), "ball_x": ball.FAR_M, "ball_y": ball.FAR_M, **start})
 
     def place(self, values: Mapping[str, float]) -> None:
-        """Move the robot, the ball or opponents; values left out stay."""
-        current = asdict(self.ground_truth())
+        """Move the robot, balls or opponents; values left out stay."""
+        if self._ball2 is None and any(name in values for name in BALL2):
+            self._add_second_ball()
         if any(name in values for name in ROBOT):
-            self._place_robot({**current, **values})
-        if any(name.startswith("ball_") for name in values):
-            self._place_ball({**current, **values})
+            self._place_robot({**asdict(self.ground_truth()), **values})
+        for each in self._balls():
+            each.place(values)
         self._opponents.place(values)
         mujoco.mj_forward(self._model, self._data)
 
@@ -74,7 +85,7 @@ class AgiloBody:
         self._firmware.accept(values[0], values[1])
 
     def advance(self, duration_ns: int) -> list[Reading]:
-        """See Body.advance; odom 50 Hz, pose, ball and opponents 12.5 Hz, truth 10 Hz."""
+        """See Body.advance; odom 50 Hz, pose, balls and opponents 12.5 Hz, truth 10 Hz."""
         end_ns = self._time_ns + duration_ns
         readings: list[Reading] = []
         while self._time_ns < end_ns:
@@ -98,13 +109,11 @@ class AgiloBody:
             self._opponents.watch()
 
     def ground_truth(self) -> SoccerGroundTruth:
-        """True poses and velocities of robot and ball, field frame."""
+        """True poses and velocities of robot and first ball, field frame."""
         x, y, phi = self._pose()
         vx, vy, _, _, _, omega = self._robot_qvel.tolist()
-        ball_x, ball_y, *_ = self._ball_qpos.tolist()
-        ball_vx, ball_vy, *_ = self._ball_qvel.tolist()
         v = vx * math.cos(phi) + vy * math.sin(phi)
-        return SoccerGroundTruth(self._time_ns, x, y, phi, v, omega, ball_x, ball_y, ball_vx, ball_vy)
+        return SoccerGroundTruth(self._time_ns, x, y, phi, v, omega, *self._ball.state())
 
     def _drive(self) -> None:
         v, omega = self._firmware.tick()
@@ -124,23 +133,30 @@ class AgiloBody:
         while self._pending and self._pending[0].time_ns <= now_ns:
             readings.append(self._pending.pop(0))
         if now_ns % TRUTH_PERIOD_NS == 0:
-            readings.append(Reading("truth", self.ground_truth(), now_ns))
-            opponents = self._opponents.truth(now_ns)
-            readings += [] if opponents is None else [Reading("opponents_truth", opponents, now_ns)]
+            readings += self._truths(now_ns)
         return readings
+
+    def _truths(self, now_ns: int) -> Iterator[Reading]:
+        yield Reading("truth", self.ground_truth(), now_ns)
+        opponents = self._opponents.truth(now_ns)
+        if opponents is not None:
+            yield Reading("opponents_truth", opponents, now_ns)
+        if self._ball2 is not None:
+            yield Reading("ball2_truth", BallTruth(now_ns, *self._ball2.state()), now_ns)
 
     def _take_picture(self, now_ns: int) -> None:
         x, y, phi = self._pose()
-        ball_x, ball_y, *_ = self._ball_qpos.tolist()
         c, s = math.cos(phi), math.sin(phi)
-        dx, dy = ball_x - x, ball_y - y
         due_ns = now_ns + self._sensing.camera_delay_ns
         pose = self._sensors.pose(now_ns, x, y, phi)
         if pose is not None:
             self._pending.append(Reading("pose", pose, due_ns))
-        ball = self._sensors.ball(now_ns, c * dx + s * dy, c * dy - s * dx)
-        if ball is not None:
-            self._pending.append(Reading("ball", ball, due_ns))
+        for each in self._balls():
+            ball_x, ball_y, *_ = each.state()
+            dx, dy = ball_x - x, ball_y - y
+            seen = self._sensors.ball(now_ns, c * dx + s * dy, c * dy - s * dx)
+            if seen is not None:
+                self._pending.append(Reading(each.name, seen, due_ns))
         if self._opponents.standing:
             opponents = self._sensors.opponents(now_ns, (x, y, phi), self._opponents.standing.values())
             self._pending.append(Reading("opponents", opponents, due_ns))
@@ -159,8 +175,14 @@ class AgiloBody:
         self._left_qvel[0], self._right_qvel[0] = (v - rim) / height, (v + rim) / height
         self._firmware.reset(v, omega)
 
-    def _place_ball(self, state: Mapping[str, float]) -> None:
-        """Put the ball on the floor, rolling without slip."""
-        radius, vx, vy = self._ball_radius_m, state["ball_vx"], state["ball_vy"]
-        self._ball_qpos[:] = (state["ball_x"], state["ball_y"], radius, 1, 0, 0, 0)
-        self._ball_qvel[:] = (vx, vy, 0, -vy / radius, vx / radius, 0)
+    def _balls(self) -> tuple[ball.Ball, ...]:
+        return (self._ball,) if self._ball2 is None else (self._ball, self._ball2)
+
+    def _add_second_ball(self) -> None:
+        """Go on in a scene with a second ball, which comes last in its state; everything else stays as it is."""
+        old, opponents = self._data, self._opponents
+        self._load(second_ball=True)
+        for name in ("qpos", "qvel", "ctrl", "qacc_warmstart"):
+            values = getattr(old, name)
+            getattr(self._data, name)[: len(values)] = values
+        self._opponents.take_over(opponents)

@@ -53,6 +53,13 @@ class Opponents:
                 new = Opponent(given.get("x", old.x), given.get("y", old.y), given.get("radius", old.radius_m))
                 self._stand(body, new)
 
+    def take_over(self, others: Opponents) -> None:
+        """Stand as in another model of the field."""
+        self.reset()
+        for body, opponent in others.standing.items():
+            self._stand(body, opponent)
+        self._touched = others._touched
+
     def watch(self) -> None:
         """Notice whether the robot touches an opponent in the present step."""
         if not self.standing or self._touched:

@@ -101,8 +101,8 @@ def raw_delete(session, key):
 
 
 SENSORS = {
-    "odom", "pose", "ball", "opponents", "joint_states", "currents", "driver",
-    "truth", "opponents_truth", "joint_truth", "planar_truth", "gripper", "objects", "kitchen_truth",
+    "odom", "pose", "ball", "ball2", "opponents", "joint_states", "currents", "driver",
+    "truth", "ball2_truth", "opponents_truth", "joint_truth", "planar_truth", "gripper", "objects", "kitchen_truth",
 }  # fmt: skip
 REPORTS = {
     "status", "finished", "plan", "plan_request", "plan_answer", "contexts", "subgoals", "refinement", "tick",

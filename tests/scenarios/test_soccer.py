@@ -7,9 +7,11 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.schemas.messages import PlanReport
+from tailor.schemas.messages.soccer import BallTruth, SoccerGroundTruth
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
@@ -80,3 +82,14 @@ def test_an_approach_seldom_bumps_the_ball():
 
 def test_same_seed_gives_the_same_episode_bit_for_bit():
     assert play("approach-dribble", 5).messages == play("approach-dribble", 5).messages
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_either_of_two_balls_reaches_the_target(seed):
+    episode = play("two-balls", seed)
+    assert episode.result == "achieved"
+    assert done(episode) == ["approachBall", "dribbleBall"]
+    target = next(iter(domains.seeded_scenario("soccer", "two-balls", seed)[0].places.values()))
+    ends = [next(t for t in reversed(episode.truth) if isinstance(t, kind)) for kind in (SoccerGroundTruth, BallTruth)]
+    places = [(ends[0].ball_x, ends[0].ball_y), (ends[1].x, ends[1].y)]
+    assert min(np.hypot(x - target["x"], y - target["y"]) for x, y in places) < 0.4

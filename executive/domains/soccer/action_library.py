@@ -14,7 +14,7 @@ from tailor.executive.actions.dribble_ball import DribbleBall
 from tailor.executive.actions.fetch_ball import FetchBall
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.rail_grip import RailGrip
-from tailor.executive.domains.soccer import opponents, robot
+from tailor.executive.domains.soccer import balls, opponents, robot
 from tailor.executive.domains.soccer.behind import Behind
 from tailor.executive.domains.soccer.subgoal_risk import BallContactRisk
 from tailor.executive.interfaces.action import Action, Parameter
@@ -78,7 +78,7 @@ GO_TO_POSE = Action(
 APPROACH_BALL = Action(
     "approachBall",
     _places(PASSING_MPS, AT_BALL_MPS, BALL_MOVED_M),
-    ApproachBall(_go, robot.BEHIND_BALL_M, BALL_MOVED_M),
+    balls.WithItsBall(ApproachBall(_go, robot.BEHIND_BALL_M, BALL_MOVED_M), balls.approached),
     "approachBall/duration",
     "approachBall/success",
     subgoal_action="goToPose",
@@ -90,7 +90,7 @@ APPROACH_BALL = Action(
 DRIBBLE_BALL = Action(
     "dribbleBall",
     _places(AT_BALL_MPS, AT_BALL_MPS),
-    _dribble,
+    balls.WithItsBall(_dribble, balls.dribbled),
     "dribbleBall/duration",
     arguments=behind_both,
     spans=behind_both.spans,

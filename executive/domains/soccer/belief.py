@@ -1,4 +1,4 @@
-"""The soccer robot's belief: pose and velocity of the robot, places of ball and opponents (paper Table 5)."""
+"""The soccer robot's belief: pose and velocity of the robot, places of balls and opponents (paper Table 5)."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ CREDIBLE_MPS = 1.5  # a faster odometry was restarted in between
 CREDIBLE_RADPS = 3.0
 # m² or rad². ROS nodes without a covariance send zeros: the minimum is a millimetre's, the maximum that of 5 m
 VARIANCES = (1e-6, 25.0)
+BALL2 = "ball2"  # last part of the second ball's topic
 MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity is not extrapolated
 
 
 @dataclass(frozen=True, slots=True)
 class SoccerBelief:
-    """State variables in the map frame (m, rad, m/s, rad/s); `ball` is in the robot's frame."""
+    """State variables in the map frame (m, rad, m/s, rad/s); balls are in the robot's frame."""
 
     time_ns: int
     pose: Pose
@@ -42,20 +43,27 @@ class SoccerBelief:
     poses_doubted: int = 0
     odom: Odometry | None = None  # the last one
     opponents: Opponents = opponents.NONE
+    ball2: BallTrack | None = None  # where two balls are in play
 
     @property
     def ball_xy(self) -> tuple[float, float] | None:
         """The ball in the map frame, m; None before it was first seen."""
-        if self.ball is None:
-            return None
-        c, s = math.cos(self.pose.phi), math.sin(self.pose.phi)
-        ahead, left = self.ball.ahead, self.ball.left
-        return self.pose.x + c * ahead - s * left, self.pose.y + s * ahead + c * left
+        return None if self.ball is None else _in_map(self.pose, self.ball)
+
+    @property
+    def ball2_xy(self) -> tuple[float, float] | None:
+        """The second ball in the map frame, m; None before it was first seen."""
+        return None if self.ball2 is None else _in_map(self.pose, self.ball2)
 
     @property
     def holds_ball(self) -> bool:
         """Whether the ball lies in the rail."""
         return self.ball is not None and in_cradle(self.ball)
+
+
+def _in_map(pose: Pose, ball: BallTrack) -> tuple[float, float]:
+    c, s = math.cos(pose.phi), math.sin(pose.phi)
+    return pose.x + c * ball.ahead - s * ball.left, pose.y + s * ball.ahead + c * ball.left
 
 
 def unknown() -> SoccerBelief:
@@ -65,7 +73,7 @@ def unknown() -> SoccerBelief:
 
 def ready(belief: SoccerBelief) -> bool:
     """Whether the pose has settled, the ball has been seen or sought long enough, and opponents are looked for."""
-    needed = FIRST_POSES if belief.ball is not None else LOOKING_POSES
+    needed = FIRST_POSES if belief.ball is not None or belief.ball2 is not None else LOOKING_POSES
     return belief.poses_seen >= needed and opponents.fresh(belief.opponents, belief.time_ns)
 
 
@@ -84,7 +92,8 @@ def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...]) -> So
         elif isinstance(message, PoseEstimate):
             belief = _locate(_advance(belief, sample.arrival_ns), message)
         elif isinstance(message, BallPercept):
-            belief = _see_ball(_advance(belief, sample.arrival_ns), message)
+            second = sample.key.rpartition("/")[2] == BALL2
+            belief = _see_ball(_advance(belief, sample.arrival_ns), message, second)
         elif isinstance(message, OpponentPercepts):
             belief = _advance(belief, sample.arrival_ns)
             seen = opponents.see(belief.opponents, belief.pose, belief.time_ns, message)
@@ -136,16 +145,21 @@ def _moved(
     moved_ns: int,
 ) -> SoccerBelief:
     pose = planar_ekf.predict(belief.pose, v, omega, duration_s, ODOMETRY_NOISE)
-    ball = belief.ball
-    if ball is not None:
-        middle = belief.pose.phi + 0.5 * omega * duration_s
-        if in_cradle(ball) and _pushed(ball, v, middle):
-            ball = ball_track.carry(ball, v, omega, middle, duration_s)
-        else:
-            ball = ball_track.move(ball, v, omega * duration_s, middle, duration_s, robot.BALL_ROLLING_MPS2)
+    middle = belief.pose.phi + 0.5 * omega * duration_s
+    ball = _ball_moved(belief.ball, v, omega, middle, duration_s)
+    ball2 = _ball_moved(belief.ball2, v, omega, middle, duration_s)
     v_now, omega_now = (odom.v, odom.omega) if odom is not None else (belief.v, belief.omega)
     seen, doubted = belief.poses_seen, belief.poses_doubted
-    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, seen, doubted, odom, belief.opponents)
+    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, seen, doubted, odom, belief.opponents, ball2)
+
+
+def _ball_moved(ball: BallTrack | None, v: float, omega: float, phi: float, duration_s: float) -> BallTrack | None:
+    """The ball after a step in which the robot drives with its heading `phi` in the middle."""
+    if ball is None:
+        return None
+    if in_cradle(ball) and _pushed(ball, v, phi):
+        return ball_track.carry(ball, v, omega, phi, duration_s)
+    return ball_track.move(ball, v, omega * duration_s, phi, duration_s, robot.BALL_ROLLING_MPS2)
 
 
 def _pushed(ball: BallTrack, v: float, phi: float) -> bool:
@@ -185,14 +199,17 @@ def _bounded(variance: float) -> float:
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
     b = belief
-    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom, b.opponents)
+    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom, b.opponents, b.ball2)
 
 
-def _see_ball(belief: SoccerBelief, seen: BallPercept) -> SoccerBelief:
-    b = belief
-    ball = ball_track.see(b.ball, _sight(seen), b.pose.phi, b.time_ns)
+def _see_ball(belief: SoccerBelief, seen: BallPercept, second: bool) -> SoccerBelief:
+    b, ball, ball2 = belief, belief.ball, belief.ball2
+    if second:
+        ball2 = ball_track.see(ball2, _sight(seen), b.pose.phi, b.time_ns)
+    else:
+        ball = ball_track.see(ball, _sight(seen), b.pose.phi, b.time_ns)
     counts = b.poses_seen, b.poses_doubted  # the constructor is five times faster than dataclasses.replace
-    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, *counts, b.odom, b.opponents)
+    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, *counts, b.odom, b.opponents, ball2)
 
 
 def _sight(seen: BallPercept) -> Seen:

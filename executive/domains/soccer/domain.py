@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from tailor.executive.domains.soccer import balls, opponents, predicates
 from tailor.executive.domains.soccer import belief as believing
-from tailor.executive.domains.soccer import opponents, predicates
 from tailor.executive.domains.soccer.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.belief import SoccerBelief
 from tailor.executive.domains.soccer.robot import OMEGA_MAX_RADPS, V_MAX_MPS
@@ -30,7 +30,7 @@ class SoccerDomain:
         Axis("omega", "rad/s", -OMEGA_MAX_RADPS, OMEGA_MAX_RADPS),
     )
     command_topic: str = "cmd_vel"
-    sensors: tuple[str, ...] = ("odom", "pose", "ball", "opponents")
+    sensors: tuple[str, ...] = ("odom", "pose", "ball", "opponents", "ball2")
     required: tuple[str, ...] = ("odom", "pose")
     belief_names: tuple[str, ...] = (
         "x (m)",
@@ -43,6 +43,7 @@ class SoccerDomain:
         "pose_sigma (m)",
         "ball_sigma (m)",
         *opponents.NAMES,
+        *balls.NAMES,
     )
 
     def initial_belief(self) -> SoccerBelief:
@@ -52,7 +53,7 @@ class SoccerDomain:
     def update(
         self, belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
     ) -> SoccerBelief:
-        """Filter odometry, poses and percepts of ball and opponents; the command is not used."""
+        """Filter odometry, poses and percepts of balls and opponents; the command is not used."""
         return believing.update(belief, now_ns, samples)
 
     def ready(self, belief: SoccerBelief) -> bool:
@@ -60,7 +61,7 @@ class SoccerDomain:
         return believing.ready(belief)
 
     def belief_values(self, belief: SoccerBelief) -> tuple[float, ...]:
-        """Values of `belief_names`, those of opponents once there are any.
+        """Values of `belief_names`, those of opponents and of a second ball once there are any.
 
         A ball never seen is at the origin with a standard deviation of -1.
         """
@@ -68,8 +69,10 @@ class SoccerDomain:
         ball_x, ball_y = belief.ball_xy or (0.0, 0.0)
         ball_sigma = belief.ball.variance**0.5 if belief.ball is not None else -1.0
         pose_sigma = max(0.0, 0.5 * (pose.covariance[0] + pose.covariance[3])) ** 0.5
-        opposed = opponents.values(belief.opponents)
-        return pose.x, pose.y, pose.phi, belief.v, belief.omega, ball_x, ball_y, pose_sigma, ball_sigma, *opposed
+        second = balls.values(belief)
+        opposed = opponents.values(belief.opponents, padded=bool(second))
+        own = pose.x, pose.y, pose.phi, belief.v, belief.omega
+        return *own, ball_x, ball_y, pose_sigma, ball_sigma, *opposed, *second
 
     def anchor(self, belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
         """The abstract state of now, see soccer.predicates."""

@@ -61,9 +61,9 @@ def fresh(opponents: Opponents, now_ns: int) -> bool:
     return not opponents.seen_ns or now_ns - opponents.seen_ns <= FRESH_S * 1e9
 
 
-def values(opponents: Opponents) -> tuple[float, ...]:
-    """Values of NAMES, none on an empty field; a place without an opponent has a standard deviation of -1."""
-    if not opponents.standing:
+def values(opponents: Opponents, padded: bool = False) -> tuple[float, ...]:
+    """Values of NAMES, on an empty field only if `padded`; one that is not there has a standard deviation of -1."""
+    if not (opponents.standing or padded):
         return ()
     shown = {track.number: (track.x, track.y, track.radius_m, track.sigma_m) for track in opponents.standing}
     return tuple(value for number in range(MOST) for value in shown.get(number, (0.0, 0.0, 0.0, -1.0)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer import balls, robot
 from tailor.executive.domains.soccer.action_library import AT_BALL_MPS
 from tailor.executive.domains.soccer.belief import SoccerBelief
 from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
@@ -40,9 +40,9 @@ def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
     if name == "robot" and holding:
         return _robot(query.belief)
     if name == "ball" and holding:
-        return _ball(query.belief)
+        return _ball(balls.with_ball_of(query.belief, query.label, query.scenario.settings))
     if name == "atball":
-        return {**_robot(query.belief), **_ball(query.belief)}
+        return {**_robot(query.belief), **_ball(balls.with_ball_before_robot(query.belief))}
     if name == "final":
         return {"v": 0.0, **query.scenario.places[query.label]}
     if name == "route" and fact[2] == query.label:
@@ -73,11 +73,11 @@ def _intersected(query: LabelQuery, a: Interval, b: Interval) -> Interval:
 def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
     """The abstract state of now; see tailor.executive.interfaces.domain.Domain.anchor.
 
-    If a ball is in play, the places of ball and robot are observed in the belief; all other facts are remembered.
-    Settings of the scenario: `robot_label` and `ball_label` name the places where they are unless they are together,
-    or at the target.
+    If a ball is in play, the places of balls and robot are observed in the belief; all other facts are remembered.
+    Settings of the scenario: `robot_label`, `ball_label` and, with two balls, `ball2_label` name the places where they
+    are unless robot and ball are together, or at the target.
     """
-    if "ball_label" not in scenario.settings or belief.ball is None:
+    if not balls.in_play(belief, scenario.settings):
         return remembered
     observed = set(_observed(belief, scenario))
     return frozenset(f for f in remembered if f[0] not in ("robot", "ball", "atball")) | observed
@@ -85,13 +85,16 @@ def anchor(belief: SoccerBelief, scenario: Scenario, remembered: frozenset[Fact]
 
 def _observed(belief: SoccerBelief, scenario: Scenario) -> Iterator[Fact]:
     """A ball is at the target only while the robot holds it: otherwise it is approached at its true place."""
-    ball_label = str(scenario.settings["ball_label"])
-    if not before_ball(belief):
-        yield ("ball", ball_label)
+    near = balls.with_ball_before_robot(belief)
+    held = near.ball if before_ball(near) else None
+    for label, ball in balls.in_play(belief, scenario.settings).items():
+        if ball is held:
+            together = _at_target(near, scenario) or label
+            yield from (("ball", together), ("robot", together), ("atball", together))
+        else:
+            yield ("ball", label)
+    if held is None:
         yield ("robot", str(scenario.settings["robot_label"]))
-        return
-    together = _at_target(belief, scenario) or ball_label
-    yield from (("ball", together), ("robot", together), ("atball", together))
 
 
 def before_ball(belief: SoccerBelief) -> bool:

@@ -1,4 +1,4 @@
-"""Draws a soccer scenario: places of robot, ball, target, waypoints and opponents, and events that move the ball."""
+"""Draws a soccer scenario: places of robot, balls, target, waypoints and opponents, and events that move the ball."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def sample_scenario(
       rng: Source of every draw.
 
     Returns:
-      Start state of robot, ball and opponents, places by label, and events; metres, radians, m/s, seconds, map frame.
+      Start state of robot, balls and opponents, places by label, and events; metres, radians, m/s, seconds, map frame.
 
     Raises:
       ValueError: The ranges are contradictory.
@@ -34,6 +34,8 @@ def sample_scenario(
         start, places = _waypoints(declared, rng)
     elif "arrival" in declared:
         start, places = _ball_alone(declared, rng)
+    elif "ball2_label" in declared["settings"]:
+        start, places = _two_balls_and_target(declared, rng)
     else:
         start, places = _ball_and_target(declared, rng)
     events = tuple(_event(row, start, places, rng) for row in declared.get("events", ()))
@@ -58,6 +60,26 @@ def _ball_and_target(
     phi = _bearing(ball, target) + rng.uniform(-aside, aside)
     label = declared["settings"]["target_label"]
     return start, {label: {"x": target[0], "y": target[1], "phi": wrap(phi), "v": 0.0}}
+
+
+def _two_balls_and_target(
+    declared: Mapping[str, Any], rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """Two balls in view, and the target of either; both are drawn alike."""
+    apart, half_view = declared["apart"], declared["robot"]["half_view_rad"]
+    for _ in range(MAX_TRIES):
+        start, places = _ball_and_target(declared, rng)
+        (target,) = places.values()
+        robot, ball = (start["x"], start["y"]), (start["ball_x"], start["ball_y"])
+        second = _point(declared["field"], rng)
+        if (
+            _within(robot, second, apart["robot_ball_m"])
+            and _within(second, (target["x"], target["y"]), apart["ball_target_m"])
+            and math.dist(ball, second) >= apart["balls_min_m"]
+            and abs(wrap(_bearing(robot, second) - start["phi"])) <= half_view
+        ):
+            return {**start, "ball2_x": second[0], "ball2_y": second[1]}, places
+    raise ValueError("the ranges of the scenario are contradictory")
 
 
 def _ball_alone(

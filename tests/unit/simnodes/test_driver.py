@@ -183,7 +183,7 @@ def test_agilo_declares_its_limits_and_the_time_out():
     declared = shipped_driver_spec("agilo")
     command = DriverSpec("cmd_vel", ("v", "omega"), (Limit(-0.9, 0.9), Limit(-1.75, 1.75)))
     assert replace(declared, sensors=()) == command
-    assert [sensor.topic for sensor in declared.sensors] == ["odom", "pose", "ball", "opponents"]
+    assert [sensor.topic for sensor in declared.sensors] == ["odom", "pose", "ball", "opponents", "ball2"]
 
 
 def test_a_paused_simulator_takes_no_command_for_one_from_the_future():

@@ -17,7 +17,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tests.support.synthetic_models import APPROACH, DRIBBLE, MODELS, sequence
 
 SOCCER = domains.load("soccer")
-APPROACHING = SOCCER.actions["approachBall"].controller
+APPROACHING = SOCCER.actions["approachBall"].controller.controller
 GO = APPROACHING.go
 BUMP_RISK = SOCCER.actions["approachBall"].subgoal_risk
 GOAL = np.array([0.0, 0.0, 0.0, 0.0, 2.0 - robot.BEHIND_BALL_M, 0.0, 0.0, 0.2])  # behind a ball at (2, 0)

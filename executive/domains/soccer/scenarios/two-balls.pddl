@@ -1,0 +1,5 @@
+(define (problem two-balls)
+  (:domain soccer)
+  (:objects pos1 pos2 pos3 pos4)
+  (:init (robot pos1) (ball pos2) (ball pos3) (final pos4))
+  (:goal (and (final pos4) (atball pos4))))
