@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, service_keys, tokens
-from tailor.schemas.messages import ArmRequest, EStop
+from tailor.schemas.messages import EStop
 from tailor.schemas.ros2.profiles import ros_patterns
 from tailor.schemas.services import ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
 
 GATEWAY = "gateway"  # user name of the process that listens for other machines; it has applied these rules already
-PEER_LIMIT_HZ = 1000.0  # requests of one peer; a release and a stop 1 ms apart both pass, a flood brings 50 000
+PEER_LIMIT_HZ = 1000.0  # e-stops of one peer; a flood brings 50 000
 LOCAL_LIMIT_HZ = 5000.0  # of all peers behind one gateway together
 MAX_REQUEST_BYTES = 65_536  # of a service
 _PUBLISHERS: dict[Source, tuple[Role, ...]] = {
@@ -66,11 +66,13 @@ def size_limits() -> list[dict[str, Any]]:
 
 
 def rate_limits(limit_hz: float = PEER_LIMIT_HZ) -> list[dict[str, Any]]:
-    """zenoh's `downsampling`: rates of each peer on the keys of e-stops and arming; the router drops what exceeds them.
+    """zenoh's `downsampling`: the rate of each peer on the key of e-stops; the router drops what exceeds it.
 
-    Commands have none: of two in quick succession the newer one would be dropped.
+    A driver looks at each e-stop as it arrives, so a flood would take its CPU. Whoever stops repeats it. No other topic
+    has a limit: of two messages that reach the router while it is busy, however far apart they were sent, the newer one
+    would be dropped. That may be a request to disarm after one to arm, or one for another robot.
     """
-    topics = [topic for topic in TOPICS.values() if topic.type in (EStop, ArmRequest)]
+    topics = [topic for topic in TOPICS.values() if topic.type is EStop]
     rules = [{"key_expr": key, "freq": limit_hz} for key in _keys(topics)]
     return [{"id": "floods", "messages": ["put", "delete"], "flows": ["ingress"], "rules": rules}]
 

@@ -11,8 +11,8 @@ import pytest
 
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
-from tailor.schemas.messages import DriverState
-from tests.support.bus_system import answers, child_pid, free_endpoint, guarded_robot
+from tailor.schemas.messages import ArmRequest, DriverState
+from tests.support.bus_system import answers, bus_system, child_pid, free_endpoint, guarded_robot, secured_system
 from tests.support.driven import Driven, burners
 from tests.support.patience import PATIENCE_S, wait_until
 
@@ -71,6 +71,24 @@ def test_disarming_is_confirmed_while_the_executive_restarts(number, kills):
                 )
     finally:
         up.stop()
+
+
+@pytest.mark.promise("P52")
+@pytest.mark.parametrize("system", [bus_system, secured_system])
+def test_no_request_is_lost_behind_another_one(system):
+    """Two within a millisecond: so they reach a router that was busy, however far apart people sent them."""
+    requests = [ArmRequest(True, False, "e" * 32, 0), ArmRequest(False, False, "", 0)]
+    with system() as (session, endpoint, _), open_client(endpoint, role="people") as people:
+        heard = {robot: session.inbox(["arm_request"], robot) for robot in ("agilo", "powercube")}
+        outlets = [people.publisher("arm_request", robot) for robot in heard]
+        wait_until(lambda: all(outlet.matched() for outlet in outlets), "subscriptions")
+        for _ in range(10):
+            for request in requests:
+                for outlet in outlets:
+                    outlet.publish(request)
+            time.sleep(0.05)
+        for robot, inbox in heard.items():
+            assert [sample.message for sample in inbox.drain()][-10:] == requests * 5, robot
 
 
 def newest_state(states):

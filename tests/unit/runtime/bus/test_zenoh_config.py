@@ -64,7 +64,7 @@ def test_a_client_is_back_within_a_second_and_storms_nobody():
     assert retry == {"period_init_ms": 200, "period_max_ms": 200, "period_increase_factor": 1}
 
 
-def test_every_router_limits_the_rate_of_requests_to_stop_and_to_arm(folder):
+def test_every_router_limits_the_rate_of_e_stops(folder):
     gateway = json.loads(zenoh_config.gateway(ENDPOINT, folder, None, {}))
     local = json.loads(zenoh_config.local_router(folder))
     assert ROUTER["downsampling"] == gateway["downsampling"] == access.rate_limits(1000.0)
