@@ -158,9 +158,7 @@ class Soak:
 
     def _inject(self, planned: Planned) -> None:
         party, fault = self.parties[planned.robot], FAULTS[planned.fault]
-        party.people.hurry = True
         self.wait(lambda: self._moves(party), MOVING_S)
-        party.people.hurry = False
         self.wait(lambda: False, self._draw.uniform(0.0, 0.2))
         now_ns = time.monotonic_ns()
         record = FaultRecord(planned.fault, fault.row, planned.robot, self._elapsed_s(), now_ns, self._moves(party))

@@ -1,7 +1,8 @@
 """Letters and words as scenarios: strokes of a font, put into joint space, as a PDDL problem with places.
 
 `letter-A` to `letter-Z` fill the page; `word-TAILOR` writes letters side by side, smaller; `stops-TAILOR` comes to rest
-at every waypoint, as the upper row of the paper's Figure 13 (b).
+at every waypoint, as the upper row of the paper's Figure 13 (b); `ring-TAILOR` goes on at its first waypoint after the
+last one, so that goals like (at p3) never come to an end.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ LETTER_RAD = 0.8  # a letter alone: one unit of the font
 SIZES = (0.9, 1.05)  # range of the scale, drawn by the seed
 HOME = (-0.85, -0.7)  # where the arm rests before it writes
 HOME_RANGE_RAD = 0.1
-KINDS = ("letter", "word", "stops")
+KINDS = ("letter", "word", "stops", "ring")
 MAX_LETTERS = 12  # with more, letters become too small to read
 
 
@@ -69,11 +70,11 @@ def load_scenario(scenario: str, rng: np.random.Generator) -> tuple[Scenario, di
     if kind not in KINDS or not is_word(text) or (kind == "letter" and len(text) > 1):
         raise UsageError(
             f"no scenario {scenario!r} in arm, expected letter-A to letter-Z, "
-            f"or word- or stops- and 1 to {MAX_LETTERS} capitals"
+            f"or word-, stops- or ring- and 1 to {MAX_LETTERS} capitals"
         )
     writing = _laid_out(text, rng)
     a, b = writing.home
-    return _scenario(scenario, writing, kind == "stops"), {"a": a, "wa": 0.0, "b": b, "wb": 0.0}
+    return _scenario(scenario, writing, kind), {"a": a, "wa": 0.0, "b": b, "wb": 0.0}
 
 
 def _laid_out(text: str, rng: np.random.Generator) -> Writing:
@@ -88,22 +89,24 @@ def _laid_out(text: str, rng: np.random.Generator) -> Writing:
     return Writing(text, (HOME[0] + float(off_a), HOME[1] + float(off_b)), tuple(strokes))
 
 
-def _scenario(name: str, writing: Writing, stops: bool) -> Scenario:
-    """All strokes in one chain of waypoints p1, p2, …; the arm must come to rest at the last one, or at all."""
+def _scenario(name: str, writing: Writing, kind: str) -> Scenario:
+    """All strokes in one chain of waypoints p1, p2, …; the arm must come to rest at the last, at all or nowhere."""
     points = [point for stroke in writing.strokes for point in stroke]
     labels = [f"p{k}" for k in range(1, len(points) + 1)]
     ways = [math.dist(one, other) for one, other in pairwise([writing.home, *points])]
+    last = math.dist(points[-1], points[0]) if kind == "ring" else ways[-1]
     places = {}
-    for label, (a, b), before, after in zip(labels, points, ways, [*ways[1:], ways[-1]], strict=True):
+    for label, (a, b), before, after in zip(labels, points, ways, [*ways[1:], last], strict=True):
         places[label] = {"a": a, "b": b, "fastest": fastest_radps(min(before, after))}
-    for label in labels if stops else labels[-1:]:
+    for label in {"stops": labels, "ring": []}.get(kind, labels[-1:]):
         places[label] |= {"wa": 0.0, "wb": 0.0}
     counts = tuple((letter, len(stroke)) for letter, stroke in zip(writing.text, writing.strokes, strict=True))
-    return Scenario(name, _problem(labels), places, {"letters": counts, "events": ()})
+    return Scenario(name, _problem(labels, kind == "ring"), places, {"letters": counts, "events": ()})
 
 
-def _problem(labels: list[str]) -> str:
-    steps = " ".join(f"(next {a} {b})" for a, b in zip(["home", *labels], labels, strict=False))
+def _problem(labels: list[str], closed: bool) -> str:
+    ways = [*pairwise(["home", *labels]), *([(labels[-1], labels[0])] if closed else [])]
+    steps = " ".join(f"(next {a} {b})" for a, b in ways)
     return f"""(define (problem writing)
   (:domain arm)
   (:objects home {" ".join(labels)})

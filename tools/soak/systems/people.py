@@ -28,13 +28,12 @@ class People:
       prepared_ns: Time at which they last prepared a task, which may disarm; 0: never.
       count: Number of tasks that they set.
       faults: Faults of the executive that they cleared with a task: their causes.
-      hurry: Somebody waits for motion.
     """
 
     def __init__(self, system: System, tasks: Tasks) -> None:
         """`tasks` are those of the present start."""
         self.armed_ns = self.prepared_ns = self.count = 0
-        self.hurry = self.armed_for_task = False
+        self.armed_for_task = False
         self._system, self._tasks = system, tasks
         self._executive = ""  # sender id
         self._goal_ns = 0  # a goal is due then; 0: none
@@ -74,7 +73,7 @@ class People:
         if view.sender != self._executive:
             self._executive, self._goal_ns = view.sender, self._tasks.begin(now_ns)
         elif has_ended(view.status) and not self._goal_ns and view.status_ns > self._set_ns + RESULT_NS:
-            self._goal_ns = self._tasks.prepare(now_ns, self.hurry or not view.status.result)
+            self._goal_ns = self._tasks.prepare(now_ns)
             self.prepared_ns = now_ns if self._goal_ns else self.prepared_ns
             if self._goal_ns and not view.status.result:
                 self.faults.append(f"{view.status.reason}: {view.status.detail}")

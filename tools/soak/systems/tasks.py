@@ -1,22 +1,20 @@
 """Tasks that people set, one after another, without ending the executive.
 
-A soccer task starts anew in another world. A letter cannot be written twice: the arm remembers what is drawn. So it
-writes one long word, a few strokes at a time.
+A soccer task starts anew in another world. The arm remembers what is drawn, so it could write a word only once: its
+word is a ring, of which each task is a part. Neither robot rests for longer than people need.
 """
 
 from __future__ import annotations
 
 import json
 import random
-from collections.abc import Sequence
 from typing import Protocol
 
 from tailor.executive import domains
 from tailor.tools.soak.systems.system import System
 
 BELIEF_NS = 1_500_000_000  # after the world was reset: the belief converges again
-REST_NS = 200_000_000_000  # between two tasks of the arm, unless there is a hurry: its word is finite
-STROKES = 3
+WAYPOINTS = 20  # of a task of the arm: about 10 s
 LETTERS = 12
 CAPITALS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 REPEATABLE = ("approach-dribble", "aligned", "moved-ball", "kicked-ball", "approach")
@@ -31,7 +29,7 @@ class Tasks(Protocol):
         """Another executive runs; returns when it needs a goal of people's, 0: it has its own."""
         ...
 
-    def prepare(self, now_ns: int, hurry: bool) -> int:
+    def prepare(self, now_ns: int) -> int:
         """The last task has ended; returns when the next goal can be set, 0: not yet."""
         ...
 
@@ -52,7 +50,7 @@ class SoccerTasks:
         """The scenario's goal is good."""
         return 0
 
-    def prepare(self, now_ns: int, hurry: bool) -> int:
+    def prepare(self, now_ns: int) -> int:
         """Another start of the same scenario; that disarms the robot."""
         robot, seed = self._system.robot, self._draw.randrange(10_000)
         scenario, start = domains.seeded_scenario(robot.domain, self.scenario, seed)
@@ -66,36 +64,29 @@ class SoccerTasks:
 
 
 class ArmTasks:
-    """A few strokes for each task; see `Tasks`."""
+    """A part of the word for each task; see `Tasks`."""
 
     def __init__(self, system: System, draw: random.Random) -> None:
         """Draw a word."""
-        self.scenario = "word-" + "".join(draw.choices(CAPITALS, k=LETTERS))
-        self._waypoints = _waypoints(self.scenario)
-        self._drawn, self._set_ns = 0, 0
+        self.scenario = "ring-" + "".join(draw.choices(CAPITALS, k=LETTERS))
+        self._waypoints = tuple(domains.seeded_scenario("arm", self.scenario, 0)[0].places)
+        self._reached = 0
 
     def begin(self, now_ns: int) -> int:
-        """A new executive begins the whole word: only a few strokes of it, please."""
-        self._drawn, self._set_ns = 0, now_ns
+        """A new executive begins the word anew."""
+        self._reached = 0
         return now_ns
 
-    def prepare(self, now_ns: int, hurry: bool) -> int:
-        """The next strokes, from time to time or in a hurry; none after the last."""
-        if self._drawn >= len(self._waypoints) or not (hurry or now_ns > self._set_ns + REST_NS):
-            return 0
-        self._set_ns = now_ns
+    def prepare(self, now_ns: int) -> int:
+        """The next part can follow at once."""
         return now_ns
 
     def goal(self) -> str:
-        """The next strokes."""
-        self._drawn = min(self._drawn + STROKES, len(self._waypoints))
-        return f"(drawn {self._waypoints[self._drawn - 1]})"
+        """The next part of the ring."""
+        self._reached += WAYPOINTS
+        return f"(at {self._waypoints[self._reached % len(self._waypoints)]})"
 
 
 def tasks_of(system: System, draw: random.Random) -> Tasks:
     """Tasks of a robot."""
     return ArmTasks(system, draw) if system.robot.domain == "arm" else SoccerTasks(system, draw)
-
-
-def _waypoints(scenario: str) -> Sequence[str]:
-    return tuple(domains.seeded_scenario("arm", scenario, 0)[0].places)

@@ -28,9 +28,9 @@ def load(name, seed=0):
     return domains.load_scenario("arm", name, np.random.default_rng(seed))
 
 
-def planned(scenario):
+def planned(scenario, text=None):
     pddl = planning.parse_domain(ARM.pddl)
-    problem = planning.parse_problem(scenario.problem, pddl)
+    problem = planning.parse_problem(text or scenario.problem, pddl)
     return planning.Search(pddl, problem).advance(CheckBudget(1000)).plan
 
 
@@ -61,7 +61,7 @@ def test_every_word_lies_where_reaches_were_learned(word, seed):
 
 
 @pytest.mark.parametrize(
-    "name", ["letter-a", "word-", "word-tailor", "word-" + "A" * 13, "letter-AB", "stops-", "square"]
+    "name", ["letter-a", "word-", "word-tailor", "word-" + "A" * 13, "letter-AB", "stops-", "ring-", "square"]
 )
 def test_an_unknown_scenario_is_refused_with_the_known_ones(name):
     with pytest.raises(UsageError, match="letter-A to letter-Z"):
@@ -73,6 +73,15 @@ def test_a_plan_goes_through_the_waypoints_in_order(name):
     scenario, _ = load(name)
     goals = [step.action[2] for step in planned(scenario).steps]
     assert goals == list(scenario.places)
+
+
+def test_a_ring_goes_on_at_its_first_waypoint_and_rests_nowhere():
+    scenario, _ = load("ring-HI")
+    *_, before, last = scenario.places
+    text = scenario.problem.replace("(at home)", f"(at {before})").replace(f"(drawn {last})", "(at p2)")
+    assert [step.action[2] for step in planned(scenario, text).steps] == [last, "p1", "p2"]
+    assert list(scenario.places) == list(load("word-HI")[0].places)
+    assert not any("wa" in place for place in scenario.places.values())
 
 
 def test_velocities_are_free_at_every_waypoint_but_the_last():

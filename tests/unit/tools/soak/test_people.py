@@ -16,7 +16,7 @@ class Attended:
     """People before a system of plain values, armed, whose task has begun at 1 s."""
 
     def __init__(self):
-        self.goals, self.armings, self.hurries = [], [], []
+        self.goals, self.armings = [], []
         self.status = SimpleNamespace(mode="EXECUTING", result="", reason="", detail="")
         self.driver = SimpleNamespace(mode="armed")
         view = SimpleNamespace(sender="e" * 32, driver=self.driver, status=self.status, status_ns=0)
@@ -35,8 +35,7 @@ class Attended:
     def begin(self, now_ns):
         return 0
 
-    def prepare(self, now_ns, hurry):
-        self.hurries.append(hurry)
+    def prepare(self, now_ns):
         self.judge.permitted, self.driver.mode = False, "disarmed"  # as a reset of the world does
         return now_ns + DUE_S * S
 
@@ -60,7 +59,7 @@ def test_a_task_that_ended_is_followed_by_another_once_the_robot_is_armed_again(
     vars(attended.status).update(ended)
     at_s = 1 + AGAIN_NS / S
     attended.attend(at_s)
-    assert (attended.goals, len(attended.armings), attended.hurries) == ([], 1, [bool(faults)])
+    assert (attended.goals, len(attended.armings)) == ([], 1)
     attended.judge.permitted, attended.driver.mode = True, "armed"
     attended.attend(at_s + DUE_S - 0.1)
     assert attended.goals == []
