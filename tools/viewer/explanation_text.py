@@ -74,8 +74,9 @@ def search_text(decision: Decision) -> str:
     if report is not None:
         state = "finished" if report.finished else "interrupted"
         parts.append(
-            f"searched by {report.solver}: {report.evaluations} evaluations in {report.checks} checks, "
-            f"{1000 * decision.deliberation_s:.0f} ms of deliberation in {decision.ticks} ticks, {state}; "
+            f"searched by {report.solver}: {_counted(report.evaluations, 'evaluation')} in "
+            f"{_counted(report.checks, 'check')}, {1000 * decision.deliberation_s:.0f} ms of deliberation in "
+            f"{_counted(decision.ticks, 'tick')}, {state}; "
             f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
         )
     if decision.finished is not None:
@@ -93,6 +94,10 @@ def _compared(chosen: float, greedy: float) -> tuple[str, str, str]:
 
 def _seconds(value: float) -> str:
     return f"{value:.2f} s" if math.isfinite(value) else "INVALID"
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _value(value: float, unit: str) -> str:

@@ -26,12 +26,13 @@ class ChoicePanel {
 
   search(report) {
     const state = report.finished ? "search finished" : "searching";
+    const effort = `${counted(report.evaluations, "evaluation")} in ${counted(report.checks, "check")}`;
     const found =
       report.greedy === null || report.best === null
         ? ""
         : `, objective ${report.greedy.toFixed(2)} → ${seconds(report.best)}`;
     const gap = report.gap === null ? "" : `, within ${report.gap.toFixed(1)} % of the models' optimum`;
-    return `${report.solver}: ${report.evaluations} evaluations in ${report.checks} checks${found}, ${state}${gap}`;
+    return `${report.solver}: ${effort}${found}, ${state}${gap}`;
   }
 
   /** With models: chosen against greedy values, and the alternatives. */

@@ -51,6 +51,11 @@ function seconds(value, digits = 2) {
   return value === null || value === undefined ? "–" : `${value.toFixed(digits)} s`;
 }
 
+/** A number and its noun: "1 check", "2 checks". */
+function counted(number, noun) {
+  return `${number} ${noun}${number === 1 ? "" : "s"}`;
+}
+
 /** A difference in seconds with its sign. */
 function signed(value, digits = 1) {
   return `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)} s`;
