@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
 
-Stage = Literal["chase", "clear", "seek left", "seek right"]
+Stage = Literal["chase", "clear", "seek left", "seek right", "leave"]
 SEEKING = ("seek left", "seek right")
 
 
@@ -29,6 +30,9 @@ class FetchBall:
     in_view_rad: float = 0.7  # a ball in this bearing would be seen
     near_m: float = 0.27
     search_radps: float = 1.0
+    # a ball farther off is not `atball`: the next plan begins with an approach
+    left_ahead_m: float = 0.75
+    left_aside_m: float = 0.30
 
     def misses(self, stage: Stage, ball: BallTrack, now_ns: int) -> bool:
         """Whether the ball is not where it is believed to be: looked for until it is seen again."""
@@ -39,6 +43,20 @@ class FetchBall:
         in_view = bearing < self.in_view_rad and math.hypot(ball.ahead, ball.left) > self.near_m
         return in_view and unseen_s > self.unseen_s
 
+    def fetched(self, pose: Pose, ball: BallTrack, rolling_mps2: float) -> Pose:
+        """Where a robot that drives straight at the ball has it in the rail, once the ball has rolled to rest."""
+        c, s = math.cos(pose.phi), math.sin(pose.phi)
+        rolls_s = math.hypot(ball.vx, ball.vy) / (2.0 * rolling_mps2)  # for as long at its present speed
+        dx = c * ball.ahead - s * ball.left + rolls_s * ball.vx
+        dy = s * ball.ahead + c * ball.left + rolls_s * ball.vy
+        distance, heading = math.hypot(dx, dy) - self.in_rail_m, math.atan2(dy, dx)
+        x, y = pose.x + distance * math.cos(heading), pose.y + distance * math.sin(heading)
+        return Pose(x, y, heading, pose.covariance)
+
+    def left(self, ball: BallTrack) -> bool:
+        """Whether the ball lies so far off that it is approached anew."""
+        return ball.ahead > self.left_ahead_m or abs(ball.left) > self.left_aside_m
+
     def __call__(self, stage: Stage, ball: BallTrack, ball_speed: float) -> tuple[Stage, tuple[float, float]]:
         """The next stage and the command (v m/s, omega rad/s).
 
@@ -47,6 +65,8 @@ class FetchBall:
           ball: Where the ball is, robot's frame.
           ball_speed: How fast it rolls away, m/s.
         """
+        if stage == "leave":
+            return stage, (-self.clear_mps, 0.0)
         if stage in SEEKING:
             return stage, (0.0, self.search_radps if stage == "seek left" else -self.search_radps)
         distance, bearing = math.hypot(ball.ahead, ball.left), math.atan2(ball.left, ball.ahead)

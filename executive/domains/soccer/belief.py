@@ -55,11 +55,6 @@ class SoccerBelief:
         """The second ball in the map frame, m; None before it was first seen."""
         return None if self.ball2 is None else _in_map(self.pose, self.ball2)
 
-    @property
-    def holds_ball(self) -> bool:
-        """Whether the ball lies in the rail."""
-        return self.ball is not None and in_cradle(self.ball)
-
 
 def _in_map(pose: Pose, ball: BallTrack) -> tuple[float, float]:
     c, s = math.cos(pose.phi), math.sin(pose.phi)

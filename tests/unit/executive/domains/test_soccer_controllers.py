@@ -159,6 +159,15 @@ def test_slipping_ball_is_steered_after():
     assert slipping.command[1] > 0.0, "the path turns right, the ball left"
 
 
+@pytest.mark.parametrize("goal_x", [0.2, 2.0])
+def test_escaped_ball_is_left_only_if_fetching_it_would_lead_round_in_a_circle(goal_x):
+    pushing = DRIBBLE(None, 0, believing(v=0.4, ball=seen(0.31, 0.0)), goal(goal_x, 0.0, 0.0)).state
+    escaped = DRIBBLE(pushing, 0, believing(v=0.4, ball=seen(0.65, 0.0)), goal(goal_x, 0.0, 0.0))
+    assert (escaped.command[0] < 0.0) == (goal_x == 0.2), "the ball lies past the first goal, before the second"
+    farther = DRIBBLE(escaped.state, 0, believing(v=-0.2, ball=seen(0.8, 0.0)), goal(goal_x, 0.0, 0.0))
+    assert farther.outcome == ("failed" if goal_x == 0.2 else "running")
+
+
 @pytest.mark.parametrize(
     ("ball", "now_ns", "reason"),
     [(None, 0, "the ball was never seen"), (seen(1.5, 0.0), 0, "the ball got away")],
