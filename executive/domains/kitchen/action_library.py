@@ -13,6 +13,7 @@ from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.domains.kitchen.arm_tasks import GRIP, PUT, REACH_SPOT
 from tailor.executive.domains.kitchen.belief import KitchenBelief
+from tailor.executive.domains.kitchen.drive_to_stand import DriveToStand
 from tailor.executive.domains.kitchen.known_places import stool_place
 from tailor.executive.interfaces.action import Action, Parameter
 from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
@@ -82,12 +83,14 @@ STOOL = ActionContext(
 GO_TO_POSE = Action(
     "goToPose",
     (*_pose("", 0), _at_rest("", 0), *_pose("g", 1), _at_rest("g", 1)),
-    GoToPose(
-        V_MAX_MPS,
-        OMEGA_MAX_RADPS,
-        ArrivalPath(V_MAX_MPS, bend_radps=0.8, bend_worth_radps=0.6),
-        near_m=NEAR_M,
-        crawl_mps=CRAWL_MPS,
+    DriveToStand(
+        GoToPose(
+            V_MAX_MPS,
+            OMEGA_MAX_RADPS,
+            ArrivalPath(V_MAX_MPS, bend_radps=0.8, bend_worth_radps=0.6),
+            near_m=NEAR_M,
+            crawl_mps=CRAWL_MPS,
+        )
     ),
     "goToPose/duration",
     subgoal_action="goToPose",

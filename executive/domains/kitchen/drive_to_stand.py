@@ -1,0 +1,103 @@
+"""goToPose of the kitchen robot: bends into far goals, turns and drives straight to near ones.
+
+Near a goal a bend into it is a loop, often against the table. A cylinder that turns on the spot touches nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.actions.planar import PHIG, XG, YG, PlanarBelief
+from tailor.executive.belief.angles import difference
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.values import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Far:
+    """Controller state on the way to a far goal: that of `GoToPose`."""
+
+    inner: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """Controller state on the way to a near goal; `side` is 1 for driving ahead, -1 for backing off."""
+
+    phase: Literal["face", "drive", "align"]
+    side: int
+
+
+@dataclass(frozen=True, slots=True)
+class DriveToStand:
+    """Drives to a pose and stops there. Goals within `near_m` at the start: see this module.
+
+    The robot backs off where that needs less turning. It does so for short ways only: it sees ahead.
+    """
+
+    far: GoToPose
+    near_m: float = 1.0
+    off_rad: float = 0.7  # it begins to drive when it faces the goal within this, the less the nearer it is
+    steer_m: float = 0.15  # from here on it steers softer
+    there_m: float = 0.05  # so near its goal it only turns
+    reached_m: float = 0.02  # along the direction of driving
+    aligned_rad: float = 0.10
+    still_mps: float = 0.10
+    still_radps: float = 0.4
+
+    def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
+        """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
+        x, y, phi = arguments[[XG, YG, PHIG]].tolist()
+        pose = belief.pose
+        distance, bearing = math.hypot(x - pose.x, y - pose.y), math.atan2(y - pose.y, x - pose.x)
+        if isinstance(state, Far) or (state is None and distance > self.near_m):
+            control = self.far(state.inner if state else None, now_ns, belief, arguments)
+            return Control(Far(control.state), control.command, control.outcome, control.detail)
+        state = state or Near("face", _side(bearing, pose.phi, phi))
+        off = difference(bearing if state.side > 0 else bearing + math.pi, pose.phi)
+        state = self._next(state, distance, off)
+        if state.phase == "align":
+            return self._align(state, belief, difference(phi, pose.phi))
+        if state.phase == "face":
+            return Control(state, (0.0, self._turn(off)))
+        return Control(state, self._drive(state.side, distance, off))
+
+    def _next(self, state: Near, distance: float, off: float) -> Near:
+        """The phase now, where the goal is `off` radians left of the direction of driving."""
+        if state.phase == "face" and distance < self.there_m:
+            return Near("align", state.side)
+        if state.phase == "face" and abs(off) < self.off_rad * min(1.0, distance / self.near_m):
+            return Near("drive", state.side)
+        if state.phase == "drive" and distance * math.cos(off) < self.reached_m:
+            return Near("align", state.side)
+        return state
+
+    def _drive(self, side: int, distance: float, off: float) -> tuple[float, float]:
+        """Straight to the goal, slower while it turns towards it."""
+        braking_mps = math.sqrt(2.0 * self.far.braking_mps2 * distance * math.cos(off))
+        v = max(self.far.crawl_mps, min(self.far.v_max_mps, braking_mps))
+        return side * v * math.cos(off), self._turn(off) * min(1.0, distance / self.steer_m)
+
+    def _align(self, state: Near, belief: PlanarBelief, off: float) -> Control:
+        """Turn to the goal's heading, which is `off` radians to the left."""
+        still = abs(belief.omega) < self.still_radps and abs(belief.v) < self.still_mps
+        if still and abs(off) < self.aligned_rad:
+            return Control(state, (0.0, 0.0), "done")
+        return Control(state, (0.0, self._turn(off)))
+
+    def _turn(self, off: float) -> float:
+        """Turning rate (rad/s) that can be stopped in time."""
+        rate = min(self.far.steer_gain * abs(off), math.sqrt(2.0 * self.far.stopping_radps2 * abs(off)))
+        return math.copysign(min(rate, self.far.omega_max_radps), off)
+
+
+def _side(bearing: float, start: float, end: float) -> int:
+    """1 to drive ahead, -1 to back off: whichever needs less turning from the start's heading to the end's."""
+    turning = {
+        side: abs(difference(heading, start)) + abs(difference(end, heading))
+        for side, heading in ((1, bearing), (-1, bearing + math.pi))
+    }
+    return 1 if turning[1] <= turning[-1] else -1
