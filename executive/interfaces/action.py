@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
@@ -95,6 +96,11 @@ class Parameter:
     upper: float
     periodic: bool = False
     tolerance: float | None = None
+
+    @property
+    def period(self) -> float:
+        """After which values are the same again, in `unit`; infinite if they never are."""
+        return self.upper - self.lower if self.periodic else math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ Runs in every tick, so it looks up only values with a tolerance, and the ranges 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 from tailor.executive.interfaces.domain import Conflict
@@ -51,15 +52,15 @@ class BeliefMonitor:
         sequence = self._pattern.sequence(belief)
         return None if isinstance(sequence, Failure) else sequence
 
-    def _violated(self, identifier: int, bound: float, tolerance: float, belief: Belief) -> bool:
+    def _violated(self, identifier: int, bound: float, tolerance: float, period: float, belief: Belief) -> bool:
         believed = self._pattern.value(identifier, belief)
-        return believed is not None and abs(bound - believed) > tolerance
+        return believed is not None and abs(math.remainder(bound - believed, period)) > tolerance
 
 
-def _bindings(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int, float, float]]:
-    """Variable of the pattern, bound value and tolerance, for each monitored parameter of the sequence."""
+def _bindings(pattern: Pattern, sequence: ActionSequence) -> Iterator[tuple[int, float, float, float]]:
+    """Variable of the pattern, bound value, tolerance and period, for each monitored parameter of the sequence."""
     for action in sequence.actions:
         for parameter, own, in_pattern in pattern.planned(action):
             value = sequence.variables[own].value
             if parameter.tolerance is not None and value is not None:
-                yield in_pattern, value, parameter.tolerance
+                yield in_pattern, value, parameter.tolerance, parameter.period

@@ -53,9 +53,7 @@ def outside(value: float, variable: Variable, parameter: Parameter) -> bool:
     if not variable.free:
         return False
     width = variable.upper - variable.lower
-    off = value - 0.5 * (variable.lower + variable.upper)
-    if parameter.periodic:
-        off = math.remainder(off, parameter.upper - parameter.lower)
+    off = math.remainder(value - 0.5 * (variable.lower + variable.upper), parameter.period)
     tolerance = OUTSIDE_SHARE * width if parameter.tolerance is None else parameter.tolerance
     return abs(off) - 0.5 * width > tolerance
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tailor.executive.belief.angles import difference
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
@@ -56,16 +58,26 @@ def violated_by_definition(plan, domain, then, belief):
         other = current.get((action.step, action.action.name))
         for parameter, old_id, new_id in zip(action.action.parameters, action.variables, other.variables, strict=True):
             old, new = then.variables[old_id].value, now.variables[new_id].value
-            if None not in (parameter.tolerance, old, new) and abs(old - new) > parameter.tolerance:
+            if None not in (parameter.tolerance, old, new) and abs(apart(parameter, old, new)) > parameter.tolerance:
                 return True
     return False
 
 
+def apart(parameter, old, new):
+    return difference(old, new) if parameter.periodic else old - new
+
+
 places = st.fixed_dictionaries({"x": st.sampled_from([0.0, 0.09, 0.11, 3.0]), "y": st.sampled_from([0.0, 0.05, 1.0])})
+turned = st.fixed_dictionaries({"x": st.just(0.0), "y": st.just(0.0), "phi": st.sampled_from([-3.1, -2.9, 0.0, 3.1])})
 beliefs = st.fixed_dictionaries(
-    {"robot": places, "ball": st.none() | places, "final": st.just({"x": 1.0}), "width": st.sampled_from([0.0, 2.0])}
+    {
+        "robot": places | turned,
+        "ball": st.none() | places,
+        "final": st.just({"x": 1.0}),
+        "width": st.sampled_from([0.0, 2.0]),
+    }
 )
-START = {"robot": {"x": 0.0, "y": 0.0}, "ball": {"x": 3.0, "y": 0.0}, "final": {"x": 1.0}, "width": 0.0}
+START = {"robot": {"x": 0.0, "y": 0.0, "phi": 3.1}, "ball": {"x": 3.0, "y": 0.0}, "final": {"x": 1.0}, "width": 0.0}
 
 
 @given(belief=beliefs)
@@ -74,6 +86,13 @@ def test_violation_is_what_a_new_instantiation_shows(belief):
     then = instantiate(plan, domain, START, None)
     monitor = BeliefMonitor(Pattern(plan, domain, None), then)
     assert monitor.outdated(belief, {}) == violated_by_definition(plan, domain, then, belief)
+
+
+@pytest.mark.parametrize(("phi", "violated"), [(3.05, False), (-3.1, False), (-2.95, True), (2.85, True)])
+def test_headings_are_compared_modulo_a_full_turn(phi, violated):
+    plan, domain = paper_plan(), ShiftingDomain()
+    monitor = BeliefMonitor(Pattern(plan, domain, None), instantiate(plan, domain, START, None))
+    assert monitor.outdated({**START, "robot": {**START["robot"], "phi": phi}}, {}) is violated
 
 
 def test_moved_ball_is_a_violation_but_one_out_of_sight_is_not():
