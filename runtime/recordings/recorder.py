@@ -24,7 +24,7 @@ MAX_KINDS = 1000  # limit of the cache by key and encoding; a bus has about 30
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Size and duration (by wall time) after which a new file begins; 0 means never."""
+    """Size and duration after which a new file begins; 0 means never."""
 
     max_bytes: int = 0
     max_ns: int = 0
@@ -80,19 +80,22 @@ class Recorder:
         self._closed_mixed: Counter[str] = Counter()
         self._flush_at_ns = self._note_at_ns = 0
         self._split_error = ""  # why the next file cannot be created
+        self._begun_ns: int | None = None  # monotonic time of the first message of the present file
         self._writer = self._next_writer()
 
     def step(self, now_ns: int) -> None:
         """Write received messages; flush and split when due. `now_ns` is monotonic."""
         for raw in self._queue.drain():
             self._keep(raw)
+        if self._begun_ns is None and self._writer.messages:
+            self._begun_ns = now_ns
         if now_ns >= self._flush_at_ns:
             self._flush_at_ns = now_ns + FLUSH_NS
             self._count_losses()
             if now_ns >= self._note_at_ns:
                 self._note_at_ns = now_ns + (NOTE_NS if self._note_losses() else 0)
             self._writer.flush()
-            self._split_when_full()
+            self._split_when_full(now_ns)
         self._report()
 
     def close(self) -> Health:
@@ -137,9 +140,8 @@ class Recorder:
                 changed = True
         return changed
 
-    def _split_when_full(self) -> None:
-        first_ns = self._writer.first_ns
-        too_long = self._limits.max_ns and first_ns is not None and wall_ns() - first_ns >= self._limits.max_ns
+    def _split_when_full(self, now_ns: int) -> None:
+        too_long = self._limits.max_ns and self._begun_ns is not None and now_ns - self._begun_ns >= self._limits.max_ns
         too_big = self._limits.max_bytes and self._writer.bytes >= self._limits.max_bytes
         if not (too_long or too_big) or self._writer.disk_error:
             return
@@ -154,7 +156,7 @@ class Recorder:
         self._closed_mixed += self._writer.mixed
         self._closed_messages += self._writer.messages
         self._closed_bytes += self._writer.bytes
-        self._writer = following
+        self._writer, self._begun_ns = following, None
 
     def _next_writer(self) -> McapWriter:
         part = len(self.health.files)

@@ -24,14 +24,14 @@ class SnapshotBuffer:
 
     def __init__(self, span_ns: int, max_bytes: int = MAX_BYTES) -> None:
         self._span_ns, self._max_bytes = span_ns, max_bytes
-        self._messages: deque[tuple[Raw, int]] = deque()
+        self._messages: deque[tuple[Raw, int, int]] = deque()  # with its wall and monotonic time
         self._bytes = 0
 
-    def add(self, raw: Raw, wall_ns: int) -> None:
-        """Append a message received at `wall_ns` and drop the oldest ones."""
-        self._messages.append((raw, wall_ns))
+    def add(self, raw: Raw, wall_ns: int, now_ns: int) -> None:
+        """Append a message received at `wall_ns` and drop the oldest ones; `now_ns` is monotonic."""
+        self._messages.append((raw, wall_ns, now_ns))
         self._bytes += memory_of(raw)
-        while self._messages[0][1] < wall_ns - self._span_ns or self._bytes > self._max_bytes:
+        while self._messages[0][2] < now_ns - self._span_ns or self._bytes > self._max_bytes:
             self._bytes -= memory_of(self._messages.popleft()[0])
 
     @property
@@ -48,7 +48,7 @@ class SnapshotBuffer:
         """
         writer = McapWriter(path, metadata)
         drops: Counter[str] = Counter()  # messages of more keys than a file may have
-        for raw, wall_ns in self._messages:
+        for raw, wall_ns, _ in self._messages:
             if not writer.write(raw, wall_ns):
                 count_key(drops, raw.key)
         if drops:

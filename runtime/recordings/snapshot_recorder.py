@@ -53,7 +53,7 @@ class SnapshotRecorder:
     def _keep(self, raw: Raw, now_ns: int) -> None:
         if not raw.is_put or not self._selection.wants(raw.key, named_type(raw.encoding)):
             return
-        self._buffer.add(raw, raw.received_wall_ns or wall_ns())
+        self._buffer.add(raw, raw.received_wall_ns or wall_ns(), now_ns)
         self._metadata.observe(raw)
         failure = self._detector.detect(raw)
         if failure and not self._reason:

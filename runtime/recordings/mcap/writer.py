@@ -51,7 +51,6 @@ class McapWriter:
         """
         self.path = path
         self.messages = 0
-        self.first_ns: int | None = None  # log time of the first message
         self.disk_error = ""  # of the last flush; empty after a successful one
         self._sink = BackgroundSink(path) if background else Sink(path)
         target: Any = self._sink
@@ -98,7 +97,6 @@ class McapWriter:
             data=raw.payload,
         )
         self.messages += 1
-        self.first_ns = wall_ns if self.first_ns is None else self.first_ns
         return True
 
     def add_metadata(self, name: str, entries: Mapping[str, str]) -> None:

@@ -122,7 +122,7 @@ def test_every_part_of_a_split_recording_has_the_limits_and_the_sum_is_reported(
 def test_a_snapshot_has_the_same_limits(tmp_path):
     buffer = SnapshotBuffer(100 * S)
     for k in range(1, 1001):
-        buffer.add(odometry(k, f"key/{k}"), S + k)
+        buffer.add(odometry(k, f"key/{k}"), S + k, S + k)
     assert buffer.write(tmp_path / "s.mcap", {}) == MAX_KEYS
     assert len(dict(open_recording(tmp_path / "s.mcap").metadata())["drops"]) == 1000 - MAX_KEYS
 

@@ -354,15 +354,36 @@ def test_a_driver_that_was_stopped_before_is_no_failure():
 def test_a_snapshot_buffer_keeps_only_the_last_seconds(tmp_path):
     buffer = SnapshotBuffer(5 * S)
     for k in range(1, 21):
-        buffer.add(odometry(k), k * S)
+        buffer.add(odometry(k), 1, k * S)
     assert buffer.write(tmp_path / "ring.mcap", {}) == 6
     assert [m.sequence for m in open_recording(tmp_path / "ring.mcap").messages()] == list(range(15, 21))
+
+
+@pytest.mark.promise("P22")
+@pytest.mark.parametrize("jump_s", [3600, -3600])
+def test_a_jump_of_the_wall_clock_splits_no_recording_and_delays_no_split(tmp_path, jump_s):
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue, max_ns=10 * S)
+    for k in range(1, 25):  # of the monotonic clock, from an arbitrary origin
+        queue.put(replace(odometry(k), received_wall_ns=(10_000 + k + jump_s * (k > 5)) * S))
+        recorder.step((500 + k) * S)
+    assert [len(list(open_recording(path).messages())) for path in recorder.close().files] == [11, 11, 2]
+
+
+@pytest.mark.promise("P22")
+@pytest.mark.parametrize("jump_s", [3600, -3600])
+def test_a_jump_of_the_wall_clock_changes_nothing_in_what_a_snapshot_holds(tmp_path, jump_s):
+    buffer = SnapshotBuffer(5 * S)
+    for k in range(1, 21):
+        buffer.add(odometry(k), (10_000 + k + jump_s * (k > 17)) * S, k * S)
+    assert buffer.write(tmp_path / "ring.mcap", {}) == 6
+    assert {m.sequence for m in open_recording(tmp_path / "ring.mcap").messages()} == set(range(15, 21))
 
 
 def test_a_snapshot_buffer_is_bounded_in_bytes_too(tmp_path):
     buffer = SnapshotBuffer(1000 * S, max_bytes=10 * memory_of(odometry(1)))
     for k in range(1, 21):
-        buffer.add(odometry(k), k * S)
+        buffer.add(odometry(k), k * S, k * S)
     assert buffer.write(tmp_path / "ring.mcap", {}) == 10
 
 
