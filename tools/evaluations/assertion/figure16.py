@@ -17,7 +17,7 @@ from tailor.tools.evaluations.pages.report import Report, configure_report, publ
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
-from tailor.tools.lockstep.samplers.soccer import COLLIDED_M
+from tailor.tools.lockstep.samplers.soccer_outcomes import COLLIDED_M
 
 GOAL = "(atball pos2)"  # the approach alone
 DRAWN = (("pos2", "phi", -math.pi, math.pi), ("pos2", "v", 0.0, 0.3))  # the goal state is random, as in the paper

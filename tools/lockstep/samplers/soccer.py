@@ -1,8 +1,7 @@
-"""Task sampler of the soccer robot (paper 5.1, 5.4): start states, beliefs, collisions with ball and opponents."""
+"""Task sampler of the soccer robot (paper 5.1, 5.4): arguments, start states, beliefs, opponents."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,17 +13,15 @@ from tailor.executive.belief.angles import difference
 from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
-from tailor.executive.domains.soccer.action_library import TOUCHED
 from tailor.executive.domains.soccer.belief import FIRST_POSES, SoccerBelief, unknown
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
-from tailor.schemas.messages import ActionFinished, Message, Odometry
-from tailor.schemas.messages.soccer import OpponentsTruth, SoccerGroundTruth
+from tailor.schemas.messages import Message
+from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.samplers import opponents
 from tailor.tools.lockstep.samplers.beside import Beside
-from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
+from tailor.tools.lockstep.samplers.soccer_outcomes import SoccerOutcomes
 
-COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
 MIN_BALL_DISTANCE_M = 0.50  # from the axle at the start: a nearer ball would be inside the robot
 BELIEF_SIGMA_M = 0.02  # of a pose that has been tracked for a while
 BELIEF_SIGMA_RAD = 0.015
@@ -41,7 +38,7 @@ DRIBBLE_ASIDE_RAD = 1.5  # between the target's heading and the line to it
 
 
 @dataclass(frozen=True, slots=True)
-class SoccerSampler:
+class SoccerSampler(SoccerOutcomes):
     """See task_sampler.TaskSampler; controller arguments are (x, y, phi, v, xg, yg, phig, vg)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
@@ -143,64 +140,6 @@ class SoccerSampler:
             y = ball[1] - robot.IN_RAIL_M * math.sin(pose.phi)
         return [x, y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
 
-    def work_j(self, before: Message, after: Message) -> float:
-        """Work of the wheels between two states, joules."""
-        return wheel_work_j(before, after)
-
-    def failure(self, action: Action, start: Mapping[str, float], truth: Message) -> str:
-        """Return what the truth shows: the robot touched an opponent, or an approach displaced the ball."""
-        if isinstance(truth, OpponentsTruth):
-            return TOUCHED if truth.touched else ""
-        if action.name != "approachBall" or not isinstance(truth, SoccerGroundTruth):
-            return ""
-        moved = math.hypot(truth.ball_x - start["ball_x"], truth.ball_y - start["ball_y"])
-        return "collision" if moved > COLLIDED_M else ""
-
-    def start_names(self, action: Action, parameters: Array) -> Mapping[str, str]:
-        """The ball's position, for actions whose start parameters name the ball instead of the robot."""
-        half = len(parameters) // 2
-        at_robot = np.allclose(action.arguments(parameters[None, :])[0, :half], parameters[:half])
-        return {} if at_robot else {"x": "ball_x", "y": "ball_y"}
-
-    def motion(self, message: Message, newest: Message | None) -> Message | None:
-        """The newest ground truth; odometry until there is any."""
-        if isinstance(message, SoccerGroundTruth) or (
-            isinstance(message, Odometry) and not isinstance(newest, SoccerGroundTruth)
-        ):
-            return message
-        return newest
-
-    def observed_start(self, message: Message) -> dict[str, float] | None:
-        """The ball's position in a ground truth, metres; opponents that are touched need nothing to compare with."""
-        if isinstance(message, OpponentsTruth):
-            return {}
-        return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
-
-    def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
-        """1 if the ball was displaced before the end of the first approach, and one for each opponent touched anew."""
-        touching = [message.touched for message in truth if isinstance(message, OpponentsTruth)]
-        anew = sum(now and not before for before, now in itertools.pairwise([False, *touching]))
-        return int(self.disturbance_m(finished, truth) > COLLIDED_M) + anew
-
-    def arrival_errors(self, action: Action, arguments: Array, truth: Message) -> Mapping[str, float]:
-        """Errors of the axle's position (m) and heading (rad), and of the speed (m/s)."""
-        if not isinstance(truth, SoccerGroundTruth):
-            return {}
-        return {
-            "position_m": math.hypot(truth.x - arguments[XG], truth.y - arguments[YG]),
-            "heading_rad": difference(truth.phi, float(arguments[PHIG])),
-            "speed_mps": truth.v - float(arguments[VG]),
-        }
-
-    def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
-        """Largest displacement of the ball before the end of the first approach, metres; 0 without an approach."""
-        ended_ns = [action.stamp_ns for action in finished if action.action == "approachBall"]
-        balls = [message for message in truth if isinstance(message, SoccerGroundTruth)]
-        if not ended_ns or not balls:
-            return 0.0
-        first, *later = balls
-        return max((_displacement_m(first, ball) for ball in later if ball.stamp_ns <= ended_ns[0]), default=0.0)
-
     def _sensible(self, places: Array) -> bool:
         """Whether a dribble is like those of the scenarios."""
         dx, dy = places[XG] - places[X], places[YG] - places[Y]
@@ -220,7 +159,3 @@ def _ball_before_rail(rng: np.random.Generator) -> tuple[float, float]:
         ahead = robot.IN_RAIL_M + gap - robot.RAIL_TIP_M[0]
         if math.hypot(ahead, robot.RAIL_TIP_M[1] - abs(aside)) > robot.BALL_AND_RAIL_M:
             return gap, aside
-
-
-def _displacement_m(first: SoccerGroundTruth, second: SoccerGroundTruth) -> float:
-    return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)
