@@ -55,7 +55,7 @@ def test_disarming_is_confirmed_while_the_executive_restarts(number, kills):
     try:
         wait_until(partial(answers, endpoint), "router")
         with open_client(endpoint) as session:
-            states = session.inbox(["driver"], "agilo")
+            states, statuses = session.inbox(["driver"], "agilo"), session.inbox(["status"], "")
             newest = partial(newest_state, states)
             wait_until(lambda: newest().mode == "armed", "armed by its executive")
             for _ in range(kills):
@@ -64,6 +64,8 @@ def test_disarming_is_confirmed_while_the_executive_restarts(number, kills):
                 done = arm(endpoint, "--off")
                 assert done.returncode == 0, (done.stdout, done.stderr)
                 assert newest().mode == "disarmed"
+                statuses.drain()
+                wait_until(statuses.drain, "another executive")  # that `tailor arm` waits for 5 s at most
                 done = arm(endpoint)
                 assert (done.returncode, done.stdout.split(":")[0]) == (0, "agilo is armed\n"), (
                     done.stdout,
