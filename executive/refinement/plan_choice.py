@@ -1,7 +1,8 @@
 """Chooses among plans the one that the action models predict to be executed fastest.
 
 The planner counts steps; how long they take depends on where and how the robot moves. So some plans are instantiated
-like the one that is executed, their free parameters chosen greedily, and their predicted costs compared.
+and roughly refined, as the one that is executed will be, and their predicted costs compared. A greedy choice alone
+misjudges actions that depend on each other: where a ball is best approached depends on where it is dribbled to.
 """
 
 from __future__ import annotations
@@ -21,14 +22,17 @@ from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.selection import solver_for
+from tailor.executive.refinement.solvers.solver import Solver
 
 MAX_STEPS = 12  # of a plan that is compared: each step takes a few checks
 MAX_PLANS = 24  # that are compared, the first one included: all orders of four steps
-CHECKS = 2  # batches for the free parameters of each action
+CHECKS = 2  # batches for the free parameters of each action, chosen greedily
+JOINT_CHECKS = 10  # batches for those of all actions together; with more no better ball of two is chosen
 
 
 class PlanScore:
-    """Predicted cost of one plan in seconds, by its greedy instantiation; resumable.
+    """Predicted cost of one plan in seconds, roughly refined; resumable.
 
     The objective's seconds (mean, k standard deviations, price of failures) are summed over all actions. Unlike in
     refinement nothing is INVALID: subgoals that would be asserted are not known yet.
@@ -44,9 +48,11 @@ class PlanScore:
         self, sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator
     ) -> None:
         count = len(sequence.actions)
-        self._settings = replace(settings, horizon=count, greedy_checks=CHECKS, arrival_spread=())
+        self._settings = replace(settings, horizon=count, solver="auto", checks_max=JOINT_CHECKS, arrival_spread=())
         self._objective = SequenceObjective(sequence.within(count), sequence.variables, models, self._settings)
         self._search = GreedySearch(sequence, models, self._settings, rng)
+        self._rng = rng
+        self._solver: Solver | None = None  # of all free parameters
 
     def advance(self, budget: Budget) -> float | None:
         """Continue until the cost is known; None if the budget is spent first."""
@@ -55,7 +61,13 @@ class PlanScore:
                 return None
             self._search.advance_action(CheckBudget(CHECKS))
             self._search.end_action()
-        predictions = self._objective.predict(self._objective.vector(self._search.values))
+        greedy = self._objective.vector(self._search.values)
+        if self._solver is None:
+            self._solver = solver_for(self._objective, self._settings, self._rng, greedy[None])
+        self._solver.advance(budget)
+        if not self._solver.finished:
+            return None
+        predictions = self._objective.predict(greedy if self._solver.best is None else self._solver.best)
         k_std = self._settings.k_std
         return float(sum(each.duration_s[0] + k_std * each.std_s[0] + each.failure_s[0] for each in predictions))
 

@@ -9,10 +9,12 @@ from typing import Literal, get_args
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from scipy import stats
 
 from tailor.executive import planning
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
+from tailor.executive.interfaces.values import Array
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
@@ -22,6 +24,7 @@ ROUTES = " ".join(f"(route {a} {b})" for a in ("home", *PLACES) for b in PLACES 
 PROBLEM = f"""(define (problem tour) (:domain soccer) (:objects home {" ".join(PLACES)}) (:init (robot home) {ROUTES})
   (:goal (and {" ".join(f"(visited {place})" for place in PLACES)})))"""
 RUNS, QUICK_RUNS = 17, 2
+SAME_S = 0.05  # half a tick: runs that differ by less take as long
 Costs = Literal["steps", "models"]
 
 
@@ -38,15 +41,26 @@ def run(console: Console, quick: bool) -> None:
     console.print(compared("tours of four places", driven, QUICK_RUNS if quick else RUNS))
 
 
-def compared(title: str, driven: Callable[[int, Costs], Run], count: int) -> Table:
+def compared(title: str, driven: Callable[[int, Costs], Run], count: int, first: int = 0) -> Table:
     """Runs with plans by steps and by models from so many starts; times are means over pairs that both achieve."""
-    runs = {costs: [driven(seed, costs) for seed in range(count)] for costs in get_args(Costs)}
+    seeds = range(first, first + count)
+    runs = {costs: [driven(seed, costs) for seed in seeds] for costs in get_args(Costs)}
     table = Table(title=f"{title}, {count} starts", box=None)
-    for column in ("plans by", "achieved", "first action after", "mean duration", "faster than by steps"):
+    for column in ("plans by", "achieved", "first action after", "mean duration", "saved", "faster", "slower"):
         table.add_column(column, justify="left" if column == "plans by" else "right")
     both = [n for n in range(count) if all(rows[n].achieved for rows in runs.values())]
     for costs, rows in runs.items():
-        faster = sum(rows[n].duration_s < runs["steps"][n].duration_s for n in both)
+        saved_s = np.array([runs["steps"][n].duration_s - rows[n].duration_s for n in both])
         times = (np.mean([rows[n].started_s for n in both]), np.mean([rows[n].duration_s for n in both]))
-        table.add_row(costs, str(sum(row.achieved for row in rows)), *(f"{s:.2f} s" for s in times), str(faster))
+        counts = (int((saved_s > SAME_S).sum()), int((saved_s < -SAME_S).sum()))
+        achieved = sum(row.achieved for row in rows)
+        table.add_row(costs, str(achieved), *(f"{s:.2f} s" for s in times), _with_interval(saved_s), *map(str, counts))
     return table
+
+
+def _with_interval(saved_s: Array) -> str:
+    """Mean and its 95 % t-interval; of a single run no interval."""
+    if len(saved_s) < 2:
+        return f"{saved_s.mean():.2f} s"
+    half = stats.t.ppf(0.975, len(saved_s) - 1) * stats.sem(saved_s)
+    return f"{saved_s.mean():.2f} s ({saved_s.mean() - half:.2f} to {saved_s.mean() + half:.2f})"

@@ -27,7 +27,8 @@ BENCHMARKS = {
 }
 
 # of `planning`, after its table
-PLANNERS = ("planners.improvement", "planners.tours", "planners.cups", "planners.tick_share", "planners.configurations")
+PLANNERS = ("planners.improvement", "planners.tours", "planners.balls", "planners.cups", "planners.tick_share",
+            "planners.configurations")  # fmt: skip
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH, CLUSTER = "soak", "growth", "cluster"
 ROOMS = {"refine": "refinement.refine", GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.planning import DEFAULT, MATCHING
-from tailor.tools.benchmarks.planners import configurations, cups, improvement, tick_share, tours
+from tailor.tools.benchmarks.planners import balls, configurations, cups, improvement, tick_share, tours
 from tailor.tools.benchmarks.planning import texts
 
 
@@ -60,3 +60,9 @@ def test_a_tour_chosen_by_the_models_is_driven_faster():
     assert by_steps.achieved
     assert by_models.achieved
     assert by_models.duration_s < by_steps.duration_s
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("costs", ["steps", "models"])
+def test_a_ball_is_brought_to_the_target_whichever_way_it_is_chosen(costs):
+    assert balls.driven(100, costs).achieved
