@@ -75,10 +75,10 @@ def _with_deliberation(context: Context, state: State) -> State:
     if not idle:
         if task.decision is None or task.running is None:
             return state
-        risk = _risk_of_course(context, state.belief, task.decision)
-        if risk > context.settings.refinement.p_fail_settle:
+        risk, risen = _risk_of_course(context, state.belief, task.decision)
+        if risen and risk > context.settings.refinement.p_fail_settle:
             return _halted(context, state)
-        if not (risk or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
+        if not (risen or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
             return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
@@ -159,11 +159,11 @@ def _starts_another(decision: Decision, running: Running) -> bool:
     return (first.action.name, first.step, first.asserted) != same
 
 
-def _risk_of_course(context: Context, belief: Belief, decision: Decision) -> float:
-    """Predicted probability that the running course fails; 0 unless objects have changed, and raised it."""
+def _risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
+    """See `risen_failure`; (0, False) unless objects have changed."""
     now, choice = decision.watch.among_changed_objects(belief), decision.choice
     if now is None:
-        return 0.0
+        return 0.0, False
     models, settings = context.models, context.settings.refinement
     return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
 

@@ -27,8 +27,10 @@ def risen_failure(
     now: ActionSequence,
     models: Models,
     settings: RefinementSettings,
-) -> float:
-    """Predicted probability that the decided course fails; 0 if it is not clearly higher than was predicted for it.
+) -> tuple[float, bool]:
+    """Predicted probability that the running action fails, and whether the course has clearly become likelier to fail.
+
+    Later actions count for the second only: they are decided anew when this one ends, and are no reason to stop it.
 
     Args:
       decided: Sequence whose first action runs.
@@ -41,8 +43,7 @@ def risen_failure(
     course = from_here(decided.bind(values), now)
     objective = SequenceObjective(course.within(settings.horizon), course.variables, models, settings)
     predicted = [float(prediction.failure[0]) for prediction in objective.predict(np.empty(0))]
-    risk = _any_of(predicted)
-    return risk if risk > _any_of(failure) + MAX_RISE else 0.0
+    return predicted[0], _any_of(predicted) > _any_of(failure) + MAX_RISE
 
 
 def from_here(course: ActionSequence, now: ActionSequence) -> ActionSequence:

@@ -22,7 +22,7 @@ def now(objects, start=START):
 def likelier(objects, start=START, failure=(0.0,)) -> bool:
     decided = now((ASIDE,))
     values = {variable.id: 0.0 for variable in decided.free()}
-    return risen_failure(decided, values, failure, now(objects, start), BESIDE, EXACT) > 0
+    return risen_failure(decided, values, failure, now(objects, start), BESIDE, EXACT)[1]
 
 
 @pytest.mark.parametrize(
@@ -57,3 +57,11 @@ def test_course_starts_from_the_state_of_now():
     values = {p.name: course.variables[i].value for p, i in zip(first.action.parameters, first.variables, strict=True)}
     assert (values["x"], values["v"], values["xg"], values["phig"]) == (0.5, 0.4, 2.0, 0.3)
     assert np.allclose(first.context, here.actions[0].context)
+
+
+def test_object_in_the_way_of_a_later_action_is_no_risk_of_the_running_one():
+    places = [START, {**START, "x": 0.0}, {**START, "x": 2.0}]
+    decided, seen = (beside((wall,), [GO_AROUND] * 2, places) for wall in (ASIDE, (1.0, 0.0, 0.2)))
+    risk, risen = risen_failure(decided, {}, (0.0, 0.0), seen, BESIDE, EXACT)
+    assert risen
+    assert risk < 0.01
