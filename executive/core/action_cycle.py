@@ -114,6 +114,7 @@ def _with_effects(context: Context, task: Task, running: Running) -> Task:
     """The abstract state after a plan step is done; an asserted subgoal does not change it."""
     if running.asserted or task.plan is None:
         return task
-    action = next(step.action for step in task.plan.steps if step.id == running.step)
+    action = task.plan.action_of(running.step)
+    assert action is not None, "the running action is a step of the plan"
     facts = planning.apply_action(context.pddl_domain, context.problem, task.facts, action)
     return replace(task, facts=facts, done=task.done | {running.step})

@@ -116,17 +116,16 @@ def _adopted(context: Context, state: State, decision: Decision, decided: bool) 
     """The state with a decision: at once between actions, otherwise only if it is worth a change."""
     task = state.task
     new_plan = task.plan is not decision.plan
-    if task.running is not None and _starts_another(decision, task.running) and slow_inputs(context, state) is not None:
-        return state
     if task.running is None:
         return replace(state, task=_with_decision(task, decision, new_plan))
+    running = _as_step_of(decision, task.running, task.plan)
+    if _starts_another(decision, running) and slow_inputs(context, state) is not None:
+        return state
     if task.decision is not None and decision.number == task.decision.number:
-        return _redirected_if_better(context, state, task.running, task.decision, decision)
+        return _redirected_if_better(context, state, running, task.decision, decision)
     if not decided:
         return state
-    return replace(
-        state, task=_redirected(context, _with_decision(task, decision, new_plan), task.running, state.now_ns)
-    )
+    return replace(state, task=_redirected(context, _with_decision(task, decision, new_plan), running, state.now_ns))
 
 
 def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
@@ -150,6 +149,24 @@ def _redirected(context: Context, task: Task, running: Running, now_ns: int) -> 
     if _starts_another(task.decision, running):
         return replace(task, running=following, finished=task.finished + 1)
     return replace(task, running=running.redirected(following, now_ns))
+
+
+def _as_step_of(decision: Decision, running: Running, plan: planning.Plan | None) -> Running:
+    """The running action as the first step of a decision, whose plan may have another number for it."""
+    first = decision.sequence.actions[0]
+    if plan is None or _undertaking(plan, running.step, running) != _undertaking(decision.plan, first.step, running):
+        return running
+    return replace(running, step=first.step)
+
+
+def _undertaking(plan: planning.Plan, step: int, running: Running) -> planning.Fact | None:
+    """The ground action of a step without the label of its start: a robot on its way is no longer there."""
+    action = plan.action_of(step)
+    arguments = {parameter.argument for parameter in running.action.parameters}
+    if action is None or len(arguments) == 1:
+        return action
+    start = 1 + min(arguments)
+    return (*action[:start], *action[start + 1 :])
 
 
 def _starts_another(decision: Decision, running: Running) -> bool:
@@ -179,7 +196,7 @@ def _prepared(context: Context, state: State, budget: Budget) -> State:
     task, running = state.task, state.task.running
     if running is None or running.asserted or task.plan is None:
         return state
-    action = next((step.action for step in task.plan.steps if step.id == running.step), None)
+    action = task.plan.action_of(running.step)
     if action is None:
         return state
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)

@@ -70,8 +70,7 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
 
 def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, Cause]:
     """Outcome of an action that the new decision does not begin with: its effects hold, or others come first."""
-    steps = plan.steps if plan is not None and not running.asserted else ()
-    action = next((step.action for step in steps if step.id == running.step), None)
+    action = plan.action_of(running.step) if plan is not None and not running.asserted else None
     facts = state.task.facts
     if action is not None and planning.apply_action(context.pddl_domain, context.problem, facts, action) <= facts:
         return "done", Cause(Reason.EFFECTS_HOLD)

@@ -68,7 +68,6 @@ class EpisodeExtractor:
             match message:
                 case Subgoals():
                     self._subgoals = message
-                    self._adopt(message)
                 case ExecStatus() if message.action:
                     self._tick(message)
                 case ActionFinished():
@@ -78,6 +77,8 @@ class EpisodeExtractor:
     def _tick(self, status: ExecStatus) -> None:
         if self._running is None or self._running.index != status.action_index:
             self._running = self._begin(status)
+        elif self._subgoals is not None and self._subgoals.actions:
+            self._adopt(self._running, self._subgoals.actions[0])
         run = self._running
         if run is not None:
             if not run.ticks:
@@ -94,13 +95,9 @@ class EpisodeExtractor:
         instance, action = self._subgoals.actions[0], self._domain.actions[status.action]
         return _Running(status.action_index, instance, action, _goal(action, instance))
 
-    def _adopt(self, subgoals: Subgoals) -> None:
-        """Start the episode anew if the goal of the running action changed."""
-        run = self._running
-        if run is None or not subgoals.actions:
-            return
-        new, old = subgoals.actions[0], run.instance
-        same = (new.action, new.step, new.asserted) == (old.action, old.step, old.asserted)
+    def _adopt(self, run: _Running, new: InstantiatedAction) -> None:
+        """Start the episode anew if the goal of the running action changed; its step may have another number now."""
+        same = (new.action, new.asserted) == (run.instance.action, run.instance.asserted)
         if same and not np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
             run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
 

@@ -62,6 +62,10 @@ class Plan:
             return max((step.start for step in self.steps), default=0.0)
         return max((step.start + step.duration for step in self.steps), default=0.0)
 
+    def action_of(self, step: int) -> Fact | None:
+        """The ground action of the step with that id; None if there is none."""
+        return next((each.action for each in self.steps if each.id == step), None)
+
     def links_to(self, consumer: int) -> tuple[Link, ...]:
         """The causal links that support a step, or the goal."""
         return tuple(link for link in self.links if link.consumer == consumer)

@@ -80,6 +80,15 @@ def test_a_changed_goal_begins_a_new_episode_and_a_next_action_s_goal_does_not()
     assert episode.arguments[4] == 2.5
 
 
+def test_an_action_that_goes_on_in_a_new_plan_begins_a_new_episode() -> None:
+    """The plan may number its step otherwise; the index of the action stays."""
+    first, late = drive("goToPose", 0, 10), drive("goToPose", 0, 10, first=10)
+    messages = (subgoals("goToPose", {"xg": 2.0}), *first, subgoals("goToPose", {"xg": 2.5}, step=2), *late)
+    [(_, episode)] = cut(*messages, finished("goToPose", 0, 2.0))
+    assert len(episode.ticks) == 10
+    assert episode.arguments[4] == 2.5
+
+
 def test_what_was_aborted_is_no_episode_and_what_failed_is_not_finished() -> None:
     begun = subgoals("dribbleBall", {"xg": 2.0}), *drive("dribbleBall", 0, 10)
     assert cut(*begun, finished("dribbleBall", 0, 1.0, "aborted")) == []

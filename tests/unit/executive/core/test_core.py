@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -281,6 +282,26 @@ def test_action_that_is_superseded_is_reported_as_aborted():
     _, outputs = step(line_context(settings), state, 4 * TICK, moved, CheckBudget(2000))
     ended = [output.message for output in outputs if isinstance(output.message, ActionFinished)]
     assert [(f.action, f.outcome, f.action_index) for f in ended] == [("slide", "aborted", 0)]
+
+
+def test_action_that_is_decided_anew_goes_on_although_the_plan_is_another():
+    """The second place is moved on the way there; the new plan begins with a slide to it from elsewhere."""
+    context = line_context()
+
+    def anchor(belief, scenario, remembered):
+        return (remembered - {("at", "a")}) | {("at", "home")} if belief.shift else remembered
+
+    context.domain.anchor = anchor
+
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 16 else 0.0), driver(n * TICK)), given.goal)
+
+    run = list(drive(context, world=world, ticks=70))
+    steps = [state.task.running.step for state, _, _ in run if state.task.running is not None]
+    ended = messages(run, ActionFinished)
+    assert [(f.outcome, f.action_index) for f in ended] == [("done", 0), ("done", 1)]
+    assert [number for number, _ in itertools.groupby(steps)] == [1, 2, 1]
+    assert ended[1].predicted_s == pytest.approx(ended[1].actual_s, abs=0.4)
 
 
 def test_action_whose_effects_hold_already_is_done_and_not_aborted():
