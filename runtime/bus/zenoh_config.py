@@ -15,6 +15,7 @@ from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password
 from tailor.runtime.bus.rights.run_folder import CERTIFICATE_USER, RunFolder
 from tailor.schemas.errors import UsageError
+from tailor.schemas.packages.package_topics import PRIORITIES as TOPIC_PRIORITIES
 from tailor.schemas.services import ROLES, Role
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -26,16 +27,10 @@ MAX_PENDING = 2000  # connections that have sent nothing yet; zenoh's 100 let a 
 ACCEPT_MS = 1000  # such a connection is closed then
 # zenoh demands a password of every session of a router that has one for its own link; here the certificate decides.
 BY_CERTIFICATE = Password(*CERTIFICATE_USER.split(":"))
-PRIORITIES = (
-    "control",
-    "real_time",
-    "interactive_high",
-    "interactive_low",
-    "data_high",
-    "data",
-    "data_low",
-    "background",
-)
+# Of our topics, and of zenoh's own messages; the others keep zenoh's sizes.
+PRIORITIES = ("control", *TOPIC_PRIORITIES)
+# Allocated as a session opens: else each backlog takes further buffers of 64 kB, and memory grows for hours.
+QUEUES = {"allocation": {"mode": "init"}, "size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}
 _ENDPOINT = re.compile(r"(tcp|tls|quic|udp|ws)/(\[[0-9a-fA-F:]+\]|[A-Za-z0-9.-]+):([0-9]{1,5})")
 
 
@@ -58,7 +53,7 @@ def _base(mode: str) -> dict[str, Any]:
         "transport": {
             # Shared memory would bypass the limits on message size.
             "shared_memory": {"enabled": False},
-            "link": {"tx": {"lease": LEASE_MS, "queue": {"size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}}},
+            "link": {"tx": {"lease": LEASE_MS, "queue": QUEUES}},
         },
     }
 

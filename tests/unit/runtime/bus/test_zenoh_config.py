@@ -10,6 +10,7 @@ from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password
 from tailor.runtime.bus.rights.run_folder import RunFolder
+from tailor.schemas.packages.package_topics import PRIORITIES
 from tailor.schemas.services import ROLES
 
 ENDPOINT = "tcp/127.0.0.1:7999"
@@ -50,7 +51,8 @@ def test_a_peer_that_is_silent_for_a_second_is_gone_and_a_burst_keeps_its_tail()
     for config in (ROUTER, CLIENT):
         link = config["transport"]["link"]["tx"]
         assert link["lease"] == 1000
-        assert link["queue"]["size"] == dict.fromkeys(zenoh_config.PRIORITIES, 16)
+        assert link["queue"]["size"] == dict.fromkeys(("control", *PRIORITIES), 16)
+        assert link["queue"]["allocation"] == {"mode": "init"}, "else memory grows with each backlog"
 
 
 def test_connections_that_send_nothing_are_many_and_soon_closed(folder):
