@@ -8,7 +8,7 @@ import pytest
 from tailor.robots import arm_scene
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
-from tailor.schemas.messages.soccer import Opponent, OpponentsTruth, SoccerGroundTruth
+from tailor.schemas.messages.soccer import BallTruth, Opponent, OpponentsTruth, SoccerGroundTruth
 from tailor.schemas.packages.pose3 import Pose3, on_plane
 from tailor.schemas.packages.scene import MAP, Scene, frame, line, on_map, pose_of, sphere
 from tailor.schemas.topics import TOPICS
@@ -86,12 +86,13 @@ def test_the_truth_is_drawn_in_map_with_all_that_the_simulator_publishes():
     feed = soccer_feed()
     opponents = OpponentsTruth(0, False, (Opponent(1.0, 2.0, 0.2),))
     truth = SoccerGroundTruth(0, 1.0, 0.5, math.pi / 2, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
-    made = published(feed, (0.1, "agilo/sim/opponents", opponents), (0.1, "agilo/sim/truth", truth))
+    others = (0.1, "agilo/sim/opponents", opponents), (0.1, "agilo/sim/ball2", BallTruth(0, -1.5, 0.0, 0.0, 0.0))
+    made = published(feed, *others, (0.1, "agilo/sim/truth", truth))
     [(topic, scene)] = made
     assert topic == "scene_truth"
     assert {shape.frame for shape in scene.shapes} == {MAP}
     by_name = {shape.name: shape for shape in scene.shapes}
-    assert (by_name["opponent 1"].x, by_name["ball"].x) == (1.0, 2.0)
+    assert [by_name[name].x for name in ("opponent 1", "ball", "second ball")] == [1.0, 2.0, -1.5]
     chassis = by_name["chassis"]
     assert (chassis.x, chassis.y) == pytest.approx((1.0, 0.5 - 0.025)), "2.5 cm behind the axle, looking along y"
 
