@@ -83,6 +83,10 @@ class LeafBounds:
         lowest, highest = np.array([(span.lower.min(), span.upper.max()) for span in wide]).T
         return LeafBounds(self.boxes.part(reached).inside(lowest, highest), self.slack)
 
+    def depends_on(self, feature: int) -> bool:
+        """Whether a side of some leaf bounds a feature."""
+        return feature in self._decide
+
     def overlap(self, features: Spans) -> Overlap:
         """Leaves that overlap features whose spans broadcast to (...)."""
         ends = tuple((span.lower.astype(np.float32), span.upper.astype(np.float32)) for span in features)

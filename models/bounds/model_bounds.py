@@ -134,7 +134,10 @@ class ModelBounds:
         """Lower bound of the standard deviation by the tree of intervals, shape (...)."""
         if self.spread is None:
             raise ValueError("a network without intervals has no bounds of its standard deviation")
-        least: Floats = self.spread.least(self.spread.overlap((*features, ANY_STD)), Side.LEAST)[0, 0]
+        std = ANY_STD
+        if self.networks is not None and self.trees is None and self.spread.depends_on(len(features)):
+            std = self.networks.deviation(features)
+        least: Floats = self.spread.least(self.spread.overlap((*features, std)), Side.LEAST)[0, 0]
         return least - OFFSET_ROUNDING
 
     def _mean(self, features: Spans, overlap: Overlap | None, side: Side) -> Floats:

@@ -42,17 +42,25 @@ class NetworkBounds:
 
     def least(self, features: tuple[Span, ...], sign: int = 1) -> Floats:
         """Lower bound of `sign` times the mean, of the shape that the spans broadcast to."""
-        shape = np.broadcast_shapes(*(np.shape(span.lower) for span in features))
-        lower, upper = (
-            np.stack([np.broadcast_to(end, shape).ravel() for end in ends]).astype(np.float32)
-            for ends in zip(*((span.lower, span.upper) for span in features), strict=True)
-        )
-        boxes = boxes_between(lower, upper)
+        boxes, shape = _boxes(features)
         constant, slopes = self.plane(boxes, sign)
         bound = constant + (slopes * boxes.middle).sum(axis=0) - (np.abs(slopes) * boxes.radius).sum(axis=0)
         low, high = sorted((sign * self.low, sign * self.high))
         clipped: Floats = np.clip(bound, np.float32(low), np.float32(high))
         return clipped.reshape(shape)
+
+    def deviation(self, features: tuple[Span, ...]) -> Span:
+        """Bounds of the standard deviation over the networks, of the shape that the spans broadcast to.
+
+        It differs from that of the networks' middles by the root mean square of their reaches at most.
+        """
+        boxes, shape = _boxes(features)
+        count = boxes.middle.shape[1]
+        parts = (boxes.part(slice(first, first + CHUNK)) for first in range(0, count, CHUNK))
+        middle, reach = (np.concatenate(each, axis=1) for each in zip(*map(self._outputs, parts), strict=True))
+        off = np.sqrt(np.square(reach).mean(axis=0))
+        std = middle.std(axis=0)
+        return Span(np.maximum(std - off, 0.0).reshape(shape), (std + off).reshape(shape))
 
     def plane(self, boxes: FeatureBoxes, sign: int = 1) -> tuple[Floats, Floats]:
         """Linear lower bound of `sign` times the mean without clipping: constants, (n,), and slopes, (f, n)."""
@@ -63,17 +71,34 @@ class NetworkBounds:
 
     @cached_property
     def slack(self) -> float:
-        """Bound of the rounding error of single precision, here and in the model."""
-        size = np.full((1, self.weights[0].shape[2], 1), FARTHEST)
+        """Bound of the rounding error of the mean in single precision, here and in the model."""
+        return float(self._rounding(np.full((self.weights[0].shape[2], 1), FARTHEST, np.float32)).mean())
+
+    def _rounding(self, farthest: Floats) -> Floats:
+        """Bounds of the rounding errors of all networks, (k, n), for features of these magnitudes, (f, n)."""
+        size = farthest
         for weights, bias in zip(self.weights, self.bias, strict=True):
             size = np.abs(weights) @ size + np.abs(bias)
-        return 4 * ROUNDING * float(size.mean())
+        return np.float32(4 * ROUNDING) * size[:, 0]
+
+    def _outputs(self, boxes: FeatureBoxes) -> tuple[Floats, Floats]:
+        """Middle and reach of each network's output with its rounding error, (k, n) each."""
+        _, second = self._layers(boxes)
+        low = np.maximum(second.lower, 0)
+        centre = np.float32(0.5) * (low + second.high)
+        weights, bias = self.weights[2], self.bias[2]
+        reach = (np.abs(weights) @ (second.high - centre))[:, 0]
+        return (weights @ centre + bias)[:, 0], reach + self._rounding(np.abs(boxes.middle) + boxes.radius)
+
+    def _layers(self, boxes: FeatureBoxes) -> tuple[Rectified, Rectified]:
+        """Both layers of rectifiers over the boxes."""
+        inputs = self.weights[0] @ boxes.middle + self.bias[0]
+        first = Rectified(*boxes.ends(inputs, self.weights[0]))
+        return first, Rectified(*self._second_inputs(first, inputs, boxes))
 
     def _plane(self, boxes: FeatureBoxes, sign: np.float32) -> tuple[Floats, Floats]:
         (w1, w2, w3), (b1, b2, b3) = self.weights, self.bias
-        inputs = w1 @ boxes.middle + b1
-        first = Rectified(*boxes.ends(inputs, w1))
-        second = Rectified(*self._second_inputs(first, inputs, boxes))
+        first, second = self._layers(boxes)
         factor, constant = second.below(sign / np.float32(len(w3)) * w3.transpose(0, 2, 1))
         constant = sign * b3.mean() + constant + _total(factor, b2)
         factor, offset = first.below(w2.transpose(0, 2, 1) @ factor)
@@ -95,6 +120,16 @@ class NetworkBounds:
         slopes = [w2 @ (w1[:, :, feature, None] * first.above) for feature in range(w1.shape[2])]
         strip = boxes.ends_of_slopes(w2 @ (first.above * inputs + width) + b2, size @ width, slopes)
         return np.maximum(middle - reach, strip[0]), np.minimum(middle + reach, strip[1])
+
+
+def _boxes(features: tuple[Span, ...]) -> tuple[FeatureBoxes, tuple[int, ...]]:
+    """Spans as boxes, one after another, and the shape that they broadcast to."""
+    shape = np.broadcast_shapes(*(np.shape(span.lower) for span in features))
+    lower, upper = (
+        np.stack([np.broadcast_to(end, shape).ravel() for end in ends]).astype(np.float32)
+        for ends in zip(*((span.lower, span.upper) for span in features), strict=True)
+    )
+    return boxes_between(lower, upper), shape
 
 
 def _total(factor: Floats, bias: Floats) -> Floats:

@@ -24,13 +24,16 @@ def drawn_networks(rng: np.random.Generator, networks: int = 3, width: int = 8) 
     return NetworkBounds(weights, bias, -3.0, 20.0)
 
 
-def predicted(bounds: NetworkBounds, rows: np.ndarray) -> np.ndarray:
-    """The clipped mean, shape (n,), of features (f, n), in double precision."""
+def outputs(bounds: NetworkBounds, rows: np.ndarray) -> np.ndarray:
+    """Output of each network, shape (k, n), for features (f, n), in double precision."""
     for weights, bias in zip(bounds.weights[:-1], bounds.bias[:-1], strict=True):
         rows = np.maximum(weights.astype(float) @ rows + bias, 0)
-    return np.clip(
-        (bounds.weights[-1].astype(float) @ rows + bounds.bias[-1])[:, 0].mean(axis=0), bounds.low, bounds.high
-    )
+    return (bounds.weights[-1].astype(float) @ rows + bounds.bias[-1])[:, 0]
+
+
+def predicted(bounds: NetworkBounds, rows: np.ndarray) -> np.ndarray:
+    """The clipped mean, shape (n,), of features (f, n)."""
+    return np.clip(outputs(bounds, rows).mean(axis=0), bounds.low, bounds.high)
 
 
 def spans(lower: np.ndarray, upper: np.ndarray) -> tuple[Span, ...]:
@@ -86,3 +89,19 @@ def test_bounds_are_close_to_the_minimum_in_small_boxes():
         least, most = extreme(bounds, lower, upper, rng)
         excess.append((least - bounds.least(spans(lower[None], upper[None])).item()) / max(most - least, 0.01))
     assert np.mean(excess) < 0.15  # of the range of predictions; 0.23 if each neuron is bounded apart
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-4, 0.1, 1.0, 5.0]))
+def test_no_standard_deviation_over_the_networks_leaves_its_bounds(seed, size):
+    rng = np.random.default_rng(seed)
+    bounds = drawn_networks(rng)
+    lower = rng.uniform(-3, 3, FEATURES)
+    upper = lower + size * rng.random(FEATURES)
+    inside = lower + rng.choice([0.0, 0.5, 1.0, 0.2], (400, FEATURES)) * (upper - lower)
+    std = outputs(bounds, inside.T).std(axis=0)
+    span = bounds.deviation(spans(lower[None], upper[None]))
+    assert span.lower.item() <= std.min()
+    assert std.max() <= span.upper.item()
+    if size == 0.0:
+        assert span.upper.item() - span.lower.item() < 1e-3, "at a point it is known but for rounding"
