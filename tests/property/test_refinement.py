@@ -19,7 +19,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tests.support.synthetic_models import MODELS, approach_dribble, sequence, waypoints, within
 
-SOLVERS = ("chain", "niches", "genetic", "differential")
+SOLVERS = ("chain", "genetic", "differential")
 SPREAD = (("x", 0.03), ("y", 0.03), ("phi", 0.1))
 seeds = st.integers(0, 2**32 - 1)
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
-from tailor.executive.refinement.objective.anchors import anchors
 from tailor.executive.refinement.objective.joint_costs import joint_costs
 from tailor.executive.refinement.objective.ranges import ranges_of
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
@@ -52,7 +51,6 @@ class SequenceObjective:
             arrival_ids = frozenset(action.variables)
         self.stages = tuple(stages)
         self.coarse_stages = tuple(stage.at_exact_arrival() for stage in stages)
-        self.anchors = anchors(stages)
 
     @property
     def evaluations(self) -> int:

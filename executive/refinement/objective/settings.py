@@ -17,7 +17,7 @@ PROBABILITIES = ("p_fail_max", "p_fail_assert", "p_fail_settle")
 MAX_ROWS = 1_000_000  # model inputs in one call, for each parameter: more exceed the memory
 # From 150 arrivals of AGILO's goToPose: 5 cm and 3 degrees; other robots have no parameters of these quantities
 ARRIVAL_SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.05), ("v", 0.05))
-SolverName = Literal["auto", "chain", "niches", "genetic", "differential"]
+SolverName = Literal["auto", "chain", "genetic", "differential"]
 
 
 @dataclass(frozen=True, slots=True)

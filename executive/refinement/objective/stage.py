@@ -66,7 +66,7 @@ class Stage:
         self._risk_to_next = risk_to_next
         self.p_fail_max = settings.p_fail_max if instance.risk is None else instance.risk
         self.context_cost_s = context_cost_s(instance, settings)
-        self.template = np.array([variables[i].value or 0.0 for i in ids])
+        self._template = np.array([variables[i].value or 0.0 for i in ids])
         self.slots = np.array([j for j, i in enumerate(ids) if i in columns], dtype=np.intp)
         self.sources = np.searchsorted(self.columns, [columns[i] for i in ids if i in columns])
         self._displaced = np.array([j for j, i in enumerate(ids) if i in displaced_ids], dtype=np.intp)
@@ -137,8 +137,8 @@ class Stage:
     def parameters(self, samples: Array) -> Array:
         """Action parameters, shape (n_arrivals * n, p); all samples of the first displacement come first."""
         count, arrivals = len(samples), len(self._displacements)
-        parameters = np.empty((arrivals, count, len(self.template)))
-        parameters[:] = self.template
+        parameters = np.empty((arrivals, count, len(self._template)))
+        parameters[:] = self._template
         parameters[:, :, self.slots] = samples[:, self.sources]
         if arrivals > 1:
             exact = parameters[:, :, self._displaced]

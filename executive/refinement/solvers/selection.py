@@ -11,7 +11,6 @@ from tailor.executive.refinement.solvers.chain import ChainSolver
 from tailor.executive.refinement.solvers.chain_structure import Columns, blocks_of
 from tailor.executive.refinement.solvers.differential import DifferentialEvolution
 from tailor.executive.refinement.solvers.genetic import GeneticAlgorithm
-from tailor.executive.refinement.solvers.niches import NicheSearch
 from tailor.executive.refinement.solvers.solver import Limits, Solver
 
 MIN_SUBGOALS = 3  # from here on, dynamic programming beats evolution for the same number of model inputs
@@ -40,8 +39,6 @@ def solver_for(
         return ChainSolver(objective, rng, seeds, settings.batch, limits)
     if name == "genetic":
         return GeneticAlgorithm(objective, rng, seeds)
-    if name == "niches":
-        return NicheSearch(objective, rng, seeds, limits)
     return DifferentialEvolution(objective, rng, seeds, limits)
 
 

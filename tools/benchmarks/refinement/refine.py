@@ -24,7 +24,7 @@ from tailor.tools.learning.fresh_seeds import fresh_seed
 
 TASKS, QUICK_TASKS = 20, 5  # of each case
 MOMENTS_MS = (5, 20, 60, 80)
-REFERENCES: tuple[SolverName, ...] = ("chain", "niches", "differential")
+REFERENCES: tuple[SolverName, ...] = ("chain", "differential")
 LONG_MS = 1500  # the search for the best known value
 
 

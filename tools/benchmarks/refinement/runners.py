@@ -14,7 +14,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings, SolverName
 from tailor.executive.refinement.solvers.selection import solver_for
 
-OURS: tuple[SolverName, ...] = ("chain", "niches", "genetic", "differential")
+OURS: tuple[SolverName, ...] = ("chain", "genetic", "differential")
 
 Progress = list[tuple[float, float]]  # (CPU milliseconds of this process, best value so far), in order of time
 Starts = Sequence[Mapping[int, float]]  # initial candidates; external optimisers begin with the first

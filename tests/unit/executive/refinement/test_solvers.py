@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.refinement.objective.anchors import Anchor
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -17,12 +16,9 @@ from tailor.executive.refinement.solvers.chain import ChainSolver
 from tailor.executive.refinement.solvers.chain_structure import blocks_of
 from tailor.executive.refinement.solvers.differential import DifferentialEvolution
 from tailor.executive.refinement.solvers.genetic import GeneticAlgorithm
-from tailor.executive.refinement.solvers.niches import NicheSearch
 from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.executive.refinement.solvers.solver import Limits
 from tests.support.synthetic_models import APPROACH, GO, MODELS, approach_dribble, sequence
-
-SOLVERS = ["genetic", "differential", "chain", "niches"]
 
 
 @dataclass
@@ -32,7 +28,6 @@ class Function:
     ranges: Ranges
     function: Callable[[np.ndarray], np.ndarray]
     evaluations: int = 0
-    anchors: tuple[Anchor, ...] = ()
 
     @property
     def stages(self):
@@ -77,12 +72,10 @@ def solver(name: str, objective, seed: int = 1):
         return GeneticAlgorithm(objective, rng, none)
     if name == "differential":
         return DifferentialEvolution(objective, rng, none, Limits(80, 800))
-    if name == "niches":
-        return NicheSearch(objective, rng, none, Limits(80, 800))
     return ChainSolver(objective, rng, none, 512, Limits(200, 800))
 
 
-@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 @pytest.mark.parametrize(
     ("function", "half", "count", "close"),
     [(de_jong, 5.12, 3, 1e-3), (schwefel, 500.0, 3, 1.0), (ackley, 32.768, 3, 0.02)],
@@ -94,7 +87,7 @@ def test_benchmark_minimum_is_found(name, function, half, count, close):
     assert -1e-9 <= search.value < close
 
 
-@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_solver_is_as_good_as_a_brute_force_grid(name):
     given = approach_dribble((1.5, -1.0, 1.0))
     settings = RefinementSettings(solver=name, arrival_spread=(), patience=60, worth_s=0.0)
@@ -107,7 +100,7 @@ def test_solver_is_as_good_as_a_brute_force_grid(name):
     assert search.value <= grid + 1e-6
 
 
-@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_nothing_valid_is_no_answer(name):
     search = solver(name, Function(cube(1.0, 2), lambda x: np.full(len(x), np.inf)))
     search.advance(CheckBudget(20))
@@ -115,7 +108,7 @@ def test_nothing_valid_is_no_answer(name):
     assert search.value == np.inf
 
 
-@pytest.mark.parametrize("name", SOLVERS)
+@pytest.mark.parametrize("name", ["genetic", "differential", "chain"])
 def test_small_valid_region_is_found_from_a_seed(name):
     """A hundredth of a percent of the box is valid; the given start lies in it."""
 
@@ -128,30 +121,9 @@ def test_small_valid_region_is_found_from_a_seed(name):
         "genetic": lambda: GeneticAlgorithm(objective, rng, seeds),
         "differential": lambda: DifferentialEvolution(objective, rng, seeds, Limits(80, 800)),
         "chain": lambda: ChainSolver(objective, rng, seeds, 512, Limits(200, 800)),
-        "niches": lambda: NicheSearch(objective, rng, seeds, Limits(80, 800)),
     }[name]()
     search.advance(CheckBudget(100))
     assert search.value <= 0.004 + 1e-9
-
-
-def test_anchors_of_a_free_place_are_the_fixed_places_of_the_actions_beside_it():
-    start, ball = {"x": -1.0, "y": 0.5}, {"x": 1.0, "y": 0.2}
-    given = sequence([GO, APPROACH], [start | {"phi": 0.0, "v": 0.0}, {}, ball | {"phi": 0.0}])
-    objective = SequenceObjective(given.actions, given.variables, MODELS, RefinementSettings())
-    free = [given.variables[i].quantity for i in objective.ids]
-    for anchor, place in zip(objective.anchors, (start, ball), strict=True):
-        assert {free[c]: v for c, v in zip(anchor.columns, anchor.values, strict=True)} == place
-
-
-def test_niches_find_a_narrow_minimum_at_an_anchor():
-    def needle(x):
-        far = np.abs(x - 0.3).max(axis=1)
-        return np.where(far < 0.02, far, 1.0 + np.abs(x + 0.8).sum(axis=1))
-
-    objective = Function(cube(1.0, 2), needle, anchors=(Anchor((0, 1), np.array([0.3, 0.3])),))
-    search = solver("niches", objective)
-    search.advance(CheckBudget(100))
-    assert search.value < 1e-3
 
 
 def test_genetic_algorithm_has_25_chromosomes_a_parameter_and_stops_after_50_idle_generations():
