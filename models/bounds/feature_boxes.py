@@ -25,7 +25,7 @@ class FeatureBoxes:
     radius: Floats
     corners: Floats
 
-    def part(self, boxes: slice) -> FeatureBoxes:
+    def part(self, boxes: slice | NDArray[np.intp]) -> FeatureBoxes:
         """Some of the boxes."""
         return FeatureBoxes(self.middle[:, boxes], self.radius[:, boxes], self.corners[:, :, boxes])
 

@@ -22,6 +22,7 @@ from tailor.models.trees import tree_names
 Floats = NDArray[np.float32]
 LAYERS = 3
 OPERATIONS = 5  # for each neuron of a network, about: they take as long as so many comparisons of leaves
+WIDE = 0.02  # m, rad, m/s: in wider boxes knowing the deviation costs more time than it gains
 CHUNK = 64  # boxes: their arrays fit into the cache
 
 
@@ -52,15 +53,18 @@ class NetworkBounds:
     def deviation(self, features: tuple[Span, ...]) -> Span:
         """Bounds of the standard deviation over the networks, of the shape that the spans broadcast to.
 
-        It differs from that of the networks' middles by the root mean square of their reaches at most.
+        It differs from that of the networks' middles by the root mean square of their reaches at most. Where a feature
+        varies by more than WIDE it is bounded by 0 and infinity.
         """
         boxes, shape = _boxes(features)
-        count = boxes.middle.shape[1]
-        parts = (boxes.part(slice(first, first + CHUNK)) for first in range(0, count, CHUNK))
-        middle, reach = (np.concatenate(each, axis=1) for each in zip(*map(self._outputs, parts), strict=True))
-        off = np.sqrt(np.square(reach).mean(axis=0))
-        std = middle.std(axis=0)
-        return Span(np.maximum(std - off, 0.0).reshape(shape), (std + off).reshape(shape))
+        narrow = np.flatnonzero(boxes.radius.max(axis=0) < WIDE / 2)
+        lower, upper = np.zeros(boxes.radius.shape[1]), np.full(boxes.radius.shape[1], np.inf)
+        for first in range(0, len(narrow), CHUNK):
+            some = narrow[first : first + CHUNK]
+            middle, reach = self._outputs(boxes.part(some))
+            std, off = middle.std(axis=0), np.sqrt(np.square(reach).mean(axis=0))
+            lower[some], upper[some] = np.maximum(std - off, 0.0), std + off
+        return Span(lower.reshape(shape), upper.reshape(shape))
 
     def plane(self, boxes: FeatureBoxes, sign: int = 1) -> tuple[Floats, Floats]:
         """Linear lower bound of `sign` times the mean without clipping: constants, (n,), and slopes, (f, n)."""
