@@ -92,7 +92,7 @@ def test_bounds_are_close_to_the_minimum_in_small_boxes():
 
 
 @settings(max_examples=100, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-4, 0.1, 1.0, 5.0]))
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-4, 5e-3, 0.9 * network_bounds.WIDE, 0.1, 1.0, 5.0]))
 def test_no_standard_deviation_over_the_networks_leaves_its_bounds(seed, size):
     rng = np.random.default_rng(seed)
     bounds = drawn_networks(rng)
@@ -103,5 +103,17 @@ def test_no_standard_deviation_over_the_networks_leaves_its_bounds(seed, size):
     span = bounds.deviation(spans(lower[None], upper[None]))
     assert span.lower.item() <= std.min()
     assert std.max() <= span.upper.item()
+    assert size > network_bounds.WIDE or np.isfinite(span.upper.item())
     if size == 0.0:
         assert span.upper.item() - span.lower.item() < 1e-3, "at a point it is known but for rounding"
+
+
+def test_deviations_in_narrow_boxes_among_wide_ones_are_bounded_as_each_alone():
+    rng = np.random.default_rng(7)
+    bounds = drawn_networks(rng)
+    lower = rng.uniform(-3, 3, (3 * network_bounds.CHUNK, FEATURES))
+    upper = lower + rng.choice([0.1, 5.0], (len(lower), 1)) * network_bounds.WIDE
+    together = bounds.deviation(spans(lower, upper))
+    apart = [bounds.deviation(spans(lower[i : i + 1], upper[i : i + 1])) for i in range(len(lower))]
+    np.testing.assert_allclose(together.lower.ravel(), [each.lower.item() for each in apart], atol=1e-4)
+    np.testing.assert_allclose(together.upper.ravel(), [each.upper.item() for each in apart], atol=1e-4)
