@@ -9,12 +9,12 @@ from typing import Literal, get_args
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from scipy import stats
 
 from tailor.executive import planning
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.core.context import Settings
 from tailor.executive.interfaces.values import Array
+from tailor.tools.benchmarks.intervals import half_width
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
@@ -62,5 +62,5 @@ def _with_interval(saved_s: Array) -> str:
     """Mean and its 95 % t-interval; of a single run no interval."""
     if len(saved_s) < 2:
         return f"{saved_s.mean():.2f} s"
-    half = stats.t.ppf(0.975, len(saved_s) - 1) * stats.sem(saved_s)
-    return f"{saved_s.mean():.2f} s ({saved_s.mean() - half:.2f} to {saved_s.mean() + half:.2f})"
+    mean, half = saved_s.mean(), half_width(saved_s)
+    return f"{mean:.2f} s ({mean - half:.2f} to {mean + half:.2f})"

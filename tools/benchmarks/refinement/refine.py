@@ -11,11 +11,11 @@ import importlib.util
 import numpy as np
 from rich.console import Console
 from rich.table import Column, Table
-from scipy import stats
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import SolverName
 from tailor.models.runtime import load_robot
+from tailor.tools.benchmarks.intervals import half_width
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.refinement import certificates
 from tailor.tools.benchmarks.refinement.cases import Case, cases
@@ -52,7 +52,7 @@ def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
 def _row(case: str, solver: str, gaps: list[list[float]]) -> dict[str, object]:
     means = zip(MOMENTS_MS, np.mean(gaps, axis=0), strict=True)
     with np.errstate(invalid="ignore"):  # infinite where a task had no valid choice at that moment
-        half = stats.t.ppf(0.975, len(gaps) - 1) * np.std(gaps, axis=0, ddof=1) / np.sqrt(len(gaps))
+        half = half_width(gaps)
     worst = zip(MOMENTS_MS, np.max(gaps, axis=0), strict=True)
     return {
         "case": case,

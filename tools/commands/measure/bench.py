@@ -27,8 +27,9 @@ BENCHMARKS = {
 }
 
 # of `planning`, after its table
-PLANNERS = ("planners.improvement", "planners.tours", "planners.balls", "planners.cups", "planners.tick_share",
-            "planners.configurations")  # fmt: skip
+PLANNERS = tuple(
+    f"planners.{name}" for name in ("improvement", "tours", "balls", "cups", "tick_share", "configurations")
+)
 SCALE = ("planning_scale", "execution.durative_plans", "execution.long_plans")
 SOAK, GROWTH, CLUSTER = "soak", "growth", "cluster"
 ROOMS = {"refine": "refinement.refine", GROWTH: "growth.growth", CLUSTER: "scaling.cluster"}
