@@ -38,7 +38,7 @@ class PlanGraph {
   }
 
   lay(now, { base, done, running }) {
-    const counted = now.generated ? `, ${now.generated} plans generated, ${now.visited} visited` : "";
+    const effort = now.generated ? `, ${counted(now.generated, "plan")} generated, ${now.visited} visited` : "";
     const words = {
       suffix: "suffix of the last plan",
       improved: "better than the suffix of the last plan",
@@ -47,7 +47,7 @@ class PlanGraph {
     const way = (words[now.way] ?? now.way) + (now.whole ? `, the next ${now.steps.length} of ${now.whole} steps` : "");
     const orderings = base.orderings?.length ? [["c1", "ordering"]] : [];
     this.panel.note.replaceChildren(
-      html("span", { text: `${now.status}, ${way}${counted}${now.reason ? `: ${now.reason}` : ""}  ` }),
+      html("span", { text: `${now.status}, ${way}${effort}${now.reason ? `: ${now.reason}` : ""}  ` }),
       legend([["c0", "causal link"], ...orderings]),
     );
     if (!base.steps?.length) {
