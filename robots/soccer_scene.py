@@ -27,7 +27,7 @@ def of_belief(values: Mapping[str, float]) -> Scene:
     if values.get("ball_sigma", -1.0) >= 0.0:
         shapes += _ball(values["ball_x"], values["ball_y"])
     if values.get("ball2_sigma", -1.0) >= 0.0:
-        shapes += _second_ball(values["ball2_x"], values["ball2_y"])
+        shapes.append(_second_ball(values["ball2_x"], values["ball2_y"]))
     for number in range(1, MOST_OPPONENTS + 1):
         if values.get(f"opponent{number}_sigma", -1.0) >= 0.0:
             x, y, radius_m = (values[f"opponent{number}_{quantity}"] for quantity in ("x", "y", "radius"))
@@ -41,7 +41,7 @@ def of_truth(message: Message) -> Scene:
         shapes = (*ROBOT, *FIELD, *_ball(message.ball_x, message.ball_y))
         return Scene((_base(message.x, message.y, message.phi),), shapes, BASE, message.v)
     if isinstance(message, BallTruth):
-        return Scene(shapes=tuple(_second_ball(message.x, message.y)))
+        return Scene(shapes=(_second_ball(message.x, message.y),))
     if isinstance(message, OpponentsTruth):
         standing = enumerate(message.opponents, 1)
         return Scene(shapes=tuple(_opponent(number, each.x, each.y, each.radius_m) for number, each in standing))
@@ -62,8 +62,8 @@ def _ball(x: float, y: float) -> Iterator[Shape]:
         yield sphere("ball", BALL_M, on_plane(x, y, z=BALL_M))
 
 
-def _second_ball(x: float, y: float) -> Iterator[Shape]:
-    yield sphere("second ball", BALL_M, on_plane(x, y, z=BALL_M), YELLOW)
+def _second_ball(x: float, y: float) -> Shape:
+    return sphere("second ball", BALL_M, on_plane(x, y, z=BALL_M), YELLOW)
 
 
 def _opponent(number: int, x: float, y: float, radius_m: float) -> Shape:
