@@ -1,7 +1,7 @@
 """Runs a soccer scenario in simulated time, in one process without a bus: executive, physics, driver and guard."""
 
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.tools.lockstep.run import SENDER, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 

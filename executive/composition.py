@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.executive import domains
-from tailor.executive.core.context import Context, Settings, make_context
+from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot

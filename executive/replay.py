@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from tailor.executive.core.context import Context
 from tailor.executive.core.state import Inputs, Output, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.budget import CheckBudget
 
 

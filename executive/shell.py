@@ -6,10 +6,10 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tailor.executive.core.context import PERIOD_NS, Context, check_goal
 from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import control, deliberate
+from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
-from tailor.executive.core.context import Context
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import State, Task
+from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.outlet import at_rest
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 

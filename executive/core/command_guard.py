@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Axis, Domain
 from tailor.executive.interfaces.outlet import Command, at_rest, completed, driven_axes
+from tailor.executive.interfaces.reasons import Cause, Reason
 
 
 def whole_command(domain: Domain, action: Action, command: Command, last: Command) -> tuple[Command, Cause | None]:

@@ -7,16 +7,16 @@ from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import after_action
-from tailor.executive.core.context import Context
-from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
-from tailor.executive.core.plan_reuse import Preparation, reuse
-from tailor.executive.core.plan_source import PlanSource, current_problem, request_for
-from tailor.executive.core.reasons import Cause, Result
 from tailor.executive.core.state import Inputs, State, Task
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.deliberation import Decision, Deliberation
+from tailor.executive.deliberation.plan_reuse import Preparation, reuse
+from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.reasons import Cause, Result
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.course_check import risen_failure
 from tailor.schemas.messages import PlanAnswer, PlanRequest

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.core.deliberation import Decision
-from tailor.executive.core.reasons import Cause, Reason
+from tailor.executive.deliberation.deliberation import Decision
 from tailor.executive.interfaces.action import Action, Control
 from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Array, Belief
 
 

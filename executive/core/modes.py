@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from tailor.executive.core.reasons import Cause
+from tailor.executive.interfaces.reasons import Cause
 
 
 class Mode(StrEnum):

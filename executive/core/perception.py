@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tailor.executive.core.context import Context
 from tailor.executive.core.freshness import (
     MAX_ROUND_TRIP_NS,
     echo_age_ns,
@@ -15,8 +14,9 @@ from tailor.executive.core.freshness import (
     with_samples,
 )
 from tailor.executive.core.modes import Conditions, Mode, next_mode
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Arming, Inputs, State, Task
+from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import DriverState
 from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import TOPICS, key_of

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import finished_message
-from tailor.executive.core.context import Context
-from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
-from tailor.executive.core.plan_source import PlanFound
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Output, State
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.deliberation import Decision, Deliberation
+from tailor.executive.deliberation.plan_source import PlanFound
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.core.context import Context
-from tailor.executive.core.deliberation import Decision, Deliberation
 from tailor.executive.core.execution import Running
 from tailor.executive.core.freshness import Stream
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.plan_reuse import Preparation
-from tailor.executive.core.reasons import Cause, Result
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.deliberation import Decision, Deliberation
+from tailor.executive.deliberation.plan_reuse import Preparation
 from tailor.executive.interfaces.outlet import at_rest
+from tailor.executive.interfaces.reasons import Cause, Result
 from tailor.executive.interfaces.values import Belief, Fact
 from tailor.executive.planning import GroundCache, Plan
 from tailor.schemas.messages import DriverState, Message, Sample

@@ -11,10 +11,10 @@ from dataclasses import replace
 
 from tailor.executive.core import reporting
 from tailor.executive.core.action_cycle import act
-from tailor.executive.core.context import Context
 from tailor.executive.core.deliberation_cycle import advance_deliberation, receive_answers
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
+from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.outlet import messages_of
 from tailor.schemas.messages import ArmRequest

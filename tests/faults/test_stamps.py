@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.schemas.messages import ArmRequest, Sample, VelocityCommand
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import DriverSpec

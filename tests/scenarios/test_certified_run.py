@@ -8,7 +8,7 @@ from functools import partial
 import pytest
 
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import replay

@@ -9,7 +9,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.schemas.messages import PlanReport
 from tailor.schemas.messages.soccer import BallTruth, SoccerGroundTruth
 from tailor.tools.lockstep.run import SENDER, run_lockstep

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.core.state import Inputs
+from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.executive.interfaces.action import Action, Control, Parameter
 from tailor.executive.interfaces.domain import Axis, Scenario
 from tailor.executive.interfaces.models import Models

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
-from tailor.executive.core.context import PlannerCommand, Settings
+from tailor.executive.deliberation.context import PlannerCommand, Settings
 from tailor.runtime.planners.named import KAIROS, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError

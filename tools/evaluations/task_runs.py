@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.core.context import Context, Settings, make_context
+from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.schemas.installed.source import runs_sha256
 from tailor.simnodes.world import World
 from tailor.tools.evaluations.bodies import body_of

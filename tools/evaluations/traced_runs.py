@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tailor.executive.core.context import Context
+from tailor.executive.deliberation.context import Context
 from tailor.schemas.messages import Message, Subgoals
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.progress import tracked

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context, provenance
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError

@@ -15,14 +15,14 @@ from gymnasium.spaces import Dict
 
 from tailor.executive import domains
 from tailor.executive.composition import load_models
-from tailor.executive.core.context import PERIOD_NS, Context, Settings, make_context
 from tailor.executive.core.execution import controller_arguments
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.reasons import Result
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import PERIOD_NS, Context, Settings, make_context
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.outlet import messages_of
+from tailor.executive.interfaces.reasons import Result
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec

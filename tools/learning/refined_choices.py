@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.core.context import Settings, make_context
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.interfaces.action import Action
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals

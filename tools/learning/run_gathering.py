@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 from tailor.executive import domains
 from tailor.executive.composition import load_models
-from tailor.executive.core.context import Settings, make_context
+from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings

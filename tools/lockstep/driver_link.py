@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 
-from tailor.executive.core.context import PERIOD_NS
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import PERIOD_NS
 from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.messages import ArmRequest, Message, Sample
 from tailor.schemas.topics import TOPICS, key_of

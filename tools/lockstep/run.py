@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from tailor.executive.core.context import PERIOD_NS, Context
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import PERIOD_NS, Context
 from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals

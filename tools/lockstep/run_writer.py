@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tailor.executive.core.context import Context
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import Context
 from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import tick_report
 from tailor.runtime.bus.attachment import Origin, pack

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from tailor.executive.core.context import Context
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import Context
 from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, RefinementReport

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from itertools import tee
 from typing import Protocol
 
-from tailor.executive.core.context import Context
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import Context
 from tailor.executive.replay import RecordedTick, replay
 from tailor.runtime.gc_freeze import gc_frozen
 from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.composition import ModelLoader, load_models, rebuild_context
-from tailor.executive.core.context import Context
+from tailor.executive.deliberation.context import Context
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.json_text import table_of
 from tailor.schemas.messages import Contexts, Subgoals

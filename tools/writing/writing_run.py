@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.core.context import Settings, make_context
+from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.domains.arm.letters import Point
 from tailor.executive.interfaces.models import Models
 from tailor.schemas.messages import JointState, Message

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.core.context import PlannerCommand
+from tailor.executive.deliberation.context import PlannerCommand
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.system_flags import configure_system, deployment_from

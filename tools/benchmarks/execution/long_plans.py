@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from rich.console import Console
 from rich.table import Table
 
-from tailor.executive.core.context import Context, Settings, make_context
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import control, deliberate
+from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget

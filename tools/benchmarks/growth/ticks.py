@@ -10,9 +10,9 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Context, Settings
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Context, Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.replay import RecordedTick
 from tailor.simnodes.world import World

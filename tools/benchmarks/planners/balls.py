@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.tools.benchmarks.planners.tours import Costs, compared
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import make_world

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from tailor.executive import domains, planning
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.schemas.kitchen.furniture import kitchen, on_table
 from tailor.simnodes.world import World
 from tailor.tools.benchmarks.planners.tours import Costs, compared

@@ -19,10 +19,10 @@ from rich.table import Table
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import PERIOD_NS
-from tailor.executive.core.plan_reuse import Preparation
-from tailor.executive.core.plan_source import PlanSource
 from tailor.executive.core.state import Output
+from tailor.executive.deliberation.context import PERIOD_NS
+from tailor.executive.deliberation.plan_reuse import Preparation
+from tailor.executive.deliberation.plan_source import PlanSource
 from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import DELIBERATION_NS
 from tailor.runtime.budget import ClockBudget

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from tailor.executive import planning
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.values import Array
 from tailor.tools.benchmarks.intervals import half_width
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep

@@ -7,9 +7,9 @@ import time
 from dataclasses import replace
 
 from tailor.executive.composition import build_context, provenance
-from tailor.executive.core.context import Context, check_goal
-from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import State
+from tailor.executive.deliberation.context import Context, check_goal
+from tailor.executive.interfaces.reasons import Reason
 from tailor.executive.shell import Shell
 from tailor.runtime import numpy_blocks, realtime
 from tailor.runtime.clock import MonotonicClock, wall_ns

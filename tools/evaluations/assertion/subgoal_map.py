@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.executive.core.context import Context
+from tailor.executive.deliberation.context import Context
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.messages import Subgoals

@@ -16,7 +16,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import Stop, stop_on_signals

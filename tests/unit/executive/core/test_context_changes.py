@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from tailor.executive.core.context import Settings
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models

@@ -10,14 +10,14 @@ import pytest
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import checked
-from tailor.executive.core.context import MAX_GOAL_BYTES, Settings, check_goal
 from tailor.executive.core.modes import Conditions, Mode, next_mode
-from tailor.executive.core.reasons import Cause, Reason, Result
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import MAX_GOAL_BYTES, Settings, check_goal
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.domain import Axis
 from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.schemas import codec
 from tailor.schemas.messages import (
     ActionFinished,

@@ -8,10 +8,10 @@ import pytest
 
 from tailor.executive.core.freshness import slow_topics, with_samples
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import Inputs
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import ActionFinished, Sample
 from tests.support.toy_domain import driver, line_context, odometry
 from tests.unit.executive.core.test_core import GOAL, TICK, drive, messages

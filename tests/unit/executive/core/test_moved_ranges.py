@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from tailor.executive.core.context import Settings
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.values import Interval
 from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context

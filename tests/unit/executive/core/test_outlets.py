@@ -7,14 +7,14 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive.core.command_guard import whole_command
-from tailor.executive.core.context import Settings
-from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.domain import Axis
 from tailor.executive.interfaces.outlet import Outlet, at_rest, messages_of
+from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import JointCommand, VelocityCommand
 from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context
 

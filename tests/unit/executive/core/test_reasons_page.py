@@ -2,7 +2,7 @@
 
 import re
 
-from tailor.executive.core.reasons import REASONS, Reason, Result
+from tailor.executive.interfaces.reasons import REASONS, Reason, Result
 from tests.support.bus_system import ROOT
 
 PAGE = ROOT / "docs" / "reasons.md"

@@ -6,10 +6,10 @@ import pytest
 
 from tailor.executive.core.freshness import MAX_ROUND_TRIP_NS, echo_age_ns
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import VelocityCommand
 from tests.support.toy_domain import driver, line_context, odometry
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tailor.executive.core.plan_source import PlanSource
+from tailor.executive.deliberation.plan_source import PlanSource
 from tailor.executive.planning import DEFAULT, MATCHING
 from tailor.tools.benchmarks.planners import balls, configurations, cups, improvement, tick_share, tours
 from tailor.tools.benchmarks.planning import texts

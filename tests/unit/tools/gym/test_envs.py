@@ -11,7 +11,7 @@ from gymnasium.utils.seeding import np_random
 
 from tailor.executive import domains
 from tailor.executive.composition import ExecutiveConfig, build_context
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names

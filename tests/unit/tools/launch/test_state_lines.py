@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.core.state import Result, State, Task
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec

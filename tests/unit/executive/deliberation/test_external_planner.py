@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tailor.executive.core.context import PlannerCommand, Settings
 from tailor.executive.core.deliberation_cycle import pending_request
-from tailor.executive.core.plan_source import GRACE_S
-from tailor.executive.core.reasons import Reason
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import PlannerCommand, Settings
+from tailor.executive.deliberation.plan_source import GRACE_S
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.reasons import Reason
 from tailor.executive.planning import format_links, format_plan, parse_domain, parse_plan, parse_problem, validate
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, Sample

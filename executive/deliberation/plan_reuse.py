@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive import planning
-from tailor.executive.core.context import Context
-from tailor.executive.core.plan_source import REUSE_FREE_PORTIONS, PlanFound, current_problem, validated
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.plan_source import REUSE_FREE_PORTIONS, PlanFound, current_problem, validated
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Fact
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tailor.executive import planning
-from tailor.executive.core.context import Settings
-from tailor.executive.core.plan_reuse import Preparation, better
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Settings
+from tailor.executive.deliberation.plan_reuse import Preparation, better
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.refinement.objective.settings import RefinementSettings

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tailor.executive import planning
-from tailor.executive.core import plan_reuse, plan_source
-from tailor.executive.core.context import Settings
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation import plan_reuse, plan_source
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning.plans import portions
 from tailor.executive.planning.semantics import links, regression, simulation, validator

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tailor.executive import planning
-from tailor.executive.core.reasons import Cause, Reason
 from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tailor.executive import planning
-from tailor.executive.core.context import Context
-from tailor.executive.core.reasons import Cause, Reason
+from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 

@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 
 from tailor.executive import planning
-from tailor.executive.core.context import Context
-from tailor.executive.core.plan_source import PlanFound, PlanSource
-from tailor.executive.core.reasons import Cause, Reason
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.plan_source import PlanFound, PlanSource
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.assertion.subgoal_comparison import has_limit, with_any_risk

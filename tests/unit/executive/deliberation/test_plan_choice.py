@@ -4,12 +4,12 @@ import itertools
 
 import pytest
 
-from tailor.executive.core.context import Settings
+from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.replay import replay
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.support.toy_domain import line_context
-from tests.unit.executive.core.test_improvement import drive, messages_of, steps, three_places
+from tests.unit.executive.deliberation.test_improvement import drive, messages_of, steps, three_places
 
 PLACES = {"home": {"x": 0.0}, "a": {"x": 1.5}, "b": {"x": 0.5}, "c": {"x": 1.0}, "d": {"x": -0.3}}
 PROBLEM = """
