@@ -1,7 +1,8 @@
 """Fingerprint of this platform's floating-point arithmetic, and the versions behind it.
 
 libm rounds differently on a CPU without fused multiply-add, and so does another libm. Only a platform of the same kind
-replays a recording bit for bit.
+replays a recording bit for bit. Matrix products, whose kernels a CPU selects, occur in proofs of optimality gaps only;
+they have a fingerprint of their own.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ import platform
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 KIND = ("arithmetic", "python", "numpy", "onnxruntime")  # these decide; the other entries are informative
 POINTS = 1024  # per function; about one in 500 results differs without fused multiply-add
@@ -25,6 +28,7 @@ def platform_fingerprint() -> dict[str, str]:
     """Description of this platform for the provenance of a recording; takes a few ms."""
     return {
         "arithmetic": arithmetic(),
+        "products": products(),
         "cpu": " ".join((platform.machine(), *_features())),
         "libc": " ".join(platform.libc_ver()).strip(),
         "python": ".".join(map(str, sys.version_info[:2])),
@@ -36,6 +40,11 @@ def platform_fingerprint() -> dict[str, str]:
 def same_kind(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
     """Whether two platforms compute identically; an unknown platform (empty) counts as the same kind."""
     return not one or not other or all(one.get(name) == other.get(name) for name in KIND)
+
+
+def same_products(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
+    """Whether two platforms also multiply matrices identically; an unknown platform (empty) counts as one that does."""
+    return not one or not other or (same_kind(one, other) and one.get("products") == other.get("products"))
 
 
 def contrast(one: Mapping[str, str], other: Mapping[str, str]) -> str:
@@ -63,6 +72,19 @@ def arithmetic() -> str:
     for of_two in (math.atan2, math.hypot):
         digest.update(np.array(list(map(of_two, plain, other))).tobytes())
     digest.update(np.array([math.acos(value / 8) for value in plain]).tobytes())
+    return digest.hexdigest()[:12]
+
+
+def products() -> str:
+    """Hash of matrix products of the shapes that bounds of networks have: twelve hex digits."""
+    x = np.linspace(-7.0, 7.0, 3 * 32 * 24)
+    digest = hashlib.sha256()
+    for precision in (np.dtype(np.float32), np.dtype(np.float64)):
+        weights: NDArray[Any] = np.sin(x).astype(precision).reshape(3, 32, 24)
+        rows: NDArray[Any] = np.cos(x).astype(precision).reshape(24, -1)
+        digest.update((weights @ rows).tobytes())
+        digest.update((weights.transpose(0, 2, 1) @ (weights @ rows)).tobytes())
+        digest.update((rows[0] @ rows.T).tobytes())
     return digest.hexdigest()[:12]
 
 

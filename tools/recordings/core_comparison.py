@@ -13,7 +13,7 @@ from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, RefinementReport
 from tailor.schemas.topics import TOPICS, key_of
-from tailor.tools.recordings.differences import Difference, first_field, rounding_apart
+from tailor.tools.recordings.differences import Difference, first_field, rounding_apart, with_proof_of
 from tailor.tools.recordings.recorded_run import RecordedRun, decoded
 
 REFINEMENT = TOPICS["refinement"].key
@@ -26,12 +26,13 @@ class RunComparison:
       run: Recorded run.
       robot: Name of the robot, part of its topics.
       exact: Whether every bit counts; else rounding is tolerated and counted.
+      exact_proofs: The same of optimality gaps.
       proofs: Whether optimality gaps are compared, too.
     """
 
-    def __init__(self, run: RecordedRun, robot: str, exact: bool, proofs: bool = True) -> None:
+    def __init__(self, run: RecordedRun, robot: str, exact: bool, exact_proofs: bool, proofs: bool = True) -> None:
         self.ticks = self.compared = self.rounded = 0
-        self._robot, self._exact, self._proofs = robot, exact, proofs
+        self._robot, self._exact, self._exact_proofs, self._proofs = robot, exact, exact_proofs, proofs
         self._last_tick = run.ticks[-1].tick
         self._published: dict[str, list[Recorded]] = dict(run.published)
         self._n_compared: dict[str, int] = defaultdict(int)
@@ -69,11 +70,16 @@ class RunComparison:
         if recorded.data == encode(today):
             return None
         then = decoded(recorded)
-        if not self._exact and rounding_apart(then, today):
+        if self._is_rounded(then, today):
             self.rounded += 1
             return None
         field, old, new = first_field(then, today)
         return Difference(tick, recorded.key, field, str(old), str(new))
+
+    def _is_rounded(self, then: Message, today: Message) -> bool:
+        """Whether only what this comparison tolerates lies between two different messages."""
+        same = then if self._exact_proofs else with_proof_of(then, today)
+        return encode(same) == encode(today) if self._exact else rounding_apart(same, today)
 
     def _is_repeated(self, message: Message) -> bool:
         before, self._last_report = self._last_report, _timeless(message)

@@ -6,7 +6,10 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
+from tailor.schemas.messages import RefinementReport
+
 ROUNDING = 1e-9  # of 1 or of the value: errors of libm in the last bit (1e-16), amplified over a run
+PROOF_ROUNDING_PCT = 0.01  # single-precision products of a bound (1e-7) decide which boxes a proof divides next
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +49,15 @@ def rounding_apart(then: Any, now: Any) -> bool:
         fields = dataclasses.fields(then)
         return all(rounding_apart(getattr(then, entry.name), getattr(now, entry.name)) for entry in fields)
     return bool(then == now)
+
+
+def with_proof_of(then: Any, now: Any) -> Any:
+    """The message `then`; with the gap of `now` where both have one, at most `PROOF_ROUNDING_PCT` apart."""
+    if not (isinstance(then, RefinementReport) and isinstance(now, RefinementReport)):
+        return then
+    proven = min(then.gap_pct, now.gap_pct) >= 0
+    near = abs(then.gap_pct - now.gap_pct) <= PROOF_ROUNDING_PCT
+    return dataclasses.replace(then, gap_pct=now.gap_pct) if proven and near else then
 
 
 def _first_element(name: str, old: Any, new: Any) -> tuple[str, Any, Any]:

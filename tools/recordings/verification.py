@@ -12,9 +12,9 @@ from tailor.executive.core.state import Output
 from tailor.executive.deliberation.context import Context
 from tailor.executive.replay import RecordedTick, replay
 from tailor.runtime.gc_freeze import gc_frozen
-from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind
+from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind, same_products
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
-from tailor.tools.recordings.differences import ROUNDING, Difference
+from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 
 
@@ -33,7 +33,7 @@ class Verdict:
     sender: str
     ticks: int
     compared: int  # messages
-    rounded: int  # of them equal except for rounding; 0 unless recorded on a platform of another kind
+    rounded: int  # of them equal except for rounding; 0 unless recorded on a platform that computes otherwise
     difference: Difference | None
     machines: str  # differences between the recording platform and this one
     left_out: str  # messages on exec/tick that are not ticks of an executive; empty if none
@@ -50,7 +50,8 @@ def verify(
 ) -> Verdict:
     """Compare one recorded run with the outputs of today's core, up to the first difference.
 
-    Rounding is tolerated only if the recording platform is of another kind (see `platform_fingerprint`).
+    Rounding is tolerated only if the recording platform is of another kind (see `platform_fingerprint`), that of
+    optimality gaps also if it multiplies matrices otherwise.
 
     Args:
       runs: The recording.
@@ -60,7 +61,9 @@ def verify(
       proofs: Whether to compute and compare optimality gaps, too.
     """
     here, there = platform_fingerprint(), run.provenance.get("machine", {})
-    comparison = RunComparison(run, context.domain.robot, same_kind(there, here), proofs)
+    comparison = RunComparison(
+        run, context.domain.robot, same_kind(there, here), same_products(there, here), proofs=proofs
+    )
     with gc_frozen():  # as live
         began_s = time.perf_counter()
         difference = _first_difference(comparison, runs, run, context if proofs else without_proofs(context), writer)
@@ -100,5 +103,6 @@ def verdict_text(verdict: Verdict) -> str:
         return f"different: {verdict.difference}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
-        return f"equal within {ROUNDING:g}: {summary}; {rounded}{machines}{left_out}"
+        within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"
+        return f"equal within {within}: {summary}; {rounded}{machines}{left_out}"
     return f"equal: {summary}{left_out}"

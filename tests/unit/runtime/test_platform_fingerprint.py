@@ -1,11 +1,16 @@
 """Fingerprint of the functions that the core calls: whether two machines compute alike."""
 
 import ast
+import os
+import platform
+import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from tailor.runtime.platform_fingerprint import KIND, contrast, platform_fingerprint, same_kind
+from tailor.runtime.platform_fingerprint import KIND, contrast, platform_fingerprint, same_kind, same_products
 
 ROOT = Path(__file__).resolve().parents[3]
 CORE = [*(ROOT / "executive").rglob("*.py"), ROOT / "models" / "features" / "intervals.py"]
@@ -49,6 +54,30 @@ def test_another_arithmetic_or_version_is_another_kind(name):
     here, there = platform_fingerprint(), {**platform_fingerprint(), name: "another"}
     assert not same_kind(there, here)
     assert contrast(there, here) == f"{name} another against {name} {here[name]}"
+
+
+def test_other_matrix_products_are_the_same_kind_but_not_the_same_products():
+    here, there = platform_fingerprint(), {**platform_fingerprint(), "products": "another"}
+    assert same_kind(there, here)
+    assert not same_products(there, here)
+    assert same_products(here, here)
+    assert not same_products({**here, KIND[0]: "another"}, here)
+    older = {name: value for name, value in here.items() if name != "products"}
+    assert not same_products(older, here), "unknown products are not the same"
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="names kernels of x86")
+def test_another_kernel_of_matrix_products_has_another_fingerprint():
+    command = [sys.executable, "-c", "from tailor.runtime.platform_fingerprint import products; print(products())"]
+    seen = {
+        subprocess.run(
+            command, env={**os.environ, "OPENBLAS_CORETYPE": kernel}, capture_output=True, text=True, check=True
+        ).stdout
+        for kernel in ("Nehalem", "Sandybridge")
+    }
+    if "openblas" not in str(np.show_config("dicts")).lower():
+        pytest.skip("numpy multiplies with another library")
+    assert len(seen) == 2
 
 
 def test_another_cpu_that_computes_alike_is_the_same_kind_but_is_reported():
