@@ -55,7 +55,9 @@ def _field(name: str, hint: Any) -> tuple[Convert, Convert]:
     if element is str:
         return list, tuple
     write, read = converters(element)
-    return lambda parts: [write(part) for part in parts], lambda parts: tuple(read(part) for part in parts)
+    # Of a generator, `tuple` makes ten places and cuts them; freed, they are kept for tuples of that length alone, 2000
+    # of each length. Plans get shorter step by step: the launcher of an arm grew by 1 MB/h, until all are full.
+    return lambda parts: [write(part) for part in parts], lambda parts: tuple([read(part) for part in parts])
 
 
 @cache
