@@ -63,6 +63,16 @@ DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "stack": lambda seed: BlendedRegressor((STACK,), random_state=seed),
     "best": lambda seed: BlendedRegressor(random_state=seed),
 }
+# One tree for a bag, one network for several: what is compared many times to choose the number of first ticks. The seed
+# of the trees is fixed, so that it does not depend on the seed of the model.
+SINGLE_LEARNERS: Mapping[str, Callable[[int], Any]] = {
+    "bag": lambda _: ModelTreeRegressor("linear"),
+    "robust": lambda _: ModelTreeRegressor("linear", **ROBUST),
+    "distilled-tree": lambda _: ModelTreeRegressor("linear"),
+    "linear": lambda _: ModelTreeRegressor("linear"),
+    "network": lambda seed: NetworkRegressor(networks=1, random_state=seed),
+}
+MEMBERS_OF = {"stack": ("bag", "network"), "best": ("bag", "network")}
 SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "distilled-forest": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),
@@ -94,6 +104,17 @@ def make_learner(kind: str, name: str, seed: int) -> Any:
       UsageError: There is no learner of that name for that kind.
     """
     return _table(kind)[learner_name(kind, name)](seed)
+
+
+def single_learners(name: str, seed: int) -> tuple[Any, ...]:
+    """Unfitted cheap stand-ins of a learner of durations or energies: one of each of its members.
+
+    Args:
+      name: Current name of the learner, see `learner_name`.
+      seed: Random seed.
+    """
+    members = MEMBERS_OF.get(name, (name,))
+    return tuple({**DURATION_LEARNERS, **SINGLE_LEARNERS}[member](seed) for member in members)
 
 
 def calibrated(kind: str, name: str, seed: int) -> CalibratedRegressor:

@@ -7,10 +7,11 @@ import pytest
 
 from tailor.models import runtime
 from tailor.models.episodes.episodes import DataSet, Episode
-from tailor.models.episodes.regression_targets import ENERGY
+from tailor.models.episodes.regression_targets import DURATION, ENERGY
 from tailor.models.export.publishing import Publication, publish
 from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.planar import projective
+from tailor.models.training import learners, training
 from tailor.models.training.training import Trained, train_duration, train_regression, train_success
 from tailor.schemas.errors import UsageError
 from tests.support import standin
@@ -46,6 +47,27 @@ def data() -> DataSet:
 @pytest.fixture(scope="module")
 def duration(data: DataSet) -> Trained:
     return train_duration(data.episodes, projective, "linear", seed=3)
+
+
+def test_first_ticks_are_chosen_by_the_learner_that_ships(data, monkeypatch) -> None:
+    """One network stands for several, a tree for a bag, both for their stack."""
+    tried = []
+    monkeypatch.setattr(training, "_cross_validated_mae", lambda single, *_: tried.append(single) or float(len(tried)))
+    for learner in ("network", "bag", "best"):
+        space, rng = projective, np.random.default_rng(0)
+        singles = learners.single_learners(learner, 3)
+        assert training._best_n_i(DURATION, data.episodes, np.arange(40), space, singles, rng) == 1
+    kinds = [type(single).__name__ for single in tried]
+    assert kinds[:10] == ["NetworkRegressor"] * 5 + ["ModelTreeRegressor"] * 5
+    assert kinds[10:] == ["ModelTreeRegressor", "NetworkRegressor"] * 5
+    assert tried[0].networks == 1
+
+
+def test_the_least_error_of_any_member_decides_how_many_first_ticks(data, monkeypatch) -> None:
+    errors = iter([3.0, 5.0, 3.0, 5.0, 9.0, 2.0, 3.0, 3.0, 4.0, 4.0])
+    monkeypatch.setattr(training, "_cross_validated_mae", lambda *_: next(errors))
+    singles, rng = learners.single_learners("best", 3), np.random.default_rng(0)
+    assert training._best_n_i(DURATION, data.episodes, np.arange(40), projective, singles, rng) == 5
 
 
 def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
