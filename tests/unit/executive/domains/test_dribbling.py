@@ -1,15 +1,20 @@
 """What keeps the ball in the rail (gentle turns, a straight run-in), and how alike dribbles are that begin alike."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.actions.dribble_ball import Fetching, Pushing
 from tailor.executive.actions.dribble_path import DribblePath
 from tailor.executive.actions.rail_grip import RailGrip
+from tailor.executive.belief.ball_track import BallTrack
+from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
+from tailor.executive.domains.soccer.belief import unknown
 from tailor.simnodes.agilo.body import AgiloBody
 from tailor.tools.lockstep.action_run import new_body, run_action, sample_arguments
 
@@ -101,3 +106,33 @@ def test_same_dribble_takes_about_as_long_whatever_the_noise():
         took = [run_action(body, SOCCER, "dribbleBall", arguments, rng).duration_s for rng in noise]
         spreads.append(np.abs(np.array(took) - np.median(took)).mean())
     assert np.mean(spreads) < 0.2
+
+
+BEYOND = np.array([0.0, 0.0, 0.0, 0.0, -0.6, 0.0, 0.0, 0.0])  # a goal behind the robot, with its heading: a circle
+AHEAD = np.array([0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
+
+
+def dribble(state, ball_ahead, arguments, v=0.2):
+    pose = Pose(0.0, 0.0, 0.0, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4))
+    belief = replace(unknown(), pose=pose, v=v, ball=BallTrack(ball_ahead, 0.0, 0.0, 0.0, 1e-4, 0), poses_seen=99)
+    return SOCCER.actions["dribbleBall"].controller(state, 0, belief, arguments)
+
+
+def test_a_ball_that_was_kicked_before_it_was_ever_in_the_rail_is_left_unless_it_lies_right():
+    far = robot.IN_RAIL_M + 0.3
+    left = dribble(None, far, BEYOND)
+    assert left.state.stage == "leave"
+    assert left.command[0] < 0.0
+    assert dribble(None, far, AHEAD).state.stage == "chase"
+
+
+def test_a_ball_that_was_fetched_to_a_place_from_which_only_a_circle_leads_on_is_left():
+    chasing, seated = Fetching("chase", far=True), robot.IN_RAIL_M + 0.01
+    assert dribble(chasing, seated, BEYOND).state.stage == "leave"
+    assert isinstance(dribble(chasing, seated, AHEAD).state, Pushing)
+
+
+def test_a_dribble_that_begins_with_a_circle_is_driven_as_it_was_chosen():
+    state = dribble(None, robot.IN_RAIL_M + 0.05, BEYOND).state
+    assert (state.stage, state.far) == ("chase", False)
+    assert isinstance(dribble(state, robot.IN_RAIL_M + 0.01, BEYOND).state, Pushing)
