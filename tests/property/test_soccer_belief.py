@@ -34,7 +34,7 @@ def test_no_legal_reading_leaves_the_belief_without_a_number(readings):
     belief = soccer.unknown()
     for k, reading in enumerate(readings, start=1):
         now_ns = k * 80_000_000
-        belief = soccer.update(belief, now_ns, (Sample("any", reading, now_ns, k),))
+        belief = soccer.update(belief, now_ns, (Sample("any", reading, now_ns, k),), "agilo")
         assert all(math.isfinite(value) for value in SOCCER.belief_values(belief))
 
 
@@ -43,7 +43,7 @@ def test_poses_with_a_covariance_of_zeros_are_fused_and_not_divided_by():
     belief = soccer.unknown()
     for k in range(1, 40):
         pose = m.PoseEstimate(k, 0.5 + 0.001 * (k % 2), 0.2, 0.1, 0.0, 0.0, 0.0)
-        belief = soccer.update(belief, k * 80_000_000, (Sample("agilo/pose", pose, k * 80_000_000, k),))
+        belief = soccer.update(belief, k * 80_000_000, (Sample("agilo/pose", pose, k * 80_000_000, k),), "agilo")
     assert soccer.ready(belief)
     assert abs(belief.pose.x - 0.5) < 0.01
 
@@ -52,6 +52,6 @@ def test_odometry_that_no_robot_could_drive_is_ignored():
     belief = soccer.unknown()
     for k, (v, omega) in enumerate([(0.2, 0.0), (1e9, 0.0), (0.0, 1e9)], start=1):
         odom = m.Odometry(k * 20_000_000, 0.0, 0.0, 0.0, v, omega)
-        belief = soccer.update(belief, k * 20_000_000, (Sample("agilo/odom", odom, k * 20_000_000, k),))
+        belief = soccer.update(belief, k * 20_000_000, (Sample("agilo/odom", odom, k * 20_000_000, k),), "agilo")
     assert (belief.v, belief.omega) == (0.2, 0.0)
     assert abs(belief.pose.x) < 0.05

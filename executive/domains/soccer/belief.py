@@ -13,6 +13,7 @@ from tailor.executive.domains.soccer import opponents, robot
 from tailor.executive.domains.soccer.opponents import Opponents
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.soccer import BallPercept, OpponentPercepts
+from tailor.schemas.topics import key_of
 
 ODOMETRY_NOISE = OdometryNoise(along=4e-4, across=1e-4, turn=1e-3, drift=2e-5)
 POSE_ERROR_MEMORY = 10.0  # pose errors last about 0.6 s: so many percepts have one error and count as one
@@ -25,7 +26,7 @@ CREDIBLE_MPS = 1.5  # a faster odometry was restarted in between
 CREDIBLE_RADPS = 3.0
 # m² or rad². ROS nodes without a covariance send zeros: the minimum is a millimetre's, the maximum that of 5 m
 VARIANCES = (1e-6, 25.0)
-BALL2 = "ball2"  # last part of the second ball's topic
+BALL2 = "ball2"  # topic of the second ball
 MOTION_LIMIT_S = 0.5  # without odometry for longer, the last velocity is not extrapolated
 
 
@@ -78,8 +79,16 @@ def in_cradle(ball: BallTrack) -> bool:
     return near < ball.ahead < far and abs(ball.left) < robot.CRADLE_LEFT_M
 
 
-def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...]) -> SoccerBelief:
-    """Filter samples (oldest first) by their time of arrival, then predict to now."""
+def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...], robot_name: str) -> SoccerBelief:
+    """Filter samples (oldest first) by their time of arrival, then predict to now.
+
+    Args:
+      belief: The belief before.
+      now_ns: Monotonic time to predict to.
+      samples: Each by the key of its topic, or by the topic's name where there is no bus.
+      robot_name: The robot in the keys.
+    """
+    of_second_ball = (BALL2, key_of(BALL2, robot_name))
     for sample in samples:
         message = sample.message
         if isinstance(message, Odometry):
@@ -87,8 +96,7 @@ def update(belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...]) -> So
         elif isinstance(message, PoseEstimate):
             belief = _locate(_advance(belief, sample.arrival_ns), message)
         elif isinstance(message, BallPercept):
-            second = sample.key.rpartition("/")[2] == BALL2
-            belief = _see_ball(_advance(belief, sample.arrival_ns), message, second)
+            belief = _see_ball(_advance(belief, sample.arrival_ns), message, sample.key in of_second_ball)
         elif isinstance(message, OpponentPercepts):
             belief = _advance(belief, sample.arrival_ns)
             seen = opponents.see(belief.opponents, belief.pose, belief.time_ns, message)

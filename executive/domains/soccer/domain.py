@@ -54,7 +54,7 @@ class SoccerDomain:
         self, belief: SoccerBelief, now_ns: int, samples: tuple[Sample, ...], command: tuple[float, ...]
     ) -> SoccerBelief:
         """Filter odometry, poses and percepts of balls and opponents; the command is not used."""
-        return believing.update(belief, now_ns, samples)
+        return believing.update(belief, now_ns, samples, self.robot)
 
     def ready(self, belief: SoccerBelief) -> bool:
         """Whether the pose has settled, the ball was looked for long enough, and opponents were looked for lately."""

@@ -13,6 +13,7 @@ from tailor.executive.domains.soccer.opponent_sampling import sample_opponents
 
 Point = tuple[float, float]
 MAX_TRIES = 10_000  # a declaration that fails so often is contradictory
+SECOND_TRIES = 200  # for a second ball, before the first one is drawn anew: in a corner there may be no room for two
 
 
 def sample_scenario(
@@ -65,21 +66,33 @@ def _ball_and_target(
 def _two_balls_and_target(
     declared: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """Two balls in view, and the target of either; both are drawn alike."""
-    apart, half_view = declared["apart"], declared["robot"]["half_view_rad"]
+    """Two balls in view, and the target of either, whose heading suits both."""
     for _ in range(MAX_TRIES):
         start, places = _ball_and_target(declared, rng)
         (target,) = places.values()
-        robot, ball = (start["x"], start["y"]), (start["ball_x"], start["ball_y"])
-        second = _point(declared["field"], rng)
-        if (
-            _within(robot, second, apart["robot_ball_m"])
-            and _within(second, (target["x"], target["y"]), apart["ball_target_m"])
-            and math.dist(ball, second) >= apart["balls_min_m"]
-            and abs(wrap(_bearing(robot, second) - start["phi"])) <= half_view
-        ):
+        second = _second_ball(declared, start, target, rng)
+        if second is not None:
             return {**start, "ball2_x": second[0], "ball2_y": second[1]}, places
     raise ValueError("the ranges of the scenario are contradictory")
+
+
+def _second_ball(
+    declared: Mapping[str, Any], start: Mapping[str, float], target: Mapping[str, float], rng: np.random.Generator
+) -> Point | None:
+    """A ball that the robot sees and could dribble to the target; None where hardly any place beside the first is."""
+    apart, half_view, aside = declared["apart"], declared["robot"]["half_view_rad"], declared["target"]["aside_rad"]
+    robot, first, goal = (start["x"], start["y"]), (start["ball_x"], start["ball_y"]), (target["x"], target["y"])
+    for _ in range(SECOND_TRIES):
+        ball = _point(declared["field"], rng)
+        if (
+            _within(robot, ball, apart["robot_ball_m"])
+            and _within(ball, goal, apart["ball_target_m"])
+            and math.dist(first, ball) >= apart["balls_min_m"]
+            and abs(wrap(_bearing(robot, ball) - start["phi"])) <= half_view
+            and abs(wrap(target["phi"] - _bearing(ball, goal))) <= aside
+        ):
+            return ball
+    return None
 
 
 def _ball_alone(

@@ -1,5 +1,6 @@
 """Two balls as the soccer robot knows them: labels, facts and actions are about the right one."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -85,11 +86,18 @@ def test_percepts_update_the_ball_of_their_topic():
     belief = replace(unknown(), pose=Pose(0.0, 0.0, 0.0, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4)), time_ns=1)
     percepts = [Sample(f"agilo/{topic}", BallPercept(2, x, 0.0, 1e-4, 1e-4, 0.0), 2, 1)
                 for topic, x in (("ball2", 2.0), ("ball", 1.0))]  # fmt: skip
-    belief = update(belief, 3, tuple(percepts))
+    belief = update(belief, 3, tuple(percepts), "agilo")
     assert (belief.ball_xy, belief.ball2_xy) == (pytest.approx((1.0, 0.0)), pytest.approx((2.0, 0.0)))
-    driven = update(belief, 4, (Sample("agilo/odom", Odometry(4, 0, 0, 0, 0.5, 0.0), 4, 1),
-                                Sample("agilo/pose", PoseEstimate(4, 0, 0, 0, 1e-4, 1e-4, 1e-4), 4, 1)))  # fmt: skip
+    others = (Odometry(4, 0, 0, 0, 0.5, 0.0), PoseEstimate(4, 0, 0, 0, 1e-4, 1e-4, 1e-4))
+    driven = update(belief, 4, tuple(Sample("agilo/any", other, 4, 1) for other in others), "agilo")
     assert driven.ball2 is not None
+
+
+@pytest.mark.parametrize(("key", "second"), [("agilo/ball2", True), ("ball2", True), ("agilo/sim/ball2", False),
+                                             ("other/ball2", False), ("agilo/ball", False)])  # fmt: skip
+def test_a_percept_is_the_second_balls_by_its_whole_key(key, second):
+    belief = update(unknown(), 3, (Sample(key, BallPercept(2, 1.0, 0.0, 1e-4, 1e-4, 0.0), 2, 1),), "agilo")
+    assert (belief.ball is None, belief.ball2 is None) == (second, not second)
 
 
 def test_telemetry_names_a_second_ball_once_it_was_seen():
@@ -104,7 +112,7 @@ def test_the_scenario_draws_two_balls_alike():
     """Both are in view and as far from robot and target; none is nearer to the robot more often."""
     nearer = 0
     for seed in range(60):
-        _, start = domains.seeded_scenario("soccer", "two-balls", seed)
+        scenario, start = domains.seeded_scenario("soccer", "two-balls", seed)
         robot_at, at = (
             (start["x"], start["y"]),
             [(start[f"{ball}_x"], start[f"{ball}_y"]) for ball in ("ball", "ball2")],
@@ -114,5 +122,8 @@ def test_the_scenario_draws_two_balls_alike():
         bearings = [np.arctan2(y - robot_at[1], x - robot_at[0]) - start["phi"] for x, y in at]
         assert max(abs(np.arctan2(np.sin(b), np.cos(b))) for b in bearings) <= 0.7
         nearer += distances[0] < distances[1]
+        (target,) = scenario.places.values()
+        lines = [np.arctan2(target["y"] - y, target["x"] - x) for x, y in at]
+        assert max(abs(math.remainder(target["phi"] - line, math.tau)) for line in lines) <= 1.3, "or dribbles circle"
     assert 18 <= nearer <= 42
     assert set(start) <= set(new_body(SOCCER).names)
