@@ -14,7 +14,7 @@ from tailor.executive.domains.soccer.action_library import TOUCHED
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, Message, Odometry
-from tailor.schemas.messages.soccer import OpponentsTruth, SoccerGroundTruth
+from tailor.schemas.messages.soccer import BallTruth, OpponentsTruth, SoccerGroundTruth
 from tailor.tools.lockstep.samplers.drive_work import wheel_work_j
 
 COLLIDED_M = 0.05  # an approach that displaces the ball by more has failed
@@ -57,7 +57,7 @@ class SoccerOutcomes:
         return {"ball_x": message.ball_x, "ball_y": message.ball_y} if isinstance(message, SoccerGroundTruth) else None
 
     def contacts(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> int:
-        """1 if the ball was displaced before the end of the first approach, and one for each opponent touched anew."""
+        """1 if a ball was displaced before the end of the first approach, and one for each opponent touched anew."""
         touching = [message.touched for message in truth if isinstance(message, OpponentsTruth)]
         anew = sum(now and not before for before, now in itertools.pairwise([False, *touching]))
         return int(self.disturbance_m(finished, truth) > COLLIDED_M) + anew
@@ -73,14 +73,14 @@ class SoccerOutcomes:
         }
 
     def disturbance_m(self, finished: Sequence[ActionFinished], truth: Sequence[Message]) -> float:
-        """Largest displacement of the ball before the end of the first approach, metres; 0 without an approach."""
-        ended_ns = [action.stamp_ns for action in finished if action.action == "approachBall"]
-        balls = [message for message in truth if isinstance(message, SoccerGroundTruth)]
-        if not ended_ns or not balls:
-            return 0.0
-        first, *later = balls
-        return max((_displacement_m(first, ball) for ball in later if ball.stamp_ns <= ended_ns[0]), default=0.0)
+        """Largest displacement of any ball before the end of the first approach, metres; 0 without an approach."""
+        ended_ns = next((action.stamp_ns for action in finished if action.action == "approachBall"), -1)
+        own = (each for each in truth if isinstance(each, SoccerGroundTruth) and each.stamp_ns <= ended_ns)
+        other = (each for each in truth if isinstance(each, BallTruth) and each.stamp_ns <= ended_ns)
+        first, second = [(each.ball_x, each.ball_y) for each in own], [(each.x, each.y) for each in other]
+        return max(_moved_m(first), _moved_m(second))
 
 
-def _displacement_m(first: SoccerGroundTruth, second: SoccerGroundTruth) -> float:
-    return float(((first.ball_x - second.ball_x) ** 2 + (first.ball_y - second.ball_y) ** 2) ** 0.5)
+def _moved_m(places: Sequence[tuple[float, float]]) -> float:
+    """Largest distance from the first place, metres."""
+    return max((math.dist(places[0], place) for place in places), default=0.0)
