@@ -33,7 +33,7 @@ SHORT_SHARE, SHORT_M = 0.5, (0.3, 2.5)  # of the runs among opponents
 LATEST = 1.0  # of a run: ticks up to its end, from which its rest is looked at
 DRIBBLE_X_M = 2.5  # dribbles are sampled in the area of the scenarios
 DRIBBLE_Y_M = 1.8
-DRIBBLE_M = (0.9, 2.9)  # from the ball to its target
+DRIBBLE_M = (0.4, 2.9)  # from the ball to its target; tasks begin with 1 m, but a kicked ball may lie nearer
 DRIBBLE_ASIDE_RAD = 1.5  # between the target's heading and the line to it
 
 
