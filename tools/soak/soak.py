@@ -117,13 +117,13 @@ class Soak:
             self._violated(robot, now_ns, Invariant.ORDERLY_END, detail)
 
     def _poll(self) -> None:
-        now_ns = time.monotonic_ns()
         for party in self.parties.values():
             if party.ending:
                 continue
             party.system.poll()
             self._note_stop(party)
-            party.people.attend(now_ns)
+            party.people.attend()
+            now_ns = time.monotonic_ns()
             party.watch.poll(now_ns)
             if party.record is not None:
                 self._follow(party, party.record, now_ns)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 from tailor.schemas.messages import ArmRequest, EStop, ExecStatus
 from tailor.tools.soak.systems.system import System
@@ -30,22 +31,22 @@ class People:
       faults: Faults of the executive that they cleared with a task: their causes.
     """
 
-    def __init__(self, system: System, tasks: Tasks) -> None:
-        """`tasks` are those of the present start."""
+    def __init__(self, system: System, tasks: Tasks, now: Callable[[], int] = time.monotonic_ns) -> None:
+        """`tasks` are those of the present start; `now` is the monotonic time in nanoseconds."""
         self.armed_ns = self.prepared_ns = self.count = 0
         self.armed_for_task = False
-        self._system, self._tasks = system, tasks
+        self._system, self._tasks, self._now = system, tasks, now
         self._executive = ""  # sender id
         self._goal_ns = 0  # a goal is due then; 0: none
         self._set_ns = 0  # time of the last goal
         self.faults: list[str] = []
 
-    def arm(self, now_ns: int) -> None:
+    def arm(self) -> None:
         """Arm for the executive that runs, with a reset if the e-stop is latched."""
         link = self._system.link
         if link is None or link.view.driver is None or not link.view.sender:
             return
-        self.armed_ns = now_ns
+        now_ns = self.armed_ns = self._now()  # a call before it may have taken a second; the leave counts from here
         self.armed_for_task = link.view.status is not None and not has_ended(link.view.status)
         self._system.judge.people_arm(now_ns)
         link.arming.publish(ArmRequest(True, link.view.driver.mode == "estopped", link.view.sender, 0))
@@ -62,9 +63,9 @@ class People:
         if self._system.link is not None:
             self._system.link.estop.publish(EStop(True))
 
-    def attend(self, now_ns: int) -> None:
+    def attend(self) -> None:
         """Do what is due."""
-        system, link = self._system, self._system.link
+        system, link, now_ns = self._system, self._system.link, self._now()
         if link is None or not system.heard(now_ns):
             return
         view = link.view
@@ -80,7 +81,7 @@ class People:
         if not system.judge.permitted:
             long_ago = now_ns - self.armed_ns > AGAIN_NS
             if long_ago and view.driver.mode != "armed" and system.judge.at_rest_since(now_ns, QUIET_NS):
-                self.arm(now_ns)
+                self.arm()
         elif self._goal_ns and now_ns > self._goal_ns and view.driver.mode == "armed":
             self._set_goal()
 
@@ -91,5 +92,5 @@ class People:
     def _set_goal(self) -> None:
         accepted, _ = self._system.call("exec/goal", self._tasks.goal())
         if accepted:
-            self._goal_ns, self._set_ns = 0, time.monotonic_ns()
+            self._goal_ns, self._set_ns = 0, self._now()
             self.count += 1

@@ -16,13 +16,14 @@ class Attended:
     """People before a system of plain values, armed, whose task has begun at 1 s."""
 
     def __init__(self):
-        self.goals, self.armings = [], []
+        self.goals, self.armings, self.leaves = [], [], []
+        self.call_s, self.now_ns = 0.0, 0
         self.status = SimpleNamespace(mode="EXECUTING", result="", reason="", detail="")
         self.driver = SimpleNamespace(mode="armed")
         view = SimpleNamespace(sender="e" * 32, driver=self.driver, status=self.status, status_ns=0)
-        self.judge = SimpleNamespace(permitted=True, at_rest_since=lambda *_: True, people_arm=lambda now_ns: None)
+        self.judge = SimpleNamespace(permitted=True, at_rest_since=lambda *_: True, people_arm=self.leaves.append)
         self.link = SimpleNamespace(view=view, arming=SimpleNamespace(publish=self.armings.append))
-        self.people = People(self, self)
+        self.people = People(self, self, lambda: self.now_ns)
         self.attend(1)
 
     def heard(self, now_ns):
@@ -36,6 +37,7 @@ class Attended:
         return 0
 
     def prepare(self, now_ns):
+        self.now_ns += round(self.call_s * S)
         self.judge.permitted, self.driver.mode = False, "disarmed"  # as a reset of the world does
         return now_ns + DUE_S * S
 
@@ -43,8 +45,8 @@ class Attended:
         return "(next)"
 
     def attend(self, at_s):
-        self.link.view.status_ns = round(at_s * S)
-        self.people.attend(round(at_s * S))
+        self.now_ns = self.link.view.status_ns = round(at_s * S)
+        self.people.attend()
 
 
 @pytest.mark.parametrize(
@@ -67,6 +69,15 @@ def test_a_task_that_ended_is_followed_by_another_once_the_robot_is_armed_again(
     assert attended.goals == [("exec/goal", "(next)")]
     assert (attended.people.count, attended.people.faults) == (1, faults)
     assert RESULT_NS < DUE_S * S
+
+
+def test_the_leave_to_move_counts_from_the_request_however_long_the_new_world_took():
+    attended = Attended()
+    attended.status.result, attended.call_s = "achieved", 1.0
+    at_s = 1 + AGAIN_NS / S
+    attended.attend(at_s)
+    assert len(attended.armings) == 1
+    assert attended.leaves == [round((at_s + 1.0) * S)]
 
 
 def test_a_task_that_goes_on_is_left_alone():
