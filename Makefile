@@ -31,7 +31,7 @@ demo-arm: $(DEMO)
 	$(BIN)/tailor letters
 
 test: setup
-	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadgroup --durations=30 --durations-min=3
 
 test-all: setup
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
