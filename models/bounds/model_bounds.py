@@ -82,11 +82,11 @@ class ModelBounds:
     ) -> tuple[Array, dict[int, Array]]:
         """Lower bound of the mean plus `k_std` standard deviations, as `linear_bounds.linear_bound`."""
         assert self.networks is not None
-        value, slopes = linear_bound(self.networks, self.space, lower, upper, radius)
-        if k_std > 0:
-            arguments = tuple(map(Span, lower, upper))
-            value = value + k_std * self._over_cases(arguments, self._least_spread).mean(axis=0)
-        return value, slopes
+
+        def spread(features: Spans) -> Array:
+            return k_std * self._least_spread(features, None).astype(np.float64)
+
+        return linear_bound(self.networks, self.space, lower, upper, radius, spread if k_std > 0 else None)
 
     @property
     def effort(self) -> int:
