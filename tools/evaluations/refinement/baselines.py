@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from tailor.tools.evaluations.oracles.grid import Oracle
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import ratio_interval
-from tailor.tools.evaluations.refinement.oracle import Oracle
 
 Outcomes = Mapping[int, Outcome]  # by seed
 

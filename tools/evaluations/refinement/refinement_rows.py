@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.evaluations.oracles.grid import simulate_choices, subgoal_parameters
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.baselines import against_oracle
-from tailor.tools.evaluations.refinement.oracle import simulate_choices, subgoal_parameters
 from tailor.tools.evaluations.refinement.paired_outcomes import Pair, Start, columns
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import run_all

@@ -17,12 +17,13 @@ from tailor.tools.evaluations.assertion import figure15, figure16
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live import live
+from tailor.tools.evaluations.oracles import grid
+from tailor.tools.evaluations.oracles.grid import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.evaluations.refinement import ablations, figure1, figure11, oracle, replicas, table3, table4
+from tailor.tools.evaluations.refinement import ablations, figure1, figure11, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
-from tailor.tools.evaluations.refinement.oracle import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.task_runs import paired
 
 DONE = Outcome(
@@ -218,9 +219,9 @@ def test_oracles_choice_is_executed_again_with_other_noise(monkeypatch):
         return {v.name: {s: replace(DONE, seed=s, duration_s=took.get(v.name.split("-")[0], 8.0 + abs(v.pins[0][2])))
                          for s in seeds} for v in variants}  # fmt: skip
 
-    monkeypatch.setattr(oracle, "run_all", run_all)
+    monkeypatch.setattr(grid, "run_all", run_all)
     free = [("pos2", "phi", -np.pi, np.pi)]
-    (one,) = oracle.simulate_choices(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
+    (one,) = grid.simulate_choices(Task("soccer", "x"), free, [1], Variant("h2").refinement, 12, 1, None)
     again = [variant for variant in asked if variant.name.startswith("again")]
     assert {round(variant.pins[0][2], 9) for variant in again} == {0.0}
     assert len({variant.noise for variant in again}) == len(again) == 3

@@ -1,0 +1,1 @@
+"""Ceilings of an improvement: choices that are simulated instead of predicted."""
