@@ -7,6 +7,7 @@ action, "zero" the choice of all zeros.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -56,8 +57,7 @@ def simulate_choices(
       settings: Of the executive; its horizon is set to one, because nothing is left to look ahead for.
     """
     alone = replace(settings, horizon=1)
-    periodic = {p.quantity for a in domains.load(task.domain).actions.values() for p in a.parameters if p.periodic}
-    grid = list(product(*(_values(parameter, points, parameter[1] in periodic) for parameter in free)))
+    grid = list(product(*_axes(task, free, points)))
     pins = [tuple((f[0], f[1], float(v)) for f, v in zip(free, choice, strict=True)) for choice in grid]
     zeros = tuple((f[0], f[1], float(np.clip(0.0, f[2], f[3]))) for f in free)
     variants = [Variant(_name(one), alone, one) for one in dict.fromkeys([*pins, zeros])]
@@ -68,6 +68,16 @@ def simulate_choices(
         best = [v for v in variants if found[v.name][seed].achieved and found[v.name][seed].duration_s == one.ceiling_s]
         judged.append(replace(one, again_s=_again_s(task, best[0], seed, jobs, store)) if best else one)
     return judged
+
+
+def grid_size(task: Task, free: Sequence[Free], points: int) -> int:
+    """Number of choices that `simulate_choices` would simulate at each seed."""
+    return math.prod(len(values) for values in _axes(task, free, points))
+
+
+def _axes(task: Task, free: Sequence[Free], points: int) -> list[list[float]]:
+    periodic = {p.quantity for a in domains.load(task.domain).actions.values() for p in a.parameters if p.periodic}
+    return [_values(parameter, points, parameter[1] in periodic) for parameter in free]
 
 
 def _again_s(task: Task, best: Variant, seed: int, jobs: int, store: Path | None) -> float:

@@ -29,7 +29,7 @@ REMARKS = (
 ORACLE_REMARK = (
     "oracle: the best of all simulated choices, the ceiling; oracle again: its choices with other noise; "
     "share of oracle: of the ceiling's gain; oracle greedy: the choice whose first action ends soonest; zero: all free "
-    "parameters zero"
+    "parameters zero; oracle half: of an oracle that searches, after half of its runs"
 )
 
 
@@ -61,9 +61,11 @@ def configure(
                         help="pairs of each scenario (default %(default)s)")  # fmt: skip
     parser.add_argument("--profile", default="", help="profile of the body, e.g. degraded (default: as trained on)")
     parser.add_argument("--oracle", type=at_least(0, "--oracle"), default=oracle, metavar="N",
-                        help="starts at which every choice is simulated (default %(default)s)")  # fmt: skip
+                        help="starts at which choices are simulated (default %(default)s)")  # fmt: skip
     parser.add_argument("--points", type=at_least(2, "--points"), default=18,
                         help="angles that the oracle tries (default %(default)s)")  # fmt: skip
+    parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), default=40, metavar="N",
+                        help="runs a start where the choices are too many for all (default %(default)s)")  # fmt: skip
     configure_replicas(parser)
     configure_report(parser)
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.tools.evaluations.oracles.grid import simulate_choices, subgoal_parameters
+from tailor.tools.evaluations.oracles.grid import grid_size, simulate_choices, subgoal_parameters
+from tailor.tools.evaluations.oracles.search import search_choices
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import Pair, Start, columns
@@ -16,6 +17,7 @@ from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import run_all
 
 GREEDY = 1  # horizon of greedy choices (paper 6.3)
+MAX_GRID = 1000  # choices of a grid; beyond it the oracle searches
 Found = Mapping[str, Mapping[int, Outcome]]  # by name of the variant, by seed
 
 
@@ -69,6 +71,11 @@ def _oracle(scenario: str, domain: str, seeds: Seeds, found: Found, arguments: a
     if not free:
         return {}
     starts = seeds.starts(min(arguments.oracle, arguments.episodes))
+    if grid_size(task, free, arguments.points) > MAX_GRID:
+        horizon, store = arguments.horizon[0], arguments.store
+        half, judged = search_choices(task, starts, horizon, arguments.oracle_runs, arguments.jobs, store)
+        before = against_oracle(half, greedy, refined)
+        return against_oracle(judged, greedy, refined) | {"oracle_half_pct": before["oracle_pct"]}
     judged = simulate_choices(
         task, free, starts, RefinementSettings(), arguments.points, arguments.jobs, arguments.store
     )
