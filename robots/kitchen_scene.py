@@ -27,6 +27,7 @@ from tailor.schemas.packages.pose3 import Pose3, on_plane, turned
 from tailor.schemas.packages.scene import BASE, BLUE, DARK, GREY, MAP, Colour, Scene, box, cylinder, frame, line
 
 WOOD, STEEL, WHITE = (0.66, 0.48, 0.30, 1.0), (0.55, 0.60, 0.62, 1.0), (0.92, 0.93, 0.95, 1.0)
+STOOL: Colour = (0.36, 0.42, 0.46, 1.0)  # no cup is of this colour
 RED, YELLOW = (0.85, 0.25, 0.20, 1.0), (0.95, 0.75, 0.20, 1.0)
 FURNITURE: dict[str, Colour] = {"counter": STEEL, "fridge": WHITE, "cupboard": (0.50, 0.36, 0.24, 1.0)}
 CUPS: dict[str, Colour] = dict(zip(kitchen().cups, (RED, BLUE, YELLOW), strict=True))
@@ -55,10 +56,20 @@ def of_truth(message: Message) -> Scene:
 
 
 def of_subgoal(values: Mapping[str, float]) -> Pose3 | None:
-    """The spot of a cup on a table, or where the robot stands."""
-    if {"spot_x", "spot_y"} <= values.keys():
-        return Pose3(values["spot_x"], values["spot_y"], kitchen().table.size[2])
-    return on_plane(values["x"], values["y"], values.get("phi", 0.0)) if {"x", "y"} <= values.keys() else None
+    """Where the robot stands; the spot of a cup where that is not known."""
+    stand = on_plane(values["x"], values["y"], values.get("phi", 0.0)) if {"x", "y"} <= values.keys() else None
+    return stand or of_target(values)
+
+
+def of_target(values: Mapping[str, float]) -> Pose3 | None:
+    """The spot of a cup on a table."""
+    known = {"spot_x", "spot_y"} <= values.keys()
+    return Pose3(values["spot_x"], values["spot_y"], kitchen().table.size[2]) if known else None
+
+
+def of_object(values: Mapping[str, float]) -> Shape:
+    """The stool as a drive takes it into account: where it was seen, or where the map has it."""
+    return _stool("stool", values["obstacle_x"], values["obstacle_y"])
 
 
 def _frames(pose: Place, angles: Sequence[float]) -> tuple[FrameTransform, ...]:
@@ -86,14 +97,17 @@ def _object(each: KitchenObject) -> Iterator[Shape]:
         lying = turned((0.0, 1.0, 0.0), each.tilt)
         yield _cup(each.name, on_plane(each.x, each.y, each.phi, each.z).then(lying))
     else:
-        height = kitchen().stool.height
-        middle = Pose3(each.x, each.y, height / 2)
-        yield cylinder(each.name, kitchen().stool.radius, height, middle, BLUE, MAP)
+        yield _stool(each.name, each.x, each.y)
 
 
 def _table(name: str, place: Place) -> Shape:
     depth, width, height = kitchen().table.size
     return box(name, (depth, width, 0.03), on_plane(*place, z=height - 0.015), WOOD, MAP)
+
+
+def _stool(name: str, x: float, y: float) -> Shape:
+    height = kitchen().stool.height
+    return cylinder(name, kitchen().stool.radius, height, Pose3(x, y, height / 2), STOOL, MAP)
 
 
 def _cup(name: str, pose: Pose3) -> Shape:

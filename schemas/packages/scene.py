@@ -42,6 +42,11 @@ class Scene:
 class SceneView(Protocol):
     """What a spec's `scene` names. All functions are pure.
 
+    Two more are optional. `of_object(values)` returns the shape of an object that an action takes into account, by the
+    names of its context's columns, or None; the last ones decided with are drawn in the believed scene. Names of shapes
+    must not repeat there. `of_target(values)` returns where the robot is to work at a subgoal, or None: the spot of a
+    cup where `of_subgoal` is the robot's stand before it.
+
     Attributes:
       VIEW: Side from which pages and pictures look: "above", or "behind": along x, with z upward. Default: "above".
     """

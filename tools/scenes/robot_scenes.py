@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas import messages as m
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import part, spec_of
+from tailor.schemas.messages.scenes import Shape
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.topics import TOPICS
@@ -22,12 +23,16 @@ TRUTH_TYPES = tuple({topic.type for topic in _TRUTH})
 
 @dataclass(frozen=True, slots=True)
 class Subgoal:
-    """Where an action is to end: pose in "map", whether its heading matters, whether a parameter of it is free."""
+    """Where an action is to end: pose in "map", whether its heading matters, whether a parameter of it is free.
+
+    `target` is where the robot is to work from there, if anywhere, e.g. the spot of a cup.
+    """
 
     label: str
     pose: Pose3
     headed: bool
     free: bool
+    target: Pose3 | None = None
 
 
 class RobotScenes:
@@ -46,6 +51,7 @@ class RobotScenes:
         self._names: tuple[str, ...] = ()
         self._quantities: dict[str, dict[str, str]] = {}
         self._truth: dict[type, Scene] = {}
+        self._objects: tuple[Shape, ...] = ()
         self.robot = self.fault = ""
         self.has_odometry = False
         try:
@@ -61,9 +67,16 @@ class RobotScenes:
             self._view = part(spec, "scene") if spec.scene else planar_convention
         self.seen_from: str = getattr(self._view, "VIEW", "above")
 
+    def note(self, message: m.Contexts) -> None:
+        """Draw the objects that actions take into account in the coming believed scenes, if the package draws them."""
+        if hasattr(self._view, "of_object"):
+            rows = [row for each in message.contexts for row in _rows(each)]
+            self._objects = tuple(dict.fromkeys(filter(None, (self._called("of_object", row) for row in rows))))
+
     def of_belief(self, values: Sequence[float]) -> Scene | None:
         """The believed scene; None if there is none, as without `belief_values`."""
-        return self._made("of_belief", dict(zip(self._names, values, strict=False))) if values else None
+        scene = self._made("of_belief", dict(zip(self._names, values, strict=False))) if values else None
+        return scene and replace(scene, shapes=(*scene.shapes, *self._objects))
 
     def of_truth(self, message: m.Message) -> Scene | None:
         """The true scene with this message and the newest ones of other types; None without a robot's pose in it."""
@@ -88,8 +101,15 @@ class RobotScenes:
                     known = values.setdefault(parameter.label, {})
                     known.setdefault(self._quantity(action.action, parameter.name), parameter.value)
                     free |= set() if parameter.bound else {parameter.label}
-        poses = ((label, self._called("of_subgoal", known), "phi" in known) for label, known in values.items())
-        return tuple(Subgoal(label, pose, headed, label in free) for label, pose, headed in poses if pose is not None)
+        return tuple(
+            Subgoal(label, pose, "phi" in known, label in free, self._target(known))
+            for label, known in values.items()
+            if (pose := self._called("of_subgoal", known)) is not None
+        )
+
+    def _target(self, known: dict[str, float]) -> Pose3 | None:
+        target: Pose3 | None = self._called("of_target", known) if hasattr(self._view, "of_target") else None
+        return target
 
     def _quantity(self, action: str, parameter: str) -> str:
         """Quantity of an action's parameter as its domain declares it."""
@@ -112,6 +132,13 @@ def planar_pose(message: m.Message) -> Scene | None:
     """The scene of an odometry or a pose estimate, of whatever robot: its pose alone."""
     scene = planar_convention.of_truth(message)
     return Scene(scene.frames, (), scene.tracer, scene.speed_mps) if scene.frames else None
+
+
+def _rows(objects: m.ActionObjects) -> list[dict[str, float]]:
+    """Values of each object by the names of its columns."""
+    width = max(1, len(objects.columns))
+    starts = range(0, len(objects.values), width)
+    return [dict(zip(objects.columns, objects.values[k : k + width], strict=False)) for k in starts]
 
 
 def _bare(name: str) -> str:

@@ -36,7 +36,7 @@ WAY_POINTS, WAY_STEP_M = 400, 0.02  # of the drawn way
 GREEN, INK, WAY, PALE = (0.1, 0.65, 0.3, 1.0), (0.1, 0.1, 0.12, 1.0), (0.2, 0.45, 0.8, 0.9), 0.45
 LABEL_M = 0.35  # above what it names
 
-INPUTS = tuple(TOPICS[name].key for name in ("provenance", "status", "subgoals", "finished", "plan"))
+INPUTS = tuple(TOPICS[name].key for name in ("provenance", "status", "contexts", "subgoals", "finished", "plan"))
 WANTED = TRUTH_KEYS | {TOPICS[name].key.partition("/")[2] for name in ("odom", "driver")}  # of a robot
 
 Published = tuple[str, m.Message]  # name of a topic, and what is published there
@@ -90,6 +90,8 @@ class SceneFeed:
             self._scenes = RobotScenes(domain) if domain else None
         elif isinstance(message, m.Odometry) and key == key_of("odom", self.robot):
             self._odometry = message
+        elif isinstance(message, m.Contexts) and self._scenes is not None:
+            self._scenes.note(message)
         elif isinstance(message, m.Subgoals) and self._scenes is not None:
             self._subgoals = self._scenes.of_subgoals(message)
         elif isinstance(message, m.ExecStatus) and self._scenes is not None:
@@ -149,6 +151,8 @@ class SceneFeed:
                 replace(mark, name=f"subgoal {goal.label}"),
                 text(f"label {goal.label}", goal.label, name, height_m, colour),
             ]
+            if goal.target is not None:
+                marks.append(sphere(f"target {goal.label}", 0.02, goal.target, colour))
         if len(self._way) > 1:
             marks.append(line("way", self._way, 0.015, WAY))
         if tracer is not None:

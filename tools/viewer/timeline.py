@@ -10,6 +10,7 @@ from typing import Any
 
 from tailor.schemas import messages as m
 from tailor.schemas.installed import robot_names, spec_of_robot
+from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.scenes.flat import Outline, flat, projected
@@ -165,19 +166,22 @@ class RunTimeline:
         return self._changed(kind, event_fields.outline(outline))
 
     def _objects(self, message: m.Contexts) -> Rows:
-        """Nothing to show yet: the objects belong to the subgoals that follow in the same tick."""
+        """No row of their own: they belong to the subgoals that follow in the same tick, and to the coming scenes."""
+        self._scenes.note(message)
         if self._explainer is not None:
             self._explainer.note(message)
         return []
 
     def _subgoals(self, message: m.Subgoals) -> Rows:
-        places = {
-            goal.label: event_fields.place(projected((goal.pose.x, goal.pose.y, goal.pose.z), self._scenes.seen_from))
-            for goal in self._scenes.of_subgoals(message)
-        }
-        rows: Rows = [("subgoals", {**event_fields.subgoals(message), "places": places})]
+        goals = self._scenes.of_subgoals(message)
+        places = {goal.label: self._place(goal.pose) for goal in goals}
+        targets = {goal.label: self._place(goal.target) for goal in goals if goal.target is not None}
+        rows: Rows = [("subgoals", {**event_fields.subgoals(message), "places": places, "targets": targets})]
         explanation = self._explainer.fields(message) if self._explainer is not None else None
         return rows + ([("why", explanation)] if explanation else [])
+
+    def _place(self, pose: Pose3) -> list[float | None]:
+        return event_fields.place(projected((pose.x, pose.y, pose.z), self._scenes.seen_from))
 
     def _changed(self, kind: str, fields: Fields) -> Rows:
         if self._last.get(kind) == fields:

@@ -44,8 +44,12 @@ def test_an_arm_that_was_not_sensed_is_drawn_at_home():
     assert tool.z == pytest.approx(tool_pose(HOME).z)
 
 
-def test_subgoals_are_drawn_at_the_cup_or_where_the_robot_stands():
-    at_cup = scene.of_subgoal({"x": 1.0, "y": 0.0, "phi": 0.5, "spot_x": 2.0, "spot_y": 0.3})
-    assert (at_cup.x, at_cup.y) == (2.0, 0.3)
+def test_subgoals_are_drawn_where_the_robot_stands_and_where_its_hand_works():
+    values = {"x": 1.0, "y": 0.0, "phi": 0.5, "spot_x": 2.0, "spot_y": 0.3}
+    stand, spot = scene.of_subgoal(values), scene.of_target(values)
+    assert (stand.x, stand.y, stand.yaw) == pytest.approx((1.0, 0.0, 0.5))
+    assert (spot.x, spot.y) == (2.0, 0.3)
+    assert scene.of_subgoal({"spot_x": 2.0, "spot_y": 0.3}) == spot
+    assert scene.of_target({"x": 1.0, "y": 0.0}) is None
     assert scene.of_subgoal({"x": 1.0, "y": 0.0, "phi": 0.5}).yaw == pytest.approx(0.5)
     assert scene.of_subgoal({"aside": 0.1}) is None

@@ -15,7 +15,10 @@ function placesOf(row) {
       places.set(parameter.place, place);
     }
   }
-  for (const place of places.values()) [place.x, place.y] = row.places?.[place.label] ?? [null, null];
+  for (const place of places.values()) {
+    [place.x, place.y] = row.places?.[place.label] ?? [null, null];
+    place.target = row.targets?.[place.label] ?? null; // where the robot is to work from there
+  }
   return [...places.values()].filter((place) => Number.isFinite(place.x) && Number.isFinite(place.y));
 }
 

@@ -32,7 +32,18 @@ class SubgoalMarks {
     const [x, y] = this.map(place.x, place.y);
     if (Number.isFinite(place.phi)) parts.push(this.arrow(place, place.phi, free ? "place free" : "place", 0.36));
     parts.push(svg("circle", { class: free ? "place free" : "place", cx: x, cy: y, r: 2.2 }));
+    if (place.target) parts.push(...this.target(place));
     return parts;
+  }
+
+  /** Where the robot is to work from a place: a cross, and a thin line to it. */
+  target(place) {
+    const [x, y] = this.map(...place.target);
+    const cross = `${through([[x - 4, y - 4], [x + 4, y + 4]])}${through([[x - 4, y + 4], [x + 4, y - 4]])}`;
+    return [
+      svg("path", { class: "range", d: through([this.map(place.x, place.y), [x, y]]) }),
+      svg("path", { class: place.free.length > 0 ? "place free" : "place", d: cross }),
+    ];
   }
 
   /** Names below their places; those of places beside each other are apart, so that each can be read. */
