@@ -93,16 +93,19 @@ class RobotScenes:
     def of_subgoals(self, message: m.Subgoals) -> tuple[Subgoal, ...]:
         """All subgoals that have a place: goals of the actions, not the start of the first."""
         values: dict[str, dict[str, float]] = {}
+        everything: dict[str, dict[str, float]] = {}  # also of where an action starts: the arm works where it stands
         free: set[str] = set()
         for action in message.actions:
             start = action.parameters[0].label if action.parameters else ""
             for parameter in action.parameters:
+                quantity = self._quantity(action.action, parameter.name)
+                everything.setdefault(parameter.label, {}).setdefault(quantity, parameter.value)
                 if parameter.label != start:
                     known = values.setdefault(parameter.label, {})
-                    known.setdefault(self._quantity(action.action, parameter.name), parameter.value)
+                    known.setdefault(quantity, parameter.value)
                     free |= set() if parameter.bound else {parameter.label}
         return tuple(
-            Subgoal(label, pose, "phi" in known, label in free, self._target(known))
+            Subgoal(label, pose, "phi" in known, label in free, self._target(everything[label]))
             for label, known in values.items()
             if (pose := self._called("of_subgoal", known)) is not None
         )

@@ -53,7 +53,7 @@ def test_the_page_draws_the_stool_a_stand_and_its_spot():
     parameters = tuple(m.Parameter(q, k, "table2", "m", False, 0.0, 3.0, v) for k, (q, v) in enumerate(STAND.items()))
     start = m.Parameter("x", 9, "dock", "m", True, 0.0, 0.0, 0.0)
     drive = m.InstantiatedAction("goToPose", 1, False, 5.0, 0.1, (start, *parameters[:3]))
-    put = m.InstantiatedAction("put", 2, False, 8.0, 0.1, (start, *parameters))
+    put = m.InstantiatedAction("put", 2, False, 8.0, 0.1, parameters)
     status = synthetic_run.status(0, "EXECUTING", "", "goToPose", 0, 0.1, 1.0, beliefs())
     messages = {
         "exec/provenance": m.Provenance(0, json.dumps(synthetic_run.order("kitchen", 0))),
