@@ -92,9 +92,9 @@ def test_without_pictures_the_robot_waits_once_it_knows_of_opponents():
     believed = replace(soccer.unknown(), poses_seen=99, time_ns=10**9)
     assert soccer.ready(believed), "nobody told it of opponents"
     sample = Sample("agilo/opponents", OpponentPercepts(0, ()), 10**9, 1)
-    believed = soccer.update(believed, 10**9 + 400_000_000, (sample,))
+    believed = soccer.update(believed, 10**9 + 400_000_000, (sample,), "agilo")
     assert soccer.ready(believed)
-    assert not soccer.ready(soccer.update(believed, 10**9 + 600_000_000, ()))
+    assert not soccer.ready(soccer.update(believed, 10**9 + 600_000_000, (), "agilo"))
 
 
 def test_telemetry_names_opponents_once_there_are_any():
