@@ -51,6 +51,12 @@ class ActionObjects:
     columns: tuple[str, ...] = ()  # names
     values: tuple[float, ...] = ()  # row by row, SI units
 
+    @property
+    def rows(self) -> tuple[tuple[float, ...], ...]:
+        """The numbers of each object; the last row of a damaged message may be too short."""
+        width = max(1, len(self.columns))
+        return tuple(self.values[first : first + width] for first in range(0, len(self.values), width))
+
 
 @dataclass(frozen=True, slots=True)
 class Contexts(Message):

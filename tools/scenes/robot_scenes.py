@@ -70,7 +70,7 @@ class RobotScenes:
     def note(self, message: m.Contexts) -> None:
         """Draw the objects that actions take into account in the coming believed scenes, if the package draws them."""
         if hasattr(self._view, "of_object"):
-            rows = [row for each in message.contexts for row in _rows(each)]
+            rows = [dict(zip(each.columns, row, strict=False)) for each in message.contexts for row in each.rows]
             self._objects = tuple(dict.fromkeys(filter(None, (self._called("of_object", row) for row in rows))))
 
     def of_belief(self, values: Sequence[float]) -> Scene | None:
@@ -135,13 +135,6 @@ def planar_pose(message: m.Message) -> Scene | None:
     """The scene of an odometry or a pose estimate, of whatever robot: its pose alone."""
     scene = planar_convention.of_truth(message)
     return Scene(scene.frames, (), scene.tracer, scene.speed_mps) if scene.frames else None
-
-
-def _rows(objects: m.ActionObjects) -> list[dict[str, float]]:
-    """Values of each object by the names of its columns."""
-    width = max(1, len(objects.columns))
-    starts = range(0, len(objects.values), width)
-    return [dict(zip(objects.columns, objects.values[k : k + width], strict=False)) for k in starts]
 
 
 def _bare(name: str) -> str:

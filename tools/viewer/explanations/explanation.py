@@ -133,13 +133,7 @@ def sequence_of(
 
 def _rows_by_action(objects: m.Contexts) -> dict[str, ContextRows]:
     """Rows of the objects near each action, by its name."""
-    return {
-        each.action: tuple(
-            each.values[first : first + len(each.columns)] for first in range(0, len(each.values), len(each.columns))
-        )
-        for each in objects.contexts
-        if each.columns
-    }
+    return {each.action: each.rows for each in objects.contexts if each.columns}
 
 
 def _objective(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:
