@@ -32,22 +32,20 @@ player.watch((at) => {
 });
 
 /** Restart after a reconnection, perhaps to another server: it sends all events again, and its stop button's token. */
-function forget(event) {
+function restart(event) {
   given.stop = JSON.parse(event.data).stop;
   Object.assign(run, new Run(), { version: run.version + 1 }); // the version continues: it marks what is drawn
+  root.dataset.connection = "open"; // not earlier: without the server's token the stop button waits for it
+  document.title = given.title;
 }
 
 function listen() {
   const source = new EventSource("events");
-  source.addEventListener("reset", forget);
+  source.addEventListener("reset", restart);
   source.addEventListener("rows", (event) => {
     JSON.parse(event.data).forEach((row) => run.add(row));
     player.grown();
   });
-  source.onopen = () => {
-    root.dataset.connection = "open";
-    document.title = given.title;
-  };
   source.onerror = () => {
     root.dataset.connection = "lost";
     document.title = `${given.title} (connection lost)`;
