@@ -33,6 +33,7 @@ from tailor.executive.planning.structures.connectives import (
 
 GroundCondition = int | Conjunction[int] | Disjunction[int]
 MAX_STEPS = 60_000  # of grounding: no file blocks a robot; counted, so that all machines do the same
+INSTANCE_STEPS = 3  # what making an action takes as long as, besides its formulas
 MAX_QUANTIFIED = 60_000  # of these below quantifiers: small files can hold bombs; a third of a second
 
 

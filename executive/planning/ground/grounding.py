@@ -17,6 +17,7 @@ from tailor.executive.planning.ground.bindings import least_bindings, schema_bin
 from tailor.executive.planning.ground.durations import TimeGrid, time_grid
 from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
+    INSTANCE_STEPS,
     Binding,
     FactTable,
     GroundingLimit,
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try some hundreds
 MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
-INSTANCE_STEPS = 3  # what an action takes as long as, besides its formulas
 MAX_BYTES = 250_000_000  # of the ground actions; half of what a planner may take
 BYTES_PER_ACTION, BYTES_PER_PART = 600, 150  # roughly; a part is a condition or an effect
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
@@ -148,6 +148,7 @@ def _exhaustive(
             if tried % CHECK_EVERY == 0:
                 yield None
             if binding is not None:
+                limit.spend(INSTANCE_STEPS)
                 maker.add(schema, binding)
     yield maker.result(problem, tolerance_s, None)
 
@@ -155,7 +156,7 @@ def _exhaustive(
 def _reachable(
     problem: Problem, world: StaticWorld, tolerance_s: float, reached: Reached, limit: GroundingLimit
 ) -> Iterator[GroundActions | None]:
-    """Makes the actions of the reached bindings; yields None every CHECK_EVERY of them."""
+    """Makes the actions of the reached bindings, which counted them; yields None every CHECK_EVERY of them."""
     maker = _Maker(world, limit)
     for schema in sorted(world.domain.actions, key=lambda action: action.name):
         names = [parameter.name for parameter in schema.parameters]
@@ -170,18 +171,16 @@ def _reachable(
 
 
 class _Maker:
-    """Makes ground actions in order, within a limit of steps and of memory."""
+    """Makes ground actions in order, within a limit of formulas and of memory."""
 
     def __init__(self, world: StaticWorld, limit: GroundingLimit) -> None:
         self._world = world
-        self._limit = limit
         self._facts = FactTable((), limit)
         self._actions: list[GroundAction] = []
         self._bytes = 0
 
     def add(self, schema: Action, binding: Binding) -> None:
         """Makes one more action unless it is never applicable or achieves nothing."""
-        self._limit.spend(INSTANCE_STEPS)
         action = instance(len(self._actions), schema, binding, self._world, self._facts)
         if action is None:
             return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import terms_of
@@ -92,6 +93,7 @@ class _Planner:
         self._slots = {variable.name: n for n, variable in enumerate(rule.variables)}
         self._objects = [index.objects(variable) for variable in rule.variables]
         self._tests = list(rule.tests)
+        self._atoms = {atom: self._measures(atom) for atom in rule.body}
         self.left = list(rule.body)
         self.bound: set[int] = set()
 
@@ -99,12 +101,17 @@ class _Planner:
         """Variables by number, objects by name."""
         return tuple(self._slots.get(term, term) for term in terms)
 
+    def _measures(self, atom: Atom) -> tuple[frozenset[int], int, bool]:
+        """An atom's variables, its number of variables and objects, and whether actions change it."""
+        slots = frozenset(self.slots(atom.terms))
+        return frozenset(slot for slot in slots if isinstance(slot, int)), len(slots), not self._is_static(atom)
+
     def rank(self, atom: Atom) -> tuple[bool, int, int, bool]:
         """The least atom is matched next: linked to what is bound, few variables not yet bound, static."""
-        slots = set(self.slots(atom.terms))
-        unbound = len({slot for slot in slots if isinstance(slot, int)} - self.bound)
-        known = len(slots) - unbound
-        return (unbound > 0 and not known, unbound, -known, atom.predicate not in self._world.static)
+        variables, slots, changing = self._atoms[atom]
+        unbound = len(variables - self.bound)
+        known = slots - unbound
+        return (unbound > 0 and not known, unbound, -known, changing)
 
     def step(self, atom: Atom | None, lookup: bool = True) -> JoinStep:
         """The step that matches an atom (None: no atom); without `lookup` its fact is given."""
@@ -120,23 +127,34 @@ class _Planner:
                 fresh[slot] = (position, slot, self._objects[slot][1])
         self.bound.update(fresh)
         table = self._index.table(atom.predicate, tuple(key)) if atom and lookup else {}
-        return JoinStep(table, tuple(key.values()), tuple(fresh.values()), tuple(checks), self._ready_tests())
+        narrowed = tuple((position, slot, self._allowed(slot, names)) for position, slot, names in fresh.values())
+        return JoinStep(table, tuple(key.values()), narrowed, tuple(checks), self._ready_tests())
 
     def choice(self, variable: int) -> JoinStep:
         """The step that tries every object of a variable that no atom binds."""
         self.bound.add(variable)
-        table, allowed = self._objects[variable]
-        return JoinStep(table, (), ((1, variable, allowed),), (), self._ready_tests())
+        table, names = self._objects[variable]
+        return JoinStep(table, (), ((1, variable, self._allowed(variable, names)),), (), self._ready_tests())
+
+    def _allowed(self, variable: int, names: frozenset[str]) -> frozenset[str]:
+        """Those of a variable's objects of which all static facts about it alone hold: no test of each binding."""
+        facts = self._world.facts
+        own = [atom for atom in self.left if self._is_static(atom) and self.slots(atom.terms) == (variable,)]
+        self.left = [atom for atom in self.left if atom not in own]
+        return frozenset(name for name in names if all((atom.predicate, name) in facts for atom in own))
 
     def _ready_tests(self) -> tuple[Test, ...]:
         """What can be tested now: of the atoms the static ones, without a lookup."""
         if not self._tests and not self.left:
             return ()
         ready = [test for test in self._tests if self._is_bound(test)]
-        atoms = [atom for atom in self.left if atom.predicate in self._world.static and self._is_bound(atom)]
+        atoms = [atom for atom in self.left if self._is_static(atom) and self._is_bound(atom)]
         self._tests = [test for test in self._tests if test not in ready]
         self.left = [atom for atom in self.left if atom not in atoms]
         return tuple(_compiled(test, self) for test in (*ready, *atoms))
+
+    def _is_static(self, atom: Atom) -> bool:
+        return atom.predicate in self._world.static
 
     def _is_bound(self, formula: Formula) -> bool:
         return all(isinstance(slot, str) or slot in self.bound for slot in self.slots(terms_of(formula)))
@@ -175,12 +193,13 @@ def _compiled(test: Formula, planner: _Planner) -> Test:
         inner = _compiled(test.part, planner)
         return lambda binding: not inner(binding)
     if isinstance(test, Equal):
-        left, right = planner.slots((test.left, test.right))
-        return lambda binding: _value(left, binding) == _value(right, binding)
+        left, right = (_getter(slot) for slot in planner.slots((test.left, test.right)))
+        return lambda binding: left(binding) == right(binding)
     assert isinstance(test, Atom)
-    slots, predicate, facts = planner.slots(test.terms), test.predicate, planner.world.facts
-    return lambda binding: (predicate, *(_value(slot, binding) for slot in slots)) in facts
+    terms, predicate, facts = [_getter(slot) for slot in planner.slots(test.terms)], test.predicate, planner.world.facts
+    return lambda binding: (predicate, *[term(binding) for term in terms]) in facts
 
 
-def _value(slot: Slot, binding: Sequence[str]) -> str:
-    return binding[slot] if isinstance(slot, int) else slot
+def _getter(slot: Slot) -> Callable[[Sequence[str]], str]:
+    """The value of a slot as a function of the binding."""
+    return itemgetter(slot) if isinstance(slot, int) else lambda binding: slot

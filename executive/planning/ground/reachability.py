@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
+from tailor.executive.planning.ground.ground_formula import INSTANCE_STEPS, GroundingLimit, StaticWorld
 from tailor.executive.planning.ground.join_plans import FactIndex, JoinPlan, JoinStep, join_plan
 from tailor.executive.planning.ground.rules import Rule, rules_of
 from tailor.executive.planning.pddl.language import Atom
@@ -20,6 +20,7 @@ Arguments = tuple[str, ...]
 JOINS_PER_STEP = 3  # candidates of a join per step of the limit: a formula takes about three times as long
 STEPS_PER_PLAN = 12  # a plan of a join takes as long as so many formulas,
 STEPS_PER_JOIN = 2  # and each of its joins as long as so many more
+HEADS_PER_STEP = 2  # facts that an action adds, likewise
 CHECK_EVERY = 256  # candidates of a join per unit of budget: about a tenth of a millisecond
 
 
@@ -93,7 +94,8 @@ class Reachability:
             if rule.is_action:
                 if found in arguments:
                     continue
-                arguments[found] = None
+                arguments[found] = None  # counted here: what is too much to make is not even reached
+                self._limit.spend(INSTANCE_STEPS + len(plan.heads) // HEADS_PER_STEP)
             for predicate, terms in plan.heads:
                 reached = (predicate, *[found[t] if isinstance(t, int) else t for t in terms])
                 if reached not in self._known:
