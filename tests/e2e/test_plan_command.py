@@ -3,6 +3,7 @@
 import io
 import itertools
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -10,9 +11,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tailor.executive.planning import parse_plan, validate
+from tailor.executive.planning import DEFAULT, AnytimeSearch, parse_plan, validate
 from tailor.tools.benchmarks.planning_scale import problem_text
-from tailor.tools.cli import plan_limits
+from tailor.tools.cli import plan_limits, plan_search
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own, printed
 from tests.unit.executive.planning.pddl.test_language import LAMPS, SWITCHES
@@ -333,6 +334,18 @@ def test_anytime_reports_each_improvement(capsys):
     assert values == [56.08, 28.04]
     assert "best plan found" in err
     assert out == plan(capsys, *DURATIVE, "-h", "ADDR/MAKESPAN/LIFO", "-f", "MW-Loc")[1] or "24.04" in out
+
+
+def test_an_anytime_search_that_ends_by_its_limit_says_that_none_better_was_found(capsys):
+    class AfterThePlan(plan_limits.Limits):
+        def spent(self):
+            self.reason = "no plan within 1 s" if search.best is not None and search.best.plan is not None else ""
+            return bool(self.reason)
+
+    domain, problem = own("kitchen-durative-s3")
+    search = AnytimeSearch(domain, problem, DEFAULT)
+    assert plan_search.anytime(search, AfterThePlan(math.inf, 512)).plan is not None
+    assert capsys.readouterr().err.endswith("\nbest plan found: none better within 1 s\n")
 
 
 def test_memory_is_limited(capsys, monkeypatch):

@@ -78,7 +78,7 @@ def anytime(search: AnytimeSearch, limits: Limits) -> Result:
         return Result("limit", None, limits.reason, *search.counts)
     if search.best.plan is not None:
         why = "no plan is better" if search.ended == "proven" else search.ended or limits.reason
-        print(f"best plan found: {why}", file=sys.stderr)
+        print(f"best plan found: {why.replace('no plan within', 'none better within')}", file=sys.stderr)
     return search.best
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import resource
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
 from rich.table import Table
 
@@ -20,7 +22,7 @@ class Row:
     """What one planner found.
 
     `makespan` in seconds, None without durations; `cost` is what the steps add to (total-cost), None without costs.
-    CPU time includes the start of a program; `reason` states why there is no sound plan.
+    Both times include the start of a program; `reason` states why there is no sound plan.
     """
 
     planner: str
@@ -34,12 +36,18 @@ class Row:
 
 
 def compare(
-    ours: Callable[[], Result], commands: Sequence[str], texts: tuple[str, str], problem: Problem, limit_s: float
+    name: str,
+    ours: Callable[[], Result],
+    commands: Sequence[str],
+    texts: tuple[str, str],
+    problem: Problem,
+    limit_s: float,
 ) -> list[Row]:
-    """One row for our planner, then one for each other.
+    """One row for the planner of the options, then one for each other.
 
     Args:
-      ours: Plans with our planner, within the limits of its options.
+      name: That planner.
+      ours: Plans with it, within the limits of the options.
       commands: External planners as for `--planner`.
       texts: PDDL of domain and problem, for external planners.
       problem: The same, parsed.
@@ -48,15 +56,15 @@ def compare(
     Raises:
       UsageError: A command cannot be started.
     """
-    row = _row("tailor", ours, problem, started_s=0.0)
+    row = _row(name, ours, problem, since_start=True)
     plans = (partial(external, name, texts, problem.domain, problem, limit_s) for name in commands)
     return [row, *(_row(name, plan, problem) for name, plan in zip(commands, plans, strict=True))]
 
 
-def _row(name: str, plan: Callable[[], Result], problem: Problem, started_s: float | None = None) -> Row:
-    """The figures of one planner; `started_s` is the CPU time of this process from which on its work counts."""
-    before_s = _cpu_s() if started_s is None else started_s
-    began = time.monotonic()
+def _row(name: str, plan: Callable[[], Result], problem: Problem, since_start: bool = False) -> Row:
+    """The figures of one planner; `since_start` counts what this process did before, its start and reading."""
+    before_s = 0.0 if since_start else _cpu_s()
+    began = time.monotonic() - (_age_s() if since_start else 0.0)
     result = plan()
     wall_s, cpu_s = time.monotonic() - began, _cpu_s() - before_s
     found = result.plan
@@ -74,6 +82,15 @@ def _row(name: str, plan: Callable[[], Result], problem: Problem, started_s: flo
         not fault,
         fault,
     )
+
+
+def _age_s() -> float:
+    """Wall time since this process started; where Linux does not tell, its CPU time, which is a little less."""
+    try:
+        started_ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
+        return time.clock_gettime(time.CLOCK_BOOTTIME) - started_ticks / os.sysconf("SC_CLK_TCK")
+    except (OSError, AttributeError):
+        return time.process_time()
 
 
 def _cpu_s() -> float:

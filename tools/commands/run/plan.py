@@ -22,6 +22,7 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
 from tailor.tools.cli.plan_search import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
 from tailor.tools.planning import options
@@ -57,9 +58,13 @@ def _compare(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, p
     """Prints the figures of our plan and of the other planners'; exit code 0 if ours is sound."""
     from tailor.tools.planning.comparison import compare
 
+    for form in ("links", "dot", "svg"):
+        if getattr(args, form):
+            raise UsageError(f"--compare prints figures, as a table or --json, and no plan: leave out --{form}")
     if args.time_limit is None:
         args.time_limit = 1.0
-    rows = compare(lambda: _plan(args, texts, domain, problem), args.compare, texts, problem, 60.0 * args.time_limit)
+    name, limit_s = args.planner or "tailor", 60.0 * args.time_limit
+    rows = compare(name, lambda: _plan(args, texts, domain, problem), args.compare, texts, problem, limit_s)
     if args.json:
         print(json.dumps([dataclasses.asdict(row) for row in rows]))
     else:

@@ -2,7 +2,9 @@
 
 import json
 import shlex
+import subprocess
 import sys
+import time
 
 import pytest
 
@@ -52,6 +54,29 @@ def test_every_planner_has_the_limit_of_time(capsys):
     assert code == 0
     assert "killed after 0.6 s" in rows[1]["reason"]
     assert rows[1]["wall_s"] < 5
+
+
+def test_times_of_ours_include_its_start_as_those_of_others_do():
+    begun = time.monotonic()
+    command = [sys.executable, "-m", "tailor.tools.main", "plan", *KITCHEN, "--compare", printing(""), "--json"]
+    rows = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+    whole = time.monotonic() - begun
+    assert rows[0]["cpu_s"] <= rows[0]["wall_s"] + 0.02  # one thread; the system rounds the start down to 10 ms
+    assert rows[0]["wall_s"] + rows[1]["wall_s"] <= whole + 0.02
+
+
+def test_the_first_planner_is_the_one_of_the_options(capsys):
+    _, rows = compared(
+        capsys, KITCHEN, printing(""), options=("--planner", printing(printed("kitchen-s1.ground.plain")))
+    )
+    assert rows[0]["planner"] == printing(printed("kitchen-s1.ground.plain"))
+    assert rows[0]["valid"]
+
+
+@pytest.mark.parametrize("form", ["--svg", "--dot", "--links"])
+def test_a_form_of_plans_is_refused_beside_a_comparison(capsys, form):
+    assert main(["plan", *KITCHEN, "--compare", printing(""), form]) == 2
+    assert f"leave out {form}" in capsys.readouterr().err
 
 
 def test_costs_are_those_of_the_metric(capsys, tmp_path):
