@@ -19,6 +19,7 @@ from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
+from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
@@ -135,7 +136,7 @@ class _System:
         line = reason_text(f"{self._robot} is {driver.mode}", reason_text(driver.reason, driver.detail))
         if self._config.hardware and line != self._reported:
             self._reported = line
-            hint = "" if driver.mode == "armed" else f" (`tailor arm {self._robot}` arms it)"
+            hint = "" if driver.mode == "armed" else f" ({arming_advice(self._robot, driver.mode)})"
             self._screen.report(f"{line}{hint}")
 
     def _take_result(self, status: ExecStatus) -> None:

@@ -22,6 +22,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.driver_check import check_driver, driver_of
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
@@ -86,7 +87,8 @@ def _advice(state: State, robot: str) -> str:
     """How people go on where the executive can only wait."""
     reason = state.cause.reason if state.cause is not None else None
     if reason is Reason.DRIVER_NOT_ARMED:
-        return f"; `tailor arm {robot}` arms it"
+        driver = state.arming.driver
+        return f"; {arming_advice(robot, driver.mode if driver is not None else '')}"
     return f"; `tailor sim {robot}` or a driver of {robot} is expected" if reason is Reason.DRIVER_SILENT else ""
 
 

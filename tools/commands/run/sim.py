@@ -18,6 +18,7 @@ from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
+from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world
 
@@ -68,7 +69,5 @@ def state_line(guard: Guard, robot: str) -> str:
     """What the driver obeys or waits for, in one line."""
     if guard.mode is Mode.ARMED:
         return f"armed: obeys {guard.sender[:8]}"
-    reset = " --reset" if guard.mode is Mode.ESTOPPED else ""
-    return (
-        f"{guard.mode}: {reason_text(guard.reason, guard.detail)}; `tailor arm {robot}{reset}` arms it for an executive"
-    )
+    cause = reason_text(guard.reason, guard.detail)
+    return f"{guard.mode}: {cause}; {arming_advice(robot, guard.mode)} for an executive"

@@ -4,9 +4,10 @@ import time
 
 import pytest
 
-from tailor.executive.core.state import Result, State, Task
+from tailor.executive.core.state import Arming, Result, State, Task
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.schemas.messages import DriverState
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.commands.run import executive, sim
@@ -45,6 +46,13 @@ def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
 def test_an_executive_that_waits_names_what_people_can_do(reason, advice):
     state = State(belief=None, command=(), cause=Cause(reason, "detail"))
     assert executive.state_line(state, "agilo") == f"DISARMED: {reason}: detail{advice}"
+
+
+def test_an_executive_whose_driver_is_estopped_names_the_command_that_releases_it():
+    driver = DriverState(0, "estopped", "e-stop", "", 1, "", 0)
+    cause = Cause(Reason.DRIVER_NOT_ARMED, "estopped: e-stop")
+    state = State(belief=None, command=(), cause=cause, arming=Arming(driver))
+    assert executive.state_line(state, "agilo").endswith("; `tailor arm agilo --reset` arms it")
 
 
 def test_an_executive_that_has_achieved_its_goal_names_the_next_step():
