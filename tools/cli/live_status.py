@@ -137,6 +137,6 @@ def _summary(message: Message) -> str:
             return f"  {result or message.action}"
         return f"  {message.mode} {reason_text(message.reason, message.detail)}" if message.reason else ""
     if isinstance(message, Subgoals) and message.actions:
-        chosen = [f"{p.name} {p.value:.2f}" for p in message.actions[0].parameters if not p.bound]
+        chosen = [f"{p.name} {p.value:z.2f}" for p in message.actions[0].parameters if not p.bound]
         return f"  {message.actions[0].action} with {', '.join(chosen)}" if chosen else ""
     return ""

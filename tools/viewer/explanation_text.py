@@ -101,4 +101,4 @@ def _counted(number: int, noun: str) -> str:
 
 
 def _value(value: float, unit: str) -> str:
-    return f"{math.degrees(value):.0f}°" if unit == "rad" else f"{value:.2f} {unit}".strip()
+    return f"{math.degrees(value):z.0f}°" if unit == "rad" else f"{value:z.2f} {unit}".strip()

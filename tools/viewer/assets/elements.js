@@ -56,16 +56,22 @@ function counted(number, noun) {
   return `${number} ${noun}${number === 1 ? "" : "s"}`;
 }
 
+/** A number with so many digits; what rounds to zero has no sign. */
+function rounded(value, digits) {
+  return value.toFixed(digits).replace(/^-(?=[0.]*$)/, "");
+}
+
 /** A difference in seconds with its sign. */
 function signed(value, digits = 1) {
-  return `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)} s`;
+  const text = rounded(value, digits);
+  return `${text.startsWith("-") ? text.replace("-", "−") : `+${text}`} s`;
 }
 
 /** A value in its unit; radians as degrees, which people read. */
 function quantity(value, unit) {
   if (value === null || value === undefined) return "–";
-  if (unit === "rad") return `${((value * 180) / Math.PI).toFixed(0)}°`;
-  return `${value.toFixed(2)} ${unit}`.trim();
+  if (unit === "rad") return `${rounded((value * 180) / Math.PI, 0)}°`;
+  return `${rounded(value, 2)} ${unit}`.trim();
 }
 
 /** A path of straight lines through points; a null breaks it. */

@@ -10,12 +10,14 @@ import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.refinement import Refinement
+from tailor.models.features.features import Quantity
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Subgoals
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import duration_table, long_search_text
+from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text
 from tailor.tools.viewer.explanations.explanation import explain, sequence_of
 from tailor.tools.viewer.explanations.longer_search import best_cost
+from tailor.tools.viewer.explanations.situation import Situation
 from tests.support import synthetic_run
 from tests.support.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribble
 
@@ -144,3 +146,9 @@ def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None
 )
 def test_the_gap_to_a_long_search_is_given_in_seconds_and_per_cent(chosen, best, words) -> None:
     assert words in long_search_text(chosen, best)
+
+
+def test_what_rounds_to_zero_has_no_sign():
+    quantities = (Quantity("angle_to", "rad"), Quantity("v", "m/s"))
+    text = features_text(Situation("goToPose", quantities, (-0.001, -0.001), (0.0, -0.5)))
+    assert text == "goToPose features (greedy): angle_to 0° (0°), v 0.00 m/s (-0.50 m/s)"
