@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.dubins import Pose2
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
@@ -40,12 +41,14 @@ class DetourController:
     Attributes:
       action: Controller of the action.
       go: Drives to the poses.
+      ways: Paths that it drives.
       context: Yields what is in the way; rows of x, y, radius.
       field: Half the length and half the width of where poses may lie, m.
     """
 
     action: Controller
-    go: GoToPose
+    go: Controller
+    ways: ArrivalPath
     context: ActionContext
     field: tuple[float, float]
 
@@ -65,7 +68,7 @@ class DetourController:
 
     def _planned(self, state: Any, belief: PlanarBelief, arguments: Array, discs: tuple[Disc, ...]) -> Detour:
         """A new way; one that still stays clear is kept."""
-        graphs = [DetourGraph(self.go.ways, discs, self.field, clear_m) for clear_m in CLEARANCES_M]
+        graphs = [DetourGraph(self.ways, discs, self.field, clear_m) for clear_m in CLEARANCES_M]
         here = (belief.pose.x, belief.pose.y, belief.pose.phi)
         goal = (float(arguments[XG]), float(arguments[YG]), float(arguments[PHIG]))
         goal_mps = float(arguments[VG])
@@ -85,8 +88,14 @@ def _detouring(domain: Any, action: Action) -> Action:
         return action
     go = domain.actions[action.subgoal_action].controller
     x, y = (next(p for p in action.parameters if p.quantity == name) for name in ("x", "y"))
-    controller = DetourController(action.controller, go, action.context, (x.upper, y.upper))
+    controller = DetourController(action.controller, go, _ways(go), action.context, (x.upper, y.upper))
     return replace(action, controller=controller, context=None)
+
+
+def _ways(go: Any) -> ArrivalPath:
+    """Paths of a goToPose, or of the one that drives a controller's far ways."""
+    ways: ArrivalPath = go.ways if isinstance(go, GoToPose) else go.far.ways
+    return ways
 
 
 def _turning_first(control: Control, belief: PlanarBelief) -> Control:

@@ -18,7 +18,10 @@ from tailor.tools.evaluations.paired_comparison import share_interval
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 
-SCENARIOS = {"soccer": ("opponents", "opponents-approach", "opponents-dribble")}  # with objects, by domain
+SCENARIOS = {  # with objects, by domain
+    "soccer": ("opponents", "opponents-approach", "opponents-dribble"),
+    "kitchen": ("to-cupboard",),
+}
 DOMAINS = tuple(SCENARIOS)
 BEFORE, AFTER, BASELINE = "before", "after", "baseline"
 MIN_SUCCESS_PCT, MAX_SLOWER_PCT = 98.0, 8.0

@@ -2,6 +2,7 @@
 
 const RING_M = [0.3, 0.62]; // where the alternatives' petals stand around a place
 const LABEL_PX = [56, 14]; // room of a name
+const LETTER_PX = 8;
 
 class SubgoalMarks {
   /** `map` takes metres to pixels. */
@@ -46,15 +47,18 @@ class SubgoalMarks {
     ];
   }
 
-  /** Names below their places; those of places beside each other are apart, so that each can be read. */
+  /** Names below their places, to the left of those at the right edge; names beside each other are apart. */
   labels(places) {
     const taken = [];
+    const [left, right] = this.map.box;
+    const edge = (right - left) * this.map.perMetre;
     return places.map((place) => {
       const [x, y] = this.map(place.x, place.y);
       let low = y + 17;
       while (taken.some(([a, b]) => Math.abs(a - x) < LABEL_PX[0] && Math.abs(b - low) < LABEL_PX[1])) low += LABEL_PX[1];
       taken.push([x, low]);
-      return svg("text", { class: "strong halo", x: x + 9, y: low, text: place.label });
+      const side = x + 9 + LETTER_PX * place.label.length > edge ? { x: x - 9, "text-anchor": "end" } : { x: x + 9 };
+      return svg("text", { class: "strong halo", ...side, y: low, text: place.label });
     });
   }
 

@@ -15,7 +15,8 @@ from tailor.tools.evaluations.assertion import assertion
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.detour_graph import DetourGraph
-from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.outcome import Outcome, Task
+from tailor.tools.evaluations.task_runs import run_one
 from tailor.tools.lockstep.action_run import new_body
 from tailor.tools.lockstep.readings import newest
 
@@ -74,6 +75,13 @@ def test_controllers_with_detours_touch_no_opponent_in_the_way(detours):
     if detours:
         assert control.outcome == "done"
         assert math.dist((body.ground_truth().x, body.ground_truth().y), GOAL[:2]) < 0.2
+
+
+@pytest.mark.parametrize(("variant", "touched"), [(0, True), (1, False), (2, False)])
+def test_subgoals_and_detours_lead_around_the_kitchens_stool(variant, touched):
+    outcome = run_one(Task("kitchen", "to-cupboard"), assertion.variants()[variant], seed=700001)
+    assert outcome.achieved
+    assert (outcome.costs.contacts > 0) == touched
 
 
 NONE = Outcome(0, "", True, 5.0, "achieved", (), (), (), (), False, 0.0, (), ())
