@@ -13,6 +13,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, box_of
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
+from tailor.executive.refinement.certificates.joint_bounds import joint_bounds
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
@@ -50,14 +51,14 @@ def assert_no_stage_costs_less(cost, chosen, lower, upper, inside) -> None:
         everywhere, own = box_of(cost.ranges.part(block)), Boxes(lower[None, block], upper[None, block])
         bound = stage_bound(stage, link, chosen)
         assert isinstance(bound, StageBound)
-        bounds = bound.within(whole, everywhere).lower_bounds(before, own)
+        (bounds,) = joint_bounds([(bound.within(whole, everywhere), before, own)])
         cost_inside = stage.cost(inside[:, stage.columns])
         samples = inside[:, stage.columns]
         first, second = np.zeros((len(inside), before.lower.shape[1])), np.zeros((len(inside), own.lower.shape[1]))
         first[:, link.before], second[:, link.own] = samples[:, link.from_before], samples[:, ~link.from_before]
-        linear = bounds.middle[0, 0]
+        linear = bounds.middle[0]
         if bounds.slopes is not None:
-            slopes = [slope[0, 0] for slope in bounds.slopes]
+            slopes = [slope[0] for slope in bounds.slopes]
             linear = linear + (first - before.middle) @ slopes[0] + (second - own.middle) @ slopes[1]
         assert (linear <= cost_inside).all()
         whole, before = everywhere, own
@@ -100,5 +101,43 @@ def test_stages_bound_a_single_choice_within_a_hundredth_of_its_cost(models, tas
                 stage_bound(stage, link, RefinementSettings()) for stage, link in zip(cost.stages, links, strict=True)
             ]
             pairs = zip(bounds, [NO_PARAMETERS, *points], points, strict=False)
-            least = sum(bound.lower_bounds(before, own).middle[0, 0] for bound, before, own in pairs)
+            least = sum(bounds.middle[0] for bounds in joint_bounds(list(pairs)))
             assert least >= 0.99 * cost(choice[None])[0]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, seed):
+    rng = np.random.default_rng(seed)
+    cost = cases(models, 1)["8 free"][0].objective(models, RefinementSettings())
+    blocks = blocks_of(cost.stages)
+    assert blocks is not None
+    boxes = [NO_PARAMETERS.part(np.zeros(3, np.intp))]
+    for block in blocks:
+        drawn = [drawn_boxes(cost.ranges.part(block), rng) for _ in range(3)]
+        boxes.append(Boxes(*(np.array(ends) for ends in zip(*drawn, strict=True))))
+    bounds = [
+        stage_bound(stage, link, RefinementSettings())
+        for stage, link in zip(cost.stages, links_of(cost.stages, blocks), strict=True)
+    ]
+    requests = list(zip(bounds, boxes, boxes[1:], strict=False))
+    alone = [joint_bounds([request])[0] for request in requests]
+    for one, other in zip(joint_bounds(requests), alone, strict=True):
+        assert np.allclose(one.middle, other.middle, rtol=1e-5)
+        for slopes in zip(one.slopes or (), other.slopes or (), strict=True):
+            assert np.allclose(*slopes, atol=1e-4)
+
+
+@pytest.mark.parametrize("task", range(TASKS))
+def test_no_choice_costs_less_than_a_proof_with_models_that_ship_states(models, task):
+    chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
+    cost = cases(models, TASKS)["8 free"][task].objective(models, chosen)
+    solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
+    solver.advance(CheckBudget(25))
+    assert solver.best is not None
+    proof = certificate(cost, solver.best, chosen)
+    assert isinstance(proof, Certificate)
+    proof.advance(CheckBudget(45))
+    rng = np.random.default_rng(task)
+    near = solver.best + 0.02 * cost.ranges.width * rng.standard_normal((2000, cost.ranges.count))
+    assert 0.9 * solver.value < proof.bound
+    assert proof.bound <= cost(np.vstack([cost.ranges.draw(2000, rng), cost.ranges.confine(near)])).min()

@@ -7,34 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
-from typing import Protocol
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes, joined
-from tailor.executive.refinement.certificates.pair_bounds import Indices, PairBounds, unknown
+from tailor.executive.refinement.certificates.joint_bounds import joint_bounds
+from tailor.executive.refinement.certificates.pair_bounds import Indices, unknown
+from tailor.executive.refinement.certificates.stage_bounds import StageBound
 from tailor.executive.refinement.solvers.chain_structure import best_chain, forward_costs, through_costs
-
-
-class ActionBound(Protocol):
-    """Lower bounds on the cost of an action."""
-
-    @property
-    def effort(self) -> int:
-        """Approximate number of elementary comparisons for one pair of boxes."""
-        ...
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the bounds are linear; others are computed faster for all pairs of some boxes at once."""
-        ...
-
-    def lower_bounds(self, before: Boxes, own: Boxes, paired: bool = False) -> PairBounds:
-        """Bounds for each pair of boxes of the subgoals before and after the action."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,29 +38,35 @@ class Costs:
         through, forward = self.through[index], self.forward[index]
         return np.where(np.isfinite(through), through - np.where(np.isfinite(forward), forward, 0.0), np.inf)
 
+    def through_pairs(self, index: int) -> Array:
+        """Of the cheapest chain through each pair of boxes of an action."""
+        through: Array = self.before(index)[:, None] + self.tables[index] + self.rest(index)
+        return through
+
     def cheapest(self) -> list[int]:
         """Index of the cheapest chain's box at each subgoal."""
         return best_chain(self.tables, self.forward)
 
 
 class BoxChain:
-    """Boxes and pair bounds of s subgoals; the boxes of one subgoal are replaced at a time.
+    """Boxes and pair bounds of s subgoals.
+
+    Pieces of a box inherit its bounds; the pairs on the cheapest chains are bounded anew first.
 
     Args:
       bounds: Lower bounds of pairs of boxes for each action.
       boxes: Initial boxes of each subgoal.
       effort: Approximate number of elementary comparisons in one step.
-      min_pieces: Minimum number of pieces that the boxes chosen are split into at a time.
     """
 
-    def __init__(self, bounds: Sequence[ActionBound], boxes: Sequence[Boxes], effort: int, min_pieces: int) -> None:
+    def __init__(self, bounds: Sequence[StageBound], boxes: Sequence[Boxes], effort: int) -> None:
         self.boxes = list(boxes)
         self._tilts = [np.zeros_like(each.lower) for each in boxes]
-        self._min_pieces = min_pieces
         self._bounds = bounds
         self._effort = effort
         sides = zip(bounds, [NO_PARAMETERS, *boxes], boxes, strict=False)
         self._pairs = [unknown((len(before), len(own)), before, own, bound.is_linear) for bound, before, own in sides]
+        self._inherited = [np.ones(pairs.middle.shape, bool) for pairs in self._pairs]
 
     @property
     def steps(self) -> float:
@@ -88,9 +76,9 @@ class BoxChain:
 
     def begin(self) -> Iterator[None]:
         """Bound all pairs, in steps."""
-        for index, pairs in enumerate(self._pairs):
-            every = (np.arange(count) for count in pairs.middle.shape)
-            yield from self._bound(index, np.ones(pairs.middle.shape, bool), *every)
+        while any(each.any() for each in self._inherited):
+            self._raise_first([np.where(each, 0.0, np.inf) for each in self._inherited], np.inf)
+            yield
 
     def costs(self) -> Costs:
         """Lower bounds of chains from the pair bounds so far, with tilts for the cheapest chain through each box."""
@@ -116,50 +104,54 @@ class BoxChain:
             after = np.argmin(costs.tables[index + 1] + costs.rest(index + 1), axis=1)
             self._tilts[index][:] = (second.slope(0, boxes, after) - first.slope(1, before, boxes)) / 2
 
-    def split(
-        self, index: int, kept: Indices, chosen: Indices, weight: Array, costs: Costs, limit: float
-    ) -> Iterator[None]:
-        """Split the chosen boxes of a subgoal and discard all but their pieces and the kept boxes, in steps.
+    def inherits(self, chain: Sequence[int]) -> bool:
+        """Whether a bound of a chain, given by its boxes' indices, is that of boxes before their split."""
+        return any(each[pair] for each, pair in zip(self._inherited, pairwise([0, *chain]), strict=True))
 
-        Pieces inherit the bounds of their box. Those on chains with a bound below `limit` are bounded anew.
-        """
+    def split(self, index: int, kept: Indices, chosen: Indices, weight: Array, min_pieces: int) -> None:
+        """Split the chosen boxes of a subgoal into at least so many pieces; keep some others, discard the rest."""
         pieces, parents = self.boxes[index].part(chosen), chosen
-        while len(parents) < self._min_pieces:
+        while len(parents) < min_pieces:
             pieces, parents = pieces.halves(weight), np.tile(parents, 2)
-        place = np.tile(np.arange(len(chosen)), len(parents) // len(chosen))  # of each piece's parent among the chosen
         parents = np.concatenate([kept, parents])
-        new = np.arange(len(kept), len(parents))
-        last = index + 1 == len(self.boxes)
-        left = costs.before(index)[:, None] + costs.tables[index][:, chosen] + costs.rest(index)[chosen]
         split = joined(self.boxes[index].part(kept), pieces)
         moved = split.middle - self.boxes[index].middle[parents]
         self.boxes[index] = split
         self._tilts[index] = self._tilts[index][parents]
         self._pairs[index] = self._pairs[index].of_pieces(parents, moved)
-        if not last:
-            right = costs.forward[index][chosen, None] + costs.tables[index + 1][chosen] + costs.rest(index + 1)
+        self._inherited[index] = self._inherited[index][:, parents]
+        self._inherited[index][:, len(kept) :] = True
+        if index + 1 < len(self.boxes):
             self._pairs[index + 1] = self._pairs[index + 1].from_pieces(parents, moved)
-        yield from self._bound(index, (left < limit)[:, place], np.arange(len(left)), new)
-        if not last:
-            yield from self._bound(index + 1, (right < limit)[place], new, np.arange(right.shape[1]))
+            self._inherited[index + 1] = self._inherited[index + 1][parents]
+            self._inherited[index + 1][len(kept) :] = True
 
-    def _bound(self, index: int, open_pairs: NDArray[np.bool_], before: Indices, own: Indices) -> Iterator[None]:
-        """Raise the bounds of open pairs, (len(before), len(own)), a few in each step."""
-        first, bound = self.boxes[index - 1] if index else NO_PARAMETERS, self._bounds[index]
-        n_pairs = max(1, self._effort // bound.effort)
-        if bound.is_linear:
-            rows, columns = np.nonzero(open_pairs)
-            for i in range(0, len(rows), n_pairs):
-                part = before[rows[i : i + n_pairs]], own[columns[i : i + n_pairs]]
-                bounds = bound.lower_bounds(first.part(part[0]), self.boxes[index].part(part[1]), paired=True)
-                self._pairs[index].raise_to(bounds, *part)
-                yield
-            return
-        before, own = before[open_pairs.any(axis=1)], own[open_pairs.any(axis=0)]
-        height = max(1, min(len(before), n_pairs))
-        width = max(1, n_pairs // height)
-        for i, j in product(range(0, len(before), height), range(0, len(own), width)):
-            rows, columns = before[i : i + height], own[j : j + width]
-            bounds = bound.lower_bounds(first.part(rows), self.boxes[index].part(columns))
-            self._pairs[index].raise_to(bounds, rows[:, None], columns)
-            yield
+    def raise_cheapest(self, costs: Costs, limit: float) -> None:
+        """Bound pairs with inherited bounds anew, in one step: those on the cheapest chains below `limit`."""
+        through = (costs.through_pairs(index) for index in range(len(self._pairs)))
+        tables = zip(self._inherited, through, strict=True)
+        self._raise_first([np.where(inherited, cost, np.inf) for inherited, cost in tables], limit)
+
+    def _raise_first(self, order: Sequence[Array], limit: float) -> None:
+        """Bound pairs whose number in `order`, for each pair of each action, is the least and below `limit`."""
+        sizes = [each.size for each in order]
+        numbers, efforts = np.concatenate([each.ravel() for each in order]), [bound.effort for bound in self._bounds]
+        pairs = np.flatnonzero(numbers < limit)
+        pairs = pairs[np.argsort(numbers[pairs], kind="stable")]
+        within = np.searchsorted(np.cumsum(np.repeat(efforts, sizes)[pairs]), self._effort, side="right")
+        pairs = np.sort(pairs[: max(1, int(within))])
+        ends = np.cumsum(sizes)
+        parts = np.split(pairs, np.searchsorted(pairs, ends[:-1]))
+        places = [
+            np.unravel_index(part - end + size, each.shape)
+            for part, end, size, each in zip(parts, ends, sizes, order, strict=True)
+        ]
+        self._raise([(index, *place) for index, place in enumerate(places) if len(place[0])])
+
+    def _raise(self, places: Sequence[tuple[int, Indices, Indices]]) -> None:
+        """Bound pairs anew: for each action the boxes before, and the own ones."""
+        before = [NO_PARAMETERS, *self.boxes]
+        requests = [(self._bounds[i], before[i].part(rows), self.boxes[i].part(columns)) for i, rows, columns in places]
+        for bounds, (index, *place) in zip(joint_bounds(requests), places, strict=True):
+            self._pairs[index].raise_to(bounds, *place)
+            self._inherited[index][tuple(place)] = False

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tailor.executive.refinement.certificates.bound_stagnation import PATIENCE
-
 
 @dataclass(frozen=True, slots=True)
 class Partition:
     """Numbers of boxes, and the order of work."""
 
     initial_splits: int  # before the first bounds
-    max_split_boxes: int  # of a subgoal in one iteration
+    max_split_boxes: int  # of a subgoal at a time
     min_pieces: int  # that these are split into
     goals_pct: tuple[float, ...] = ()  # gaps that are proven first: pairs that do not matter for them wait
-    patience: int = PATIENCE  # iterations without a rise of the bound
 
 
 ONE = Partition(6, 12, 48)  # without pairs an iteration costs more than its boxes
@@ -26,4 +23,4 @@ def partition(subgoals: int, linear: bool) -> Partition:
     """Partition for a number of subgoals with free parameters; `linear`: all their bounds are linear."""
     if subgoals == 1:
         return ONE
-    return Partition(3, 4, 8, (5.0, 2.0), PATIENCE * subgoals) if linear else PAIRS
+    return Partition(3, 4, 8, (5.0, 2.0)) if linear else PAIRS

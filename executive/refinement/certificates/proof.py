@@ -22,7 +22,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import Columns
 
-EFFORT = 120_000  # comparisons of boxes and leaves in one check: about 1 ms, up to 4 ms while boxes are wide
+EFFORT = 120_000  # comparisons of boxes and leaves in one check: 3 to 7 ms with networks
 MAX_SETUP_SHARE = 0.3  # of the checks for the initial bounds: a proof with a larger share does not converge
 PROBE_PERIOD = 4  # iterations
 MAX_BOXES = 1000  # of a subgoal: the passes over more take longer than their bounds
@@ -79,17 +79,20 @@ class Proof:
         if chain.steps > MAX_SETUP_SHARE * self._settings.certify_checks:
             return
         yield from chain.begin()
-        stagnation = BoundStagnation(self._partition.patience)
+        stagnation = BoundStagnation()
         for iteration in count():
-            index = self._free[iteration % len(self._free)]
             costs = chain.costs()
-            if self._raise_bound(costs) or stagnation.update(self.bound, self.value):
+            if self._raise_bound(costs):
                 return
             if iteration % PROBE_PERIOD == PROBE_PERIOD - 1:
                 self._probe_cheapest_chain(chain, costs)
-            kept, chosen = self._select_boxes(chain, costs, index)
-            if len(chosen):
-                yield from chain.split(index, kept, chosen, weight[self._blocks[index]], costs, self._goal)
+            if chain.inherits(costs.cheapest()):
+                chain.raise_cheapest(costs, self._goal)
+            elif stagnation.update(self.bound, self.value):
+                return
+            else:
+                self._split(chain, costs, weight)
+            yield
 
     def _initial_chain(self, weight: Array) -> Generator[None, None, BoxChain]:
         """Initial boxes, and bounds restricted to them: one check for each action."""
@@ -100,7 +103,7 @@ class Proof:
             yield
         for i in self._free * self._partition.initial_splits:
             boxes[i] = boxes[i].halves(weight[self._blocks[i]])
-        return BoxChain(bounds, boxes, EFFORT, self._partition.min_pieces)
+        return BoxChain(bounds, boxes, EFFORT)
 
     def _raise_bound(self, costs: Costs) -> bool:
         """Raise the bound to the cheapest chain; whether the gap is accepted."""
@@ -118,6 +121,13 @@ class Proof:
         value = float(self._objective(candidate[None])[0])
         if value < self.value:
             self.best, self.value = candidate, value
+
+    def _split(self, chain: BoxChain, costs: Costs, weight: Array) -> None:
+        """Split the cheapest boxes of every subgoal."""
+        for index in self._free:
+            kept, chosen = self._select_boxes(chain, costs, index)
+            if len(chosen):
+                chain.split(index, kept, chosen, weight[self._blocks[index]], self._partition.min_pieces)
 
     def _select_boxes(self, chain: BoxChain, costs: Costs, index: int) -> tuple[Columns, Columns]:
         """Indices of a subgoal's boxes to keep unchanged, and of those to split: the cheapest that are wide enough."""

@@ -23,11 +23,7 @@ from tailor.executive.refinement.objective.stage import Stage
 from tailor.executive.refinement.solvers.chain_structure import Link
 
 FIXED, BEFORE, OWN = -1, 0, 1  # owner of a parameter: no box, the box before, the own box
-AXES = {BEFORE: (slice(None), slice(None), None), OWN: (slice(None), None, slice(None))}  # arrivals, before, own
-PAIRED = {BEFORE: AXES[BEFORE], OWN: AXES[BEFORE]}  # each own box with one box before
-
-
-Axes = Mapping[int, tuple[slice | None, ...]]
+Duration = tuple[Array, Mapping[int, Array]]  # in the middle of each pair of boxes, and slopes by argument: (n, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +31,18 @@ class NoBound:
     """Reason why an action has no lower bound."""
 
     reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ArgumentBoxes:
+    """Boxes of a model's arguments, one column each, that broadcast to (n_arrivals, n, 1).
+
+    `radius` is half of each parameter's range before it was displaced; it broadcasts to (1, n, 1).
+    """
+
+    lower: Columns
+    upper: Columns
+    radius: Columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,39 +72,34 @@ class StageBound:
         return self.duration.is_linear and self.spans is _identity
 
     def within(self, before: Boxes, own: Boxes) -> StageBound:
-        """The bound restricted to boxes inside the given ones: faster to compute."""
+        """The bound restricted to boxes inside the given ones: faster to compute.
+
+        A linear bound of the duration stays as it is, so that the actions of one model can be bounded in one call.
+        """
         arguments = self.spans(*self._parameters(before, own))
-        models = (self.duration, self.success, self.energy)
-        duration, success, energy = (model and model.within(*arguments) for model in models)
-        assert duration is not None
+        success, energy = (model and model.within(*arguments) for model in (self.success, self.energy))
+        duration = self.duration if self.is_linear else self.duration.within(*arguments)
         return replace(self, duration=duration, success=success, energy=energy)
 
-    def lower_bounds(self, before: Boxes, own: Boxes, paired: bool = False) -> PairBounds:
-        """Lower bounds in seconds for each pair of boxes; +inf: all values in the two boxes are INVALID.
+    def arguments(self, before: Boxes, own: Boxes) -> ArgumentBoxes:
+        """Model arguments for n boxes of the subgoal before, each with the own box of the same index."""
+        return ArgumentBoxes(*self.spans(*self._parameters(before, own)), self._radius(before, own))
 
-        Args:
-          before: Boxes of the subgoal before.
-          own: Boxes of the own subgoal.
-          paired: Bound each box before with the own box of the same index only.
-        """
-        shape = (len(own),) if paired else (len(before), len(own))
-        axes, settings = PAIRED if paired else AXES, self.settings
-        bounds = unknown(shape, before, own, self.is_linear)
-        arguments = self.spans(*self._parameters(before, own, axes))
-        if bounds.slopes is not None:
-            cost, slopes = self.duration.linear_bound(*arguments, self._radius(before, own, axes), settings.k_std)
-            for j, slope in slopes.items():
-                if self.owners[j] != FIXED:
-                    bounds.slopes[self.owners[j]][..., self.places[j]] += slope.reshape(shape)
-        else:
-            cost = self.duration.lower_bound(*arguments, settings.k_std).mean(axis=0)
+    def pair_bounds(self, before: Boxes, own: Boxes, arguments: ArgumentBoxes, duration: Duration) -> PairBounds:
+        """Lower bounds in seconds, given those of the duration; +inf: all values in the two boxes are INVALID."""
+        bounds = unknown((len(own),), before, own, self.is_linear)
+        cost, slopes = duration
+        for j, slope in slopes.items():
+            if self.owners[j] != FIXED and bounds.slopes is not None:
+                bounds.slopes[self.owners[j]][:, self.places[j]] += slope[:, 0]
+        ends = arguments.lower, arguments.upper
         if self.energy is not None:
-            cost = cost + settings.energy_weight * self.energy.lower_bound(*arguments).mean(axis=0)
+            cost = cost + self.settings.energy_weight * self.energy.lower_bound(*ends).mean(axis=0)
         if self.success is not None:
-            failure = np.maximum(1 - self.success.upper_bound(*arguments), 0.0)
-            cost = cost + self._least_price(failure, arguments)
+            failure = np.maximum(1 - self.success.upper_bound(*ends), 0.0)
+            cost = cost + self._least_price(failure, ends)
             cost = np.where(failure.max(axis=0) > self.stage.p_fail_max, np.inf, cost)
-        bounds.middle[:] = cost.reshape(shape) if paired else cost
+        bounds.middle[:] = cost[:, 0]
         return bounds
 
     def _least_price(self, failure: Array, arguments: tuple[Columns, Columns]) -> Array:
@@ -109,8 +112,8 @@ class StageBound:
         price = self.settings.risk_cost_s * own.mean(axis=0) + self.stage.context_cost_s * met.mean(axis=0)
         return price
 
-    def _parameters(self, before: Boxes, own: Boxes, axes: Axes = AXES) -> tuple[Columns, Columns]:
-        """Lower and upper ends of the action's parameters; each column broadcasts to (n_arrivals, before, own)."""
+    def _parameters(self, before: Boxes, own: Boxes) -> tuple[Columns, Columns]:
+        """Lower and upper ends of the action's parameters; each column broadcasts to (n_arrivals, n, 1)."""
         sides = {
             BEFORE: self._ends(self.link.from_before, self.link.before, before),
             OWN: self._ends(~self.link.from_before, self.link.own, own),
@@ -120,15 +123,15 @@ class StageBound:
             side = BEFORE if owner == FIXED else owner
             boxes = slice(0, 1) if owner == FIXED else slice(None)
             for columns, parameters in zip(ends, sides[side], strict=True):
-                columns.append(parameters[:, boxes, j][axes[side]])
+                columns.append(parameters[:, boxes, j, None])
         return tuple(ends[0]), tuple(ends[1])
 
-    def _radius(self, before: Boxes, own: Boxes, axes: Axes) -> Columns:
-        """Half of each parameter's range, as the columns of `_parameters`."""
-        radii = {FIXED: np.zeros((1, 1, 1)), BEFORE: before.radius[None], OWN: own.radius[None]}
+    def _radius(self, before: Boxes, own: Boxes) -> Columns:
+        """Half of each parameter's range, as the columns of `_parameters`, of one arrival."""
+        radii = {BEFORE: before.radius, OWN: own.radius}
         owners = zip(self.owners.tolist(), self.places, strict=True)
         return tuple(
-            radii[owner] if owner == FIXED else radii[owner][..., place][axes[owner]] for owner, place in owners
+            np.zeros((1, 1, 1)) if owner == FIXED else radii[owner][None, :, place, None] for owner, place in owners
         )
 
     def _ends(self, mask: NDArray[np.bool_], indices: NDArray[np.intp], boxes: Boxes) -> tuple[Array, Array]:

@@ -1,0 +1,71 @@
+"""Boxes of subgoals: pieces inherit the bounds of their box, and are bounded anew where it matters."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.certificates.box_chain import BoxChain
+from tailor.executive.refinement.certificates.boxes import box_of
+from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
+from tailor.models.runtime import load_robot
+from tailor.tools.benchmarks.refinement.cases import cases
+
+EFFORT = 10**6
+
+
+@pytest.fixture(scope="module")
+def models() -> Models:
+    return Models(*load_robot("agilo"))
+
+
+def chain_of(models: Models, name: str) -> BoxChain:
+    """Chain of a benchmark's task with four boxes of each subgoal, all pairs bounded."""
+    cost, boxes, bounds = cases(models, 1)[name][0].objective(models), [], []
+    blocks = blocks_of(cost.stages)
+    assert blocks is not None
+    for stage, link, block in zip(cost.stages, links_of(cost.stages, blocks), blocks, strict=True):
+        bound = stage_bound(stage, link, RefinementSettings())
+        assert isinstance(bound, StageBound)
+        bounds.append(bound)
+        whole = box_of(cost.ranges.part(block))
+        boxes.append(whole.halves(np.ones(len(block))).halves(np.ones(len(block))) if len(block) else whole)
+    chain = BoxChain(bounds, boxes, EFFORT)
+    list(chain.begin())
+    return chain
+
+
+def split_all(chain: BoxChain, subgoal: int) -> None:
+    count, none = len(chain.boxes[subgoal]), np.empty(0, np.intp)
+    chain.split(subgoal, none, np.arange(count), np.ones(chain.boxes[subgoal].lower.shape[1]), 2 * count)
+
+
+def test_splitting_a_box_alone_changes_no_bound(models):
+    chain = chain_of(models, "2 free")
+    before = chain.costs().through[-1].min()
+    split_all(chain, 0)
+    assert chain.costs().through[-1].min() == pytest.approx(before, abs=1e-9)
+
+
+def test_only_pairs_of_pieces_inherit_their_bounds(models):
+    chain = chain_of(models, "4 free")
+    assert not chain.inherits([0, 0, 0])
+    chain.split(0, np.array([0, 1]), np.array([2, 3]), np.ones(2), 4)
+    assert not chain.inherits([1, 3, 0])
+    assert chain.inherits([2, 3, 0])
+
+
+def test_pairs_on_chains_below_the_limit_are_bounded_anew_and_no_others(models):
+    chain = chain_of(models, "4 free")
+    split_all(chain, 1)
+    costs = chain.costs()
+    cheapest = costs.cheapest()
+    least = costs.through[-1].min()
+    chain.raise_cheapest(costs, least + 1e-9)
+    assert not chain.inherits(cheapest)
+    dearest = [int(np.argmax(through)) for through in costs.through]
+    assert chain.inherits(dearest)
+    assert chain.costs().through[-1].min() >= least - 1e-9
