@@ -1,12 +1,13 @@
 """Convergence of the solvers: gap to the best known value over CPU time on one core; then the time of proofs.
 
 Compares the chain solver, the paper's genetic algorithm and our differential evolution with scipy's and, if installed,
-CMA-ES. All minimise the same objective: sequences of AGILO with its learned models.
+CMA-ES. All minimise the same objective: sequences of AGILO, and whole plans of other robots, with their learned models.
 """
 
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Iterator
 
 import numpy as np
 from rich.console import Console
@@ -19,6 +20,7 @@ from tailor.tools.benchmarks.intervals import half_width
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.refinement import certificates
 from tailor.tools.benchmarks.refinement.cases import Case, cases
+from tailor.tools.benchmarks.refinement.decisions import first_decision
 from tailor.tools.benchmarks.refinement.runners import Progress, ours, runners
 from tailor.tools.learning.fresh_seeds import fresh_seed
 
@@ -26,16 +28,26 @@ TASKS, QUICK_TASKS = 20, 5  # of each case
 MOMENTS_MS = (5, 20, 60, 80)
 REFERENCES: tuple[SolverName, ...] = ("chain", "differential")
 LONG_MS = 1500  # the search for the best known value
+DECISIONS = (("kitchen", "one-cup"),)  # scenarios whose first decision is a case, with all parameters of the plan
 
 
 def rows(quick: bool = False) -> list[dict[str, object]]:
     """One row for each case and solver: gap over fresh tasks in percent at each moment: mean, 95 % interval, worst."""
-    models = Models(*load_robot("agilo"))
     table = []
-    for name, tasks in cases(models, QUICK_TASKS if quick else TASKS, fresh_seed("soccer").seed).items():
-        races = [_race(task, models, seed) for seed, task in enumerate(tasks)]
+    for name, tasks in _tasks(QUICK_TASKS if quick else TASKS):
+        races = [_race(task, models, seed) for seed, (models, task) in enumerate(tasks)]
         table += [_row(name, solver, [race[solver] for race in races]) for solver in races[0]]
     return table
+
+
+def _tasks(count: int) -> Iterator[tuple[str, list[tuple[Models, Case]]]]:
+    """Fresh tasks of each case, with the models that they are predicted with."""
+    models = Models(*load_robot("agilo"))
+    for name, drawn in cases(models, count, fresh_seed("soccer").seed).items():
+        yield name, [(models, case) for case in drawn]
+    for domain, scenario in DECISIONS:
+        first = fresh_seed(domain).seed
+        yield f"{domain} {scenario}", [first_decision(domain, scenario, first + i) for i in range(count)]
 
 
 def _race(task: Case, models: Models, seed: int) -> dict[str, list[float]]:
