@@ -30,11 +30,12 @@ demo: $(DEMO)
 demo-arm: $(DEMO)
 	$(BIN)/tailor letters
 
+# Three workers even on two cores: robots that run wait most of the time.
 test: setup
-	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadgroup --durations=30 --durations-min=3
+	$(BIN)/python -m pytest -m 'not slow' -n 3 --dist loadgroup --durations=30 --durations-min=3
 
 test-all: setup
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 3 --dist loadgroup
 
 test-faults: setup  # the promises of SAFETY.md; one test after another, or they would load the machine
 	@mkdir -p out

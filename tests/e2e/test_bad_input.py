@@ -103,7 +103,7 @@ def test_a_recording_that_exists_is_refused_before_anything_starts(tmp_path):
     assert "run.mcap: exists already" in refused("up", "soccer", "--record", tmp_path / "run.mcap")
 
 
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 def test_a_system_whose_recorder_cannot_start_does_not_run_without_it(tmp_path):
     (tmp_path / "file").write_text("no folder")
     flags = ("--record", tmp_path / "file" / "run.mcap", "--connect", free_endpoint())

@@ -81,7 +81,7 @@ def ways(found):
     return [(plan.status, plan.way) for plan in found[PlanReport]]
 
 
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 def test_a_plan_of_a_real_process_is_executed_and_the_recording_verifies(tmp_path):
     found = run_with(tmp_path, OWN)
     assert len(found[PlanRequest]) == len(found[PlanAnswer]) == 1
@@ -136,7 +136,7 @@ def test_a_planner_that_fails_is_replaced_by_our_own_and_the_recording_verifies(
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 def test_the_failure_of_a_planner_is_shown_to_the_user(tmp_path):
     planner = program(tmp_path, "os.abort()")
     flags = ("--scenario", "waypoints", "--once", "--seed", "1", "--planner", planner, "--connect", free_endpoint())

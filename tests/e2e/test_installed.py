@@ -22,7 +22,7 @@ DATA_KINDS = {
 PDDL = ROOT / "tests" / "data" / "pddl" / "own"
 HOSTILE = 'raise SystemExit("a module of the working folder was imported")\n'
 
-pytestmark = pytest.mark.xdist_group("live")  # one worker: the wheel is built once, and live runs follow one another
+pytestmark = pytest.mark.xdist_group("systems")  # one worker: the wheel is built once
 
 
 @pytest.fixture(scope="module")

@@ -25,7 +25,7 @@ from tests.support.bus_system import guarded_robot, moving, outputs, secured_sys
 from tests.support.driven import Driven
 from tests.support.patience import wait_until
 
-pytestmark = pytest.mark.xdist_group("live")
+pytestmark = pytest.mark.xdist_group("systems")
 SPEED = 0.5
 OTHER_SPEED = 0.9
 STEP_S = 0.3  # more than the driver's periods; less than the executive's silence that stops a robot

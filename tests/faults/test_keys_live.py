@@ -15,7 +15,7 @@ from tailor.schemas.messages import EStop, VelocityCommand
 from tests.support.bus_system import accepts, free_endpoint
 from tests.support.patience import wait_until
 
-pytestmark = pytest.mark.xdist_group("live")
+pytestmark = pytest.mark.xdist_group("systems")
 STEP_S = 0.3
 
 

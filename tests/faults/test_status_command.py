@@ -16,7 +16,7 @@ from tailor.schemas.messages import DriverState
 from tests.support.bus_system import bus_system, driving, guarded_robot
 from tests.support.patience import PATIENCE_S, wait_until
 
-pytestmark = pytest.mark.xdist_group("live")
+pytestmark = pytest.mark.xdist_group("systems")
 
 
 def status(endpoint, *flags):

@@ -14,7 +14,7 @@ FORKLIFT = ROOT / "tests" / "support" / "robots" / "forklift"
 EPISODES = 120  # few, for time's sake: enough to learn from
 FAST = ("--learner", "m5")  # 25 s less than the default one, which the new arm and the tutorial train with
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("live")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("systems")]
 
 
 @pytest.fixture

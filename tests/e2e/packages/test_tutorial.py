@@ -13,7 +13,7 @@ COMMANDS = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 FEWER = {"--episodes 1000": "--episodes 120", "--episodes 40": "--episodes 3 || test $? = 1"}
 INSTALL = "pip install -e ."  # would download setuptools
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("live")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("systems")]
 
 
 def script(page: str, pip: str) -> str:

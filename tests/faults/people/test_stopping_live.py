@@ -27,9 +27,10 @@ PAGE_LIMIT_S = 0.3  # a press over HTTP
 SILENCE_LIMIT_S = 0.65  # half a second since its last message, which may be a period old; here the guard's and ours
 
 
-@pytest.fixture
-def robot(tmp_path):
-    with guarded_robot(tmp_path) as (session, endpoint, start, trace):
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    """A robot that each test stops: as after each try, people arm it again, which resets the e-stop."""
+    with guarded_robot(tmp_path_factory.mktemp("robot")) as (session, endpoint, start, trace):
         yield Driven(session, endpoint, start, trace)
 
 

@@ -30,7 +30,7 @@ def burners(number):
 
 
 @pytest.mark.promise("P51")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize("place", ["a file/run.mcap", "/proc/run.mcap"])
 @pytest.mark.parametrize(("tries", "load"), [(1, 0), pytest.param(10, BURNERS, marks=pytest.mark.slow)])
 def test_nothing_moves_when_its_recording_cannot_be_written(tries, load, place, tmp_path):
@@ -49,7 +49,7 @@ def test_nothing_moves_when_its_recording_cannot_be_written(tries, load, place, 
 
 
 @pytest.mark.promise("P51")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize("way", ["killed", "full disk"])
 def test_a_run_that_requires_its_recording_ends_with_it(way, tmp_path):
     with launched(tmp_path, "--require-recording") as system:

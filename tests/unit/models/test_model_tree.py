@@ -14,12 +14,12 @@ from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 ESTIMATORS = [
     ModelTreeRegressor(),
     ModelTreeRegressor("m5"),
-    BaggedModelTrees(trees=3),
+    BaggedModelTrees(trees=2),
     FailureTree(),
     FailureForest(trees=5),
     DistilledForest(trees=3, rounds=20),
     DistilledFailureTree(trees=5),
-    DistilledModelTree(trees=3),
+    DistilledModelTree(trees=2),
 ]
 
 

@@ -10,6 +10,7 @@ from tailor.runtime.processes.planner_process import PlannerProcess, split_comma
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_search import external
 from tailor.tools.main import main
+from tests.support.patience import wait_until
 from tests.support.planning_problems import DATA, own
 
 KITCHEN = [str(DATA / "own" / f"kitchen-{name}.pddl") for name in ("domain", "s2")]
@@ -71,8 +72,7 @@ def test_an_engine_that_is_not_installed_is_named():
     if find_spec("unified_planning") is None:
         pytest.skip("unified_planning is not installed")
     child = PlannerProcess("up:nonsense", "(define (domain d))", "(define (problem p))", 60.0)
-    while (answer := child.poll()) is None:
-        pass
+    answer = wait_until(child.poll, "answer")
     assert "no engine nonsense is installed" in answer.output
 
 

@@ -15,7 +15,7 @@ EXECUTIVE_MB = 150
 OTHERS_MB = 150  # of the launcher, the simulator and the recorder each
 
 
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize("domain", ["soccer", pytest.param("arm", marks=pytest.mark.slow)])
 def test_an_executive_in_motion_takes_150_mb_with_all_that_is_locked(tmp_path, domain):
     endpoint = free_endpoint()

@@ -22,7 +22,7 @@ from tailor.tools.learning.training_run import train_action
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.samplers.soccer import SoccerSampler
 
-COUNT, COUNT_ALONE = 100, 40
+COUNT, COUNT_ALONE = 60, 24
 RADIUS_M = 0.2
 COLUMNS = (
     ContextColumn("obstacle_x", "m", -3.5, 3.5, 0.1),
