@@ -67,7 +67,7 @@ def test_recorded_live_run_is_repeated_by_the_core_bit_for_bit(recording):
     assert verdict["compared"] > 2 * verdict["ticks"]
 
 
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 def test_a_run_beside_opponents_is_repeated_too(tmp_path):
     verified = command("verify", live_run(tmp_path / "opponents.mcap", "--scenario", "opponents"), "--json")
     assert verified.returncode == 0
