@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.onnx_reader import Contents
-from tailor.models.trees import tree_names
+from tailor.models.fitted_trees import tree_names
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]

@@ -6,7 +6,7 @@ import numpy as np
 
 from tailor.models.bounds.onnx_reader import Contents
 from tailor.models.bounds.tree_boxes import TreeBoxes, boxes_of_node
-from tailor.models.trees import tree_names
+from tailor.models.fitted_trees import tree_names
 
 UPPER_SCORE = 1.6448536  # standard deviations between mean and 95 % quantile of a normal distribution
 

@@ -17,7 +17,7 @@ from tailor.models.bounds.leaf_bounds import FARTHEST, ROUNDING
 from tailor.models.bounds.onnx_reader import Contents
 from tailor.models.bounds.rectified import Rectified
 from tailor.models.features.intervals import Span
-from tailor.models.trees import tree_names
+from tailor.models.fitted_trees import tree_names
 
 Floats = NDArray[np.float32]
 LAYERS = 3

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.cell_boxes import boxes_of_cells
 from tailor.models.bounds.onnx_reader import Contents, Node, read_graph
-from tailor.models.trees import tree_names
+from tailor.models.fitted_trees import tree_names
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]

@@ -12,9 +12,9 @@ from onnx import TensorProto
 from tailor.models.export.onnx_features import as_columns
 from tailor.models.export.onnx_graph import ML, Sink
 from tailor.models.features.features import STEEP
-from tailor.models.trees import tree_names
-from tailor.models.trees.cells import Cells, cells_of
-from tailor.models.trees.split_tree import LEAF, SplitTree
+from tailor.models.fitted_trees import tree_names
+from tailor.models.fitted_trees.cells import Cells, cells_of
+from tailor.models.fitted_trees.split_tree import LEAF, SplitTree
 
 ENSEMBLE = (
     "nodes_treeids", "nodes_nodeids", "nodes_featureids", "nodes_modes", "nodes_values", "nodes_truenodeids",

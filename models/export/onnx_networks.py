@@ -9,9 +9,9 @@ import numpy as np
 from tailor.models.export.onnx_features import as_columns
 from tailor.models.export.onnx_graph import Sink, single
 from tailor.models.export.onnx_leaves import add_number
+from tailor.models.fitted_trees import tree_names
 from tailor.models.regression.intervals import Intervals
 from tailor.models.regression.network import NetworkRegressor
-from tailor.models.trees import tree_names
 
 MeanStd = tuple[str, str]
 

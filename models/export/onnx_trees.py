@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from tailor.models.export.onnx_graph import Sink, single
 from tailor.models.export.onnx_leaves import add_leaves, add_steps
-from tailor.models.trees import tree_names
-from tailor.models.trees.linear_tree import LinearTree
-from tailor.models.trees.split_tree import SplitTree
+from tailor.models.fitted_trees import tree_names
+from tailor.models.fitted_trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.split_tree import SplitTree
 
 Tables = NDArray[np.float32]
 

@@ -9,7 +9,7 @@ from sklearn.tree import DecisionTreeRegressor
 
 from tailor.models.episodes.episode_groups import bootstrap_weights
 from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
-from tailor.models.trees.sklearn_trees import Step, means_of, splits_of
+from tailor.models.fitted_trees.sklearn_trees import Step, means_of, splits_of
 
 Array = NDArray[np.float64]
 

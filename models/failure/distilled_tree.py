@@ -7,8 +7,8 @@ from sklearn.tree import DecisionTreeRegressor
 
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
+from tailor.models.fitted_trees.sklearn_trees import Step, means_of, splits_of
 from tailor.models.trees.distillation import interpolated_rows
-from tailor.models.trees.sklearn_trees import Step, means_of, splits_of
 
 MAX_ROWS = 40_000  # of interpolated features
 ROWS_PER_EXAMPLE = 40  # of interpolated features

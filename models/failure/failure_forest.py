@@ -7,7 +7,7 @@ from sklearn.tree import DecisionTreeClassifier
 
 from tailor.models.episodes.episode_groups import bootstrap_weights
 from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
-from tailor.models.trees.sklearn_trees import Step, shares_of, splits_of
+from tailor.models.fitted_trees.sklearn_trees import Step, shares_of, splits_of
 
 
 class FailureForest(FailureTrees):

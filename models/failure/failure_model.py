@@ -13,7 +13,7 @@ from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import episode_indices
-from tailor.models.trees.sklearn_trees import Step
+from tailor.models.fitted_trees.sklearn_trees import Step
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int64]

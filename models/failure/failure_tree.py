@@ -8,8 +8,8 @@ from sklearn.tree import DecisionTreeClassifier
 
 from tailor.models.episodes.episode_groups import held_out_rows
 from tailor.models.failure.failure_model import FailureTrees, Floats, Ints
-from tailor.models.trees.sklearn_trees import Step, splits_of
-from tailor.models.trees.split_tree import SplitTree
+from tailor.models.fitted_trees.sklearn_trees import Step, splits_of
+from tailor.models.fitted_trees.split_tree import SplitTree
 
 Bools = NDArray[np.bool_]
 

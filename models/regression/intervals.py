@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.tree import DecisionTreeRegressor
 
+from tailor.models.fitted_trees.sklearn_trees import splits_of
+from tailor.models.fitted_trees.split_tree import SplitTree
 from tailor.models.regression.out_of_fold import held_out_parts
-from tailor.models.trees.sklearn_trees import splits_of
-from tailor.models.trees.split_tree import SplitTree
 
 Floats = NDArray[np.float32]
 Array = NDArray[np.float64]

@@ -9,11 +9,11 @@ from sklearn.tree import DecisionTreeRegressor
 from tailor.models.cards.card import Card
 from tailor.models.features.features import FeatureSpace
 from tailor.models.features.spaces import feature_space
+from tailor.models.fitted_trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.sklearn_trees import means_of, splits_of
+from tailor.models.fitted_trees.split_tree import SplitTree
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.trees.distillation import distill
-from tailor.models.trees.linear_tree import LinearTree
-from tailor.models.trees.sklearn_trees import means_of, splits_of
-from tailor.models.trees.split_tree import SplitTree
 
 Array = NDArray[np.float64]
 ROWS = 30_000

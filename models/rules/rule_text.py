@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.features.features import Quantity
-from tailor.models.trees.linear_tree import LinearTree
-from tailor.models.trees.split_tree import LEAF, SplitTree
+from tailor.models.fitted_trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.split_tree import LEAF, SplitTree
 
 Floats = NDArray[np.float32]
 

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.trees.linear_variant import TreeSettings, fit_linear
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.trees.robust_fit import refit
 from tailor.models.trees.scaling import Scale
 from tailor.models.trees.tree_conversion import Source, to_linear_tree

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.models.fitted_trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.split_tree import LEAF
 from tailor.models.trees import moments
-from tailor.models.trees.linear_tree import LinearTree
 from tailor.models.trees.scaling import Scale
-from tailor.models.trees.split_tree import LEAF
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import bootstrap_weights, episode_indices, held_out_rows
-from tailor.models.trees.linear_tree import LinearTree
+from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.trees.linear_variant import TreeSettings, fit_linear
 from tailor.models.trees.m5_variant import fit_m5
 from tailor.models.trees.regression_model import RegressionModel

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.trees.linear_tree import LeafRow, LinearTree
+from tailor.models.fitted_trees.linear_tree import LeafRow, LinearTree
+from tailor.models.fitted_trees.split_tree import LEAF, SplitRow
 from tailor.models.trees.scaling import Scale
-from tailor.models.trees.split_tree import LEAF, SplitRow
 from tailor.models.trees.tree_induction import Node
 
 Array = NDArray[np.float64]

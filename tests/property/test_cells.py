@@ -9,9 +9,9 @@ from tailor.models.bounds.cell_boxes import boxes_of_cells
 from tailor.models.bounds.onnx_reader import read_graph
 from tailor.models.export.onnx_export import export_duration
 from tailor.models.features.planar import projective
-from tailor.models.trees.cells import MAX_CELLS, cells_of
+from tailor.models.fitted_trees.cells import MAX_CELLS, cells_of
+from tailor.models.fitted_trees.split_tree import LEAF, SplitTree
 from tailor.models.trees.model_tree import BaggedModelTrees
-from tailor.models.trees.split_tree import LEAF, SplitTree
 from tests.support import standin
 
 FEATURES = 3

@@ -12,12 +12,12 @@ from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.features.joints import joints
 from tailor.models.features.planar import projective
 from tailor.models.features.spaces import feature_spaces
+from tailor.models.fitted_trees import cells
+from tailor.models.fitted_trees.split_tree import LEAF
 from tailor.models.regression import network_training
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import CalibratedRegressor
-from tailor.models.trees import cells
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
-from tailor.models.trees.split_tree import LEAF
 from tests.support import standin
 
 PI = np.pi

@@ -9,9 +9,9 @@ import pytest
 
 from tailor.models import runtime
 from tailor.models.features.planar import projective
+from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
-from tailor.models.trees.linear_tree import LinearTree
 from tailor.tools.commands.learn import train
 from tailor.tools.learning.recipe import read_recipe, recipe_path
 from tailor.tools.learning.target_zoo import target_zoo

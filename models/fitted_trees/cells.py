@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.trees.split_tree import SplitTree
+from tailor.models.fitted_trees.split_tree import SplitTree
 
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]

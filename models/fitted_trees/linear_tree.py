@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.models.trees.split_tree import Floats, Ints, SplitRow, SplitTree
+from tailor.models.fitted_trees.split_tree import Floats, Ints, SplitRow, SplitTree
 
 LeafRow = tuple[NDArray[np.float64], float, float, float, float, int]  # slopes, intercept, low, high, std, rows
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.tree import BaseDecisionTree, DecisionTreeClassifier, DecisionTreeRegressor
 
-from tailor.models.trees.split_tree import LEAF, SplitTree
+from tailor.models.fitted_trees.split_tree import LEAF, SplitTree
 
 Floats = NDArray[np.float32]
 Step = tuple[SplitTree, Floats]  # a tree, and a number for each of its leaves: a probability, a risk

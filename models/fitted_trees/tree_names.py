@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 BEYOND = "beyond"  # (u, f + 1): the product with features and a one is positive beyond each threshold
-STRIDES = "strides"  # (k, u), see models/trees/cells.py
+STRIDES = "strides"  # (k, u), see models/fitted_trees/cells.py
 FIRST = "first_cell"  # (k, 1)
 LEAF = "leaf_of_cell"  # (cells,)
 FORMULAS = "formulas"  # (l, f + 1) of one tree: slopes and intercept of each leaf
