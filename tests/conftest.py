@@ -3,6 +3,7 @@
 `pytest --hypothesis-profile explore` draws new ones. Tests that share a fixture of their module run on one worker.
 """
 
+import gc
 import os
 
 import pytest
@@ -16,6 +17,17 @@ os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onn
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeat", settings.get_profile("explore"), derandomize=True)
 settings.load_profile("repeat")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session):
+    """Six thousand tests are kept to the end: garbage collections skip them, now and later."""
+    gc.disable()
+
+
+def pytest_collection_finish(session):
+    gc.enable()
+    gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the marks in its own
