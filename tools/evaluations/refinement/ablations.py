@@ -28,6 +28,7 @@ ABLATIONS = (
     Variant("no spread", replace(DEFAULT, k_std=0.0)),
     Variant("exact arrivals", replace(DEFAULT, arrival_spread=())),
     Variant("risk price 0", replace(DEFAULT, risk_cost_s=0.0)),
+    Variant("any gain", replace(DEFAULT, gain_k_std=0.0)),  # also one smaller than the models' deviation
 )
 REMARKS = (
     "improvement: over greedy with the same models; more: than the default, paired by start, in points; contacts and "
