@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tailor.executive.planning import Domain, Problem, Result, Search, Settings
+from tailor.executive.planning.pddl.errors import shortened
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START, Limits
 
@@ -135,10 +136,16 @@ def _linked(child: PlannerProcess, domain: Domain, problem: Problem) -> Result:
     try:
         plan = completed(parse_plan(answer.output), domain, problem)
     except UsageError as error:
-        return Result("limit", None, f"{answer.reason}; {error}", 0, 0)
+        return Result("limit", None, f"{answer.reason}{_verdict(answer.output) or f'; {error}'}", 0, 0)
     if isinstance(plan, str):
         return Result("limit", None, f"the planner's plan is unsound: {plan}", 0, 0)
     return Result("solved", plan, "", 0, 0)
+
+
+def _verdict(output: str) -> str:
+    """What a planner states instead of a plan, such as VHPOP's "no plan"; empty if it printed steps, or nothing."""
+    lines = [line for line in map(str.strip, output.splitlines()) if line and not line.startswith(";")]
+    return f": '{shortened(lines[-1])}'" if lines and "(" not in output else ""
 
 
 def _searched(search: Search, limits: Limits) -> Result:

@@ -73,6 +73,20 @@ def test_the_first_planner_is_the_one_of_the_options(capsys):
     assert rows[0]["valid"]
 
 
+@pytest.mark.parametrize(
+    ("output", "reason"),
+    [
+        (";kitchen-s1\nno plan\n;Problem has no solution.", "the planner ended with code 0: 'no plan'"),
+        ("x" * 9999, "the planner ended with code 0: '" + "x" * 57 + "...'"),
+        ("1:(grip", "the planner ended with code 0; plan text, line 1: "),
+        ("", "the planner ended with code 0; plan text: expected steps"),
+    ],
+)
+def test_what_a_planner_states_instead_of_a_plan_is_quoted(capsys, output, reason):
+    _, rows = compared(capsys, KITCHEN, printing(output))
+    assert rows[1]["reason"].startswith(reason)
+
+
 @pytest.mark.parametrize("form", ["--svg", "--dot", "--links"])
 def test_a_form_of_plans_is_refused_beside_a_comparison(capsys, form):
     assert main(["plan", *KITCHEN, "--compare", printing(""), form]) == 2
