@@ -8,6 +8,7 @@ import pytest
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.box_chain import BoxChain
 from tailor.executive.refinement.certificates.boxes import box_of
+from tailor.executive.refinement.certificates.joint_bounds import joint_bounds
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
@@ -69,3 +70,13 @@ def test_pairs_on_chains_below_the_limit_are_bounded_anew_and_no_others(models):
     dearest = [int(np.argmax(through)) for through in costs.through]
     assert chain.inherits(dearest)
     assert chain.costs().through[-1].min() >= least - 1e-9
+
+
+def test_bounds_raised_are_at_least_those_of_the_pieces_themselves(models):
+    chain = chain_of(models, "4 free")
+    split_all(chain, 1)
+    chain.raise_cheapest(chain.costs(), np.inf)
+    before, own = (each.ravel() for each in np.indices((len(chain.boxes[0]), len(chain.boxes[1]))))
+    request = chain._bounds[1], chain.boxes[0].part(before), chain.boxes[1].part(own)
+    (alone,) = joint_bounds([request])
+    assert (chain._pairs[1].middle.ravel() >= alone.middle - 1e-5).all()
