@@ -73,6 +73,21 @@ def linked(tmp_path, delay_s=0.0, jitter_s=0.0):
         yield Linked(session, start, trace, proxy, stack.enter_context(open_client(proxy.endpoint)))
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    with linked(tmp_path_factory.mktemp("robot")) as robot:
+        yield robot
+
+
+@pytest.fixture
+def robot(shared):
+    """One robot for all interruptions, as for all tries of one: by now, what the last one held up has gone by."""
+    shared.proxy.block(False)
+    shared.proxy.delay(0.0)
+    shared.back_s()
+    return shared
+
+
 def partitioned(robot, phases, way):
     """Interrupts the link; seconds to zero at the guard, and seconds until the data are back."""
     wait_until(robot.drives, "robot moves")
@@ -98,13 +113,12 @@ def partitioned(robot, phases, way):
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("tries", TRIES)
 @pytest.mark.parametrize("way", WAYS)
-def test_a_partition_stops_the_robot_and_data_are_back_within_a_second(tmp_path, way, tries, measured):
+def test_a_partition_stops_the_robot_and_data_are_back_within_a_second(robot, way, tries, measured):
     phases = random.Random(7)
-    with linked(tmp_path) as robot:
-        for _ in range(tries):
-            stop_s, back_s = repeat_on_stall(3, lambda: partitioned(robot, phases, way))
-            measured.add(stop_s, STOP_S, what="to zero")
-            measured.add(back_s, BACK_S, what="data back")
+    for _ in range(tries):
+        stop_s, back_s = repeat_on_stall(3, lambda: partitioned(robot, phases, way))
+        measured.add(stop_s, STOP_S, what="to zero")
+        measured.add(back_s, BACK_S, what="data back")
 
 
 @pytest.mark.promise("P13")
@@ -127,48 +141,45 @@ def test_delays_up_to_300_ms_do_not_stop_the_robot(tmp_path, delay_s, jitter_s, 
 @pytest.mark.promise("P13")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("tries", TRIES)
-def test_a_delay_of_800_ms_that_comes_up_stops_the_robot(tmp_path, tries, measured):
+def test_a_delay_of_800_ms_that_comes_up_stops_the_robot(robot, tries, measured):
     phases = random.Random(8)
-    with linked(tmp_path) as robot:
 
-        def delayed():
-            robot.proxy.delay(0.0)
-            robot.back_s()  # what was held up has gone by
-            wait_until(robot.drives, "robot moves")
-            time.sleep(phases.uniform(0.5, 0.6))
-            since_s = time.monotonic()
-            robot.proxy.delay(0.8, 0.1)
-            stop_s = robot.stopped_s(since_s) - since_s
-            time.sleep(2.0)
-            assert outputs(robot.trace)[-1][1] == 0.0, "late commands move nothing"
-            assert stop_s <= STOP_S
-            return stop_s
+    def delayed():
+        robot.proxy.delay(0.0)
+        robot.back_s()  # what was held up has gone by
+        wait_until(robot.drives, "robot moves")
+        time.sleep(phases.uniform(0.5, 0.6))
+        since_s = time.monotonic()
+        robot.proxy.delay(0.8, 0.1)
+        stop_s = robot.stopped_s(since_s) - since_s
+        time.sleep(2.0)
+        assert outputs(robot.trace)[-1][1] == 0.0, "late commands move nothing"
+        assert stop_s <= STOP_S
+        return stop_s
 
-        for _ in range(tries):
-            measured.add(repeat_on_stall(3, delayed), STOP_S, what="to zero")
+    for _ in range(tries):
+        measured.add(repeat_on_stall(3, delayed), STOP_S, what="to zero")
 
 
 @pytest.mark.promise("P13")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("tries", TRIES)
-def test_a_delay_that_creeps_up_stops_the_robot(tmp_path, tries, measured):
-    with linked(tmp_path) as robot:
+def test_a_delay_that_creeps_up_stops_the_robot(robot, tries, measured):
+    def crept():
+        robot.proxy.delay(0.0)
+        robot.back_s()  # what was held up has gone by
+        wait_until(robot.drives, "robot moves")
+        since_s = time.monotonic()
+        while moving(robot.trace, 0.5)():
+            delay_s = RAMP_S_PER_S * (time.monotonic() - since_s)
+            robot.proxy.delay(delay_s)
+            time.sleep(0.01)
+            assert delay_s < 2.0, "the robot drives on"
+        assert delay_s > 0.25, "a delay of 250 ms must not stop it"
+        time.sleep(1.0)
+        assert outputs(robot.trace)[-1][1] == 0.0
+        assert delay_s <= MAX_DELAY_S
+        return delay_s
 
-        def crept():
-            robot.proxy.delay(0.0)
-            robot.back_s()  # what was held up has gone by
-            wait_until(robot.drives, "robot moves")
-            since_s = time.monotonic()
-            while moving(robot.trace, 0.5)():
-                delay_s = RAMP_S_PER_S * (time.monotonic() - since_s)
-                robot.proxy.delay(delay_s)
-                time.sleep(0.01)
-                assert delay_s < 2.0, "the robot drives on"
-            assert delay_s > 0.25, "a delay of 250 ms must not stop it"
-            time.sleep(1.0)
-            assert outputs(robot.trace)[-1][1] == 0.0
-            assert delay_s <= MAX_DELAY_S
-            return delay_s
-
-        for _ in range(tries):
-            measured.add(repeat_on_stall(3, crept), MAX_DELAY_S, what="delay at zero")
+    for _ in range(tries):
+        measured.add(repeat_on_stall(3, crept), MAX_DELAY_S, what="delay at zero")
