@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, NullLocator
 from rich.console import Console
 from rich.table import Table
 
@@ -69,5 +70,9 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
         plot.set_title(f"{curve.name}: exponent {curve.exponent:.1f}, allowed {curve.allowed:.0f}", fontsize="small")
         plot.set_xlabel(curve.work, fontsize="small")
         plot.set_ylabel(curve.cost, fontsize="small")
+        plot.set_xticks(work, [f"{w:g}" for w in work], fontsize="small")  # the powers of ten say less than the points
+        plot.yaxis.set_major_formatter("{x:g}")
+        plot.yaxis.set_minor_formatter("{x:g}" if max(cost) < 10 * min(cost) else NullFormatter())
+        plot.xaxis.set_minor_locator(NullLocator())
         plot.grid(alpha=0.3)
     figure.savefig(path, dpi=100)
