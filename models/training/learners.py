@@ -83,6 +83,7 @@ SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "networks": lambda seed: SklearnClassifier(_networks(seed), COST_RATIO),
     "svm": lambda seed: SklearnClassifier(_svm(seed), COST_RATIO),
 }
+LEAST_OUTCOMES = {"network": 2, "networks": 2, "svm": 5}  # of each kind: parts of their training need some of both
 
 
 # Names in the commands of older model cards, which still reproduce their models.
@@ -104,6 +105,11 @@ def make_learner(kind: str, name: str, seed: int) -> Any:
       UsageError: There is no learner of that name for that kind.
     """
     return _table(kind)[learner_name(kind, name)](seed)
+
+
+def least_outcomes(name: str) -> int:
+    """Number of failures, and of successes, that a learner of success needs."""
+    return LEAST_OUTCOMES.get(learner_name("success", name), 1)
 
 
 def single_learners(name: str, seed: int) -> tuple[Any, ...]:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import clone
 
-from tailor.models.episodes.episodes import UNOBSERVED, Episode
-from tailor.models.episodes.examples import Examples, folds, split, success_examples
+from tailor.models.episodes.episodes import Episode
+from tailor.models.episodes.examples import Examples, folds, split
 from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
@@ -69,7 +69,7 @@ def train_regression(
       UsageError: Fewer than MIN_EPISODES finished episodes hold the target, or the learner is unknown.
     """
     finished = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
-    _check_count(finished, "finished")
+    check_count(finished, "finished")
     rng = np.random.default_rng(seed)
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
@@ -99,43 +99,6 @@ def train_regression(
     return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space), n_i, test)
 
 
-def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
-    """Train a model of success on the first tick of each episode.
-
-    Args:
-      episodes: Episodes of one action; those with failure `UNOBSERVED` are left out.
-      space: Feature space of the action's arguments.
-      learner: Key of `learners.SUCCESS_LEARNERS`.
-      seed: Random seed of splits and learner.
-
-    Raises:
-      UsageError: Fewer than MIN_EPISODES episodes, only one outcome, or an unknown learner.
-    """
-    episodes = [episode for episode in episodes if episode.failure != UNOBSERVED]
-    _check_count(episodes, "")
-    if len({episode.success for episode in episodes}) < 2:
-        raise UsageError("all episodes have the same outcome, expected some successes and some failures")
-    rng = np.random.default_rng(seed)
-    rows = success_examples(episodes, 1)
-    kept, apart = split(rows.groups, TEST_SHARE, rng)
-    fresh = rows.of(apart)
-    held_out = fit("success", learner, rows.of(kept), space, seed)
-    features = space(fresh.arguments)
-    observed, probability = fresh.targets > 0.5, held_out.predict_proba(features)[:, 1]
-    table = scores.confusion(probability >= held_out.threshold_, observed)
-    test = {
-        "n": table.n,
-        "training_episodes": len(kept),
-        "failure_rate_pct": float(100 * (1 - rows.targets.mean())),
-        "accuracy_pct": table.accuracy,
-        "missed_failures_pct": table.success_fail,
-        "false_alarms_pct": table.fail_success,
-        "confusion_pct": [table.fail_fail, table.fail_success, table.success_fail, table.success_success],
-        "reliability": [list(row) for row in scores.reliability(probability, observed)],
-    }
-    return Trained(fit("success", learner, rows, space, seed), 1, test)
-
-
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
     """Fit a learner to examples.
 
@@ -158,7 +121,8 @@ def _fitted(learner: Any, rows: Examples, space: FeatureSpace) -> Any:
     return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups)
 
 
-def _check_count(episodes: Sequence[Episode], what: str) -> None:
+def check_count(episodes: Sequence[Episode], what: str) -> None:
+    """Raise a UsageError if the episodes are too few."""
     if len(episodes) < MIN_EPISODES:
         raise UsageError(f"{len(episodes)} {what} episodes, expected at least {MIN_EPISODES}".replace("  ", " "))
 

@@ -129,7 +129,7 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     """Kind, learner and training function of each model that the episodes suffice for."""
     from tailor.models.episodes.episodes import UNOBSERVED
     from tailor.models.episodes.regression_targets import ENERGY
-    from tailor.models.training import training
+    from tailor.models.training import success_training, training
 
     if data.manifest.get("objects"):
         return
@@ -139,12 +139,12 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
         yield "energy", request.learner, partial(training.train_regression, ENERGY)
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
     if failures >= MIN_FAILURE_SHARE * len(data.episodes) or (failures and _needs_success(request.robot, data)):
-        yield "success", request.failure_learner, training.train_success
+        yield "success", request.failure_learner, success_training.train_success
 
 
 def _beside_objects(objects: int, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
     """Train success beside objects; the episodes of one run have its number, and are never split."""
-    from tailor.models.training.training import train_success
+    from tailor.models.training.success_training import train_success
 
     return train_success([replace(each, number=each.number // objects) for each in episodes], space, learner, seed)
 

@@ -12,7 +12,8 @@ from tailor.models.export.publishing import Publication, publish
 from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.planar import projective
 from tailor.models.training import learners, training
-from tailor.models.training.training import Trained, train_duration, train_regression, train_success
+from tailor.models.training.success_training import train_success
+from tailor.models.training.training import Trained, train_duration, train_regression
 from tailor.schemas.errors import UsageError
 from tests.support import standin
 
@@ -88,6 +89,26 @@ def test_training_twice_gives_the_same_bits(data, duration) -> None:
     assert again.test == duration.test
     rows = projective(data.episodes[0].ticks)
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
+
+
+def with_failures(data: DataSet, failing: int) -> list[Episode]:
+    return [replace(e, success=e.number >= failing, failure="") for e in data.episodes[:50]]
+
+
+@pytest.mark.parametrize("learner", learners.SUCCESS_LEARNERS)
+def test_few_failures_train_a_model_wherever_the_split_puts_them(data, learner) -> None:
+    episodes = with_failures(data, learners.least_outcomes(learner))
+    for seed in range(3):  # some of the failures are among the quarter to test on
+        trained = train_success(episodes, projective, learner, seed)
+        probability = trained.learner.predict_proba(projective(np.array([episodes[0].arguments])))
+        assert probability.shape == (1, 2)
+
+
+@pytest.mark.parametrize("learner", ["networks", "svm"])
+def test_fewer_failures_than_a_learner_needs_are_refused(data, learner) -> None:
+    least = learners.least_outcomes(learner)
+    with pytest.raises(UsageError, match=f"{least - 1} episodes with the rarer outcome, expected at least {least}"):
+        train_success(with_failures(data, least - 1), projective, learner, 0)
 
 
 def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
