@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,15 +77,20 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, ta
     assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
 
 
-def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models):
-    chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
-    cost = cases(models, 2)["8 free"][1].objective(models, chosen)
+def searched_and_proven(cost, chosen) -> tuple[Any, Certificate]:
     solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
     solver.advance(CheckBudget(25))
     assert solver.best is not None
     proof = certificate(cost, solver.best, chosen)
     assert isinstance(proof, Certificate)
     proof.advance(CheckBudget(45))
+    return solver, proof
+
+
+def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models):
+    chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
+    cost = cases(models, 2)["8 free"][1].objective(models, chosen)
+    _, proof = searched_and_proven(cost, chosen)
     assert proof.gap_pct is not None
     assert proof.gap_pct <= 5.0 + 1e-9
 
@@ -131,12 +137,7 @@ def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, seed)
 def test_no_choice_costs_less_than_a_proof_with_models_that_ship_states(models, task):
     chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
     cost = cases(models, TASKS)["8 free"][task].objective(models, chosen)
-    solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
-    solver.advance(CheckBudget(25))
-    assert solver.best is not None
-    proof = certificate(cost, solver.best, chosen)
-    assert isinstance(proof, Certificate)
-    proof.advance(CheckBudget(45))
+    solver, proof = searched_and_proven(cost, chosen)
     rng = np.random.default_rng(task)
     near = solver.best + 0.02 * cost.ranges.width * rng.standard_normal((2000, cost.ranges.count))
     assert 0.9 * solver.value < proof.bound
