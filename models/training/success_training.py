@@ -15,6 +15,7 @@ from tailor.models.training.training import TEST_SHARE, Trained, check_count, fi
 from tailor.schemas.errors import UsageError
 
 MIN_OUTCOMES = 5  # successes, and failures, to train on, if there are as many
+MAX_DRAWS = 1000  # of a split; five of five are among three quarters in one of four
 
 
 def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
@@ -60,10 +61,11 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
 def _split_with_both_outcomes(rows: Examples, rng: np.random.Generator) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Episodes to train on and to test on; drawn again while too few of the rarer outcome are among the former."""
     least = min(MIN_OUTCOMES, _rarer(rows))
-    while True:
+    for _ in range(MAX_DRAWS):
         kept, apart = split(rows.groups, TEST_SHARE, rng)
         if _rarer(rows.of(kept)) >= least:
             return kept, apart
+    raise UsageError(f"the {_rarer(rows)} episodes with the rarer outcome are of too few runs to train and to test on")
 
 
 def _rarer(rows: Examples) -> int:

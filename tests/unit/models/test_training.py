@@ -111,6 +111,12 @@ def test_fewer_failures_than_a_learner_needs_are_refused(data, learner) -> None:
         train_success(with_failures(data, least - 1), projective, learner, 0)
 
 
+def test_failures_of_too_few_runs_to_split_are_refused(data) -> None:
+    episodes = [replace(e, number=e.number % 3, success=e.number > 2, failure="") for e in data.episodes[:48]]
+    with pytest.raises(UsageError, match="the 3 episodes with the rarer outcome are of too few runs"):
+        train_success(episodes, projective, "tree", 0)
+
+
 def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
     trained = train_success(data.episodes, projective, "tree", seed=3)
     about = Publication("success", "tree", projective, 3, "tailor train toy")
