@@ -28,18 +28,14 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
       seed: Random seed of splits and learner.
 
     Raises:
-      UsageError: Fewer than MIN_EPISODES episodes, only one outcome, or an unknown learner.
+      UsageError: Fewer than MIN_EPISODES episodes, fewer of an outcome than the learner needs, all of them of too few
+        runs to be split, or an unknown learner.
     """
     episodes = [episode for episode in episodes if episode.failure != UNOBSERVED]
     check_count(episodes, "")
-    if len({episode.success for episode in episodes}) < 2:
-        raise UsageError("all episodes have the same outcome, expected some successes and some failures")
-    rng = np.random.default_rng(seed)
     rows = success_examples(episodes, 1)
-    least = learners.least_outcomes(learner)
-    if _rarer(rows) < least:
-        raise UsageError(f"{_rarer(rows)} episodes with the rarer outcome, expected at least {least} for {learner}")
-    kept, apart = _split_with_both_outcomes(rows, rng)
+    _check_outcomes(rows, learner)
+    kept, apart = _split_with_both_outcomes(rows, np.random.default_rng(seed))
     fresh = rows.of(apart)
     held_out = fit("success", learner, rows.of(kept), space, seed)
     features = space(fresh.arguments)
@@ -58,14 +54,22 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
     return Trained(fit("success", learner, rows, space, seed), 1, test)
 
 
+def _check_outcomes(rows: Examples, learner: str) -> None:
+    rarer, least = _rarer(rows), learners.least_outcomes(learner)
+    if not rarer:
+        raise UsageError("all episodes have the same outcome, expected some successes and some failures")
+    if rarer < least:
+        raise UsageError(f"{rarer} episodes with the rarer outcome, expected at least {least} for {learner}")
+
+
 def _split_with_both_outcomes(rows: Examples, rng: np.random.Generator) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Episodes to train on and to test on; drawn again while too few of the rarer outcome are among the former."""
-    least = min(MIN_OUTCOMES, _rarer(rows))
+    rarer = _rarer(rows)
     for _ in range(MAX_DRAWS):
         kept, apart = split(rows.groups, TEST_SHARE, rng)
-        if _rarer(rows.of(kept)) >= least:
+        if _rarer(rows.of(kept)) >= min(MIN_OUTCOMES, rarer):
             return kept, apart
-    raise UsageError(f"the {_rarer(rows)} episodes with the rarer outcome are of too few runs to train and to test on")
+    raise UsageError(f"the {rarer} episodes with the rarer outcome are of too few runs to train and to test on")
 
 
 def _rarer(rows: Examples) -> int:

@@ -11,8 +11,7 @@ PATIENCE = 4  # iterations without such a rise; proofs that succeeded had no two
 class BoundStagnation:
     """Tracks the lower bound of one proof over its iterations."""
 
-    def __init__(self, patience: int = PATIENCE) -> None:
-        self._patience = patience
+    def __init__(self) -> None:
         self._milestone = -np.inf
         self._idle = 0
 
@@ -21,4 +20,4 @@ class BoundStagnation:
         self._idle += 1
         if bound > self._milestone + MIN_RISE * value:
             self._milestone, self._idle = bound, 0
-        return self._idle > self._patience
+        return self._idle > PATIENCE
