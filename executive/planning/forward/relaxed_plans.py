@@ -1,11 +1,14 @@
 """The FF heuristic: length of a plan that ignores what actions make false, and the actions it begins with.
 
 Sources: Hoffmann & Nebel, JAIR 14 (2001): relaxed plans and helpful actions. Each literal's supporter is its cheapest
-by the additive heuristic (Keyder & Geffner, ECAI 2008), not the first by level: relaxed plans become shorter.
+by the additive heuristic (Keyder & Geffner, ECAI 2008), not the first by level: relaxed plans become shorter. As in FF
+an action of the relaxed plan serves other needs, too; costs take the place of levels.
 """
 
 from __future__ import annotations
 
+import heapq
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tailor.executive.planning.forward.strips_task import StripsTask, bits_of
@@ -39,22 +42,39 @@ class RelaxedPlans:
 
     def estimate(self, state: int) -> Estimate | None:
         """The estimate of a state; None if not even a relaxed plan reaches the goal."""
-        applicable, supporters = self._supporters(state)
+        applicable, supporters, costs = self._supporters(state)
         if supporters is None:
             return None
-        actions, chosen = self._strips.actions, set[int]()
-        pending = list(self._strips.goal)
-        while pending:
-            supporter = supporters[pending.pop()]
-            if supporter >= 0 and supporter not in chosen:
-                chosen.add(supporter)
-                pending += actions[supporter].needs
+        chosen = self._relaxed_plan(supporters, costs)
         return Estimate(len(chosen), applicable, tuple(index for index in applicable if index in chosen))
 
-    def _supporters(self, state: int) -> tuple[tuple[int, ...], list[int] | None]:
-        """The applicable actions, and the cheapest one that makes each literal true, -1 where it holds.
+    def _relaxed_plan(self, supporters: Sequence[int], costs: Sequence[int]) -> set[int]:
+        """The supporters of the goal and of their own needs, the most expensive consumer's first.
 
-        Instead of the latter None if a literal of the goal has none.
+        What an action of the plan makes serves every consumer that costs at least as much: no action depends on one
+        of its own cost or above, so the plan stays free of cycles. E.g. the place where a cup is put for the goal also
+        frees the hand for the next cup.
+        """
+        actions, chosen = self._strips.actions, set[int]()
+        made: dict[int, int] = {}  # least cost of an action of the plan that makes a literal
+        pending = [(-UNREACHED, literal) for literal in self._strips.goal]  # the consumer's cost, negated
+        heapq.heapify(pending)
+        while pending:
+            consumer, literal = heapq.heappop(pending)
+            supporter, cost = supporters[literal], costs[literal]
+            if supporter < 0 or supporter in chosen or made.get(literal, UNREACHED + 1) <= -consumer:
+                continue
+            chosen.add(supporter)
+            for other in actions[supporter].made:
+                made[other] = min(cost, made.get(other, cost))
+            for need in actions[supporter].needs:
+                heapq.heappush(pending, (-cost, need))
+        return chosen
+
+    def _supporters(self, state: int) -> tuple[tuple[int, ...], list[int] | None, list[int]]:
+        """The applicable actions, the cheapest one that makes each literal true, -1 where it holds, and its cost.
+
+        None instead of the second if a literal of the goal has none.
 
         Literals are closed in the order of their additive cost, bucket by bucket, until all of the goal are.
         """
@@ -91,5 +111,5 @@ class RelaxedPlans:
             if cost == 0:  # what holds
                 applicable = tuple(index for index, number in enumerate(missing) if not number)
             if not unmet:
-                return applicable, supporters
-        return applicable, None
+                return applicable, supporters, costs
+        return applicable, None, costs

@@ -18,6 +18,11 @@ def test_twelve_cups_need_four_steps_each(engine):
     assert validate(plan, domain, problem) == ""
 
 
+def test_a_hand_that_a_needed_step_frees_costs_no_detour():
+    result = solve(*many_cups(12), FORWARD)
+    assert result.visited == len(result.plan.steps) == 48  # every evaluated state is on the way
+
+
 def test_partial_order_search_alone_does_not_reach_that_far():
     assert solve(*many_cups(6), Settings(engine="pocl", node_limit=3000)).status == "limit"
 
