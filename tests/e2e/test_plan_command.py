@@ -339,8 +339,8 @@ def test_anytime_reports_each_improvement(capsys):
 def test_an_anytime_search_that_ends_by_its_limit_says_that_none_better_was_found(capsys):
     class AfterThePlan(plan_limits.Limits):
         def spent(self):
-            self.reason = "no plan within 1 s" if search.best is not None and search.best.plan is not None else ""
-            return bool(self.reason)
+            self.reached = "1 s" if search.best is not None and search.best.plan is not None else ""
+            return bool(self.reached)
 
     domain, problem = own("kitchen-durative-s3")
     search = AnytimeSearch(domain, problem, DEFAULT)

@@ -29,13 +29,29 @@ class Limits:
     limit_s: float = math.inf
     limit_mb: float = math.inf
     granted: int = 0
-    reason: str = ""  # why the budget is spent
+    reached: str = ""  # the limit that was reached, e.g. "2 s"
+    interrupted: bool = False
     deadline: float = field(init=False)
     started_mb: float = field(init=False)
 
     def __post_init__(self) -> None:
         self.deadline = time.monotonic() + self.limit_s
         self.started_mb = memory_mb()
+
+    @property
+    def reason(self) -> str:
+        """Why a search ended without a plan; empty if no limit was reached."""
+        return self._why("no plan")
+
+    @property
+    def why_none_better(self) -> str:
+        """Why a search with a plan ended; empty if no limit was reached."""
+        return self._why("none better")
+
+    def _why(self, missing: str) -> str:
+        if self.interrupted:
+            return "interrupted"
+        return f"{missing} within {self.reached}" if self.reached else ""
 
     @property
     def left_s(self) -> float:
@@ -46,7 +62,7 @@ class Limits:
         """See `Budget`."""
         self.granted += 1
         if time.monotonic() >= self.deadline:
-            self.reason = f"no plan within {self.limit_s:g} s"
+            self.reached = f"{self.limit_s:g} s"
         elif self.granted % CHECKS_PER_LOOK == 0 and memory_mb() - self.started_mb > self.limit_mb:
-            self.reason = f"no plan within {self.limit_mb:g} MB of memory"
-        return bool(self.reason)
+            self.reached = f"{self.limit_mb:g} MB of memory"
+        return bool(self.reached)

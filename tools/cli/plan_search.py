@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tailor.runtime.processes.planner_process import PlannerProcess
 
 GRACE_S = 5.0  # of kairos-planner, beyond its own time limit
-INTERRUPTED = "interrupted"
 _POLL_S = 0.002  # period of polling an external planner
 
 
@@ -74,12 +73,12 @@ def anytime(search: AnytimeSearch, limits: Limits) -> Result:
                     file=sys.stderr,
                 )
     except KeyboardInterrupt:
-        limits.reason = INTERRUPTED
+        limits.interrupted = True
     if search.best is None:
         return Result("limit", None, limits.reason, *search.counts)
     if search.best.plan is not None:
-        why = "no plan is better" if search.ended == "proven" else search.ended or limits.reason
-        print(f"best plan found: {why.replace('no plan within', 'none better within')}", file=sys.stderr)
+        why = "no plan is better" if search.ended == "proven" else search.ended or limits.why_none_better
+        print(f"best plan found: {why}", file=sys.stderr)
     return search.best
 
 
@@ -103,7 +102,7 @@ def anytime_beside_kairos(
         ours = anytime(search, limits)
         if search.ended == "proven" or ours.status == "unsolvable":
             return ours, ""
-        while child.poll() is None and limits.reason != INTERRUPTED:
+        while child.poll() is None and not limits.interrupted:
             time.sleep(_POLL_S)
     finally:
         child.kill()
