@@ -8,7 +8,7 @@ from typing import Any
 
 
 def main(engine: str, domain: str, problem: str) -> int:
-    """Plan and print; 0 with a plan, 1 without.
+    """Plan and print; 0 with a plan, 1 without, with the reason as last line: the reader of plans quotes it.
 
     Args:
       engine: Name of the engine, e.g. "pyperplan".
@@ -19,18 +19,41 @@ def main(engine: str, domain: str, problem: str) -> int:
     from unified_planning.shortcuts import OneshotPlanner, get_environment
 
     get_environment().credits_stream = None
-    if engine not in get_environment().factory.engines:
-        print(f"no engine {engine} is installed")  # the reader of plans quotes this line
+    reason = _no_planner(engine)
+    task = None if reason else PDDLReader().parse_problem(domain, problem)
+    reason = reason or _unsupported(engine, task)
+    if reason:
+        print(reason)
         return 1
-    task = PDDLReader().parse_problem(domain, problem)
     with OneshotPlanner(name=engine) as planner:
         result = planner.solve(task)
     if result.plan is None:
-        print(f"; {result.status.name}")
+        print(result.status.name.lower().replace("_", " "))
         return 1
     for line in _lines(result.plan, task):
         print(line)
     return 0
+
+
+def _no_planner(engine: str) -> str:
+    """Why an engine cannot plan at all; empty if it can."""
+    from unified_planning.shortcuts import get_environment
+
+    factory = get_environment().factory
+    if engine not in factory.engines:
+        return f"no engine {engine} is installed"
+    return "" if factory.engine(engine).is_oneshot_planner() else f"the engine {engine} is no planner"
+
+
+def _unsupported(engine: str, task: Any) -> str:
+    """What a task has that an engine does not plan with; some engines end by an assertion instead. Empty if nothing."""
+    from unified_planning.shortcuts import get_environment
+
+    kind = get_environment().factory.engine(engine)
+    if kind.supports(task.kind):
+        return ""
+    lacking = sorted(task.kind.features - kind.supported_kind().features)
+    return f"the engine {engine} does not plan with {', '.join(lacking).lower().replace('_', ' ')}"
 
 
 def _lines(plan: Any, task: Any) -> Iterator[str]:

@@ -6,11 +6,10 @@ import pytest
 
 from tailor.executive.planning import validate
 from tailor.runtime.planners import named
-from tailor.runtime.processes.planner_process import PlannerProcess, split_command
+from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_search import external
 from tailor.tools.main import main
-from tests.support.patience import wait_until
 from tests.support.planning_problems import DATA, own
 
 KITCHEN = [str(DATA / "own" / f"kitchen-{name}.pddl") for name in ("domain", "s2")]
@@ -68,12 +67,22 @@ def test_other_commands_are_programs():
     assert named.named_planner("kairos --no-anytime") is None
 
 
-def test_an_engine_that_is_not_installed_is_named():
-    if find_spec("unified_planning") is None:
-        pytest.skip("unified_planning is not installed")
-    child = PlannerProcess("up:nonsense", "(define (domain d))", "(define (problem p))", 60.0)
-    answer = wait_until(child.poll, "answer")
-    assert "no engine nonsense is installed" in answer.output
+@pytest.mark.parametrize(
+    ("engine", "reason"),
+    [
+        ("nonsense", "no engine nonsense is installed"),
+        ("sequential_plan_validator", "the engine sequential_plan_validator is no planner"),
+        ("pyperplan", "the engine pyperplan does not plan with continuous time"),
+    ],
+)
+def test_an_engine_that_cannot_plan_a_task_is_named_with_the_reason(engine, reason, capsys):
+    package = "up_pyperplan" if engine == "pyperplan" else "unified_planning"
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    assert main(["plan", *DURATIVE, "--planner", f"up:{engine}"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("kitchen-durative-s2: no plan found: ")
+    assert f"'{reason}" in line
 
 
 def test_auto_asks_kairos_for_a_long_durative_problem_and_falls_back_to_the_search(monkeypatch, capsys):
