@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import partial
 
 from tailor.executive import planning
-from tailor.executive.core.action_cycle import after_action
-from tailor.executive.core.execution import Running, first_action
+from tailor.executive.core.course import HALT_COST_S, halted, redirected, risk_of_course, shortened, starts_another
+from tailor.executive.core.execution import Running
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.state import Inputs, State, Task
@@ -17,11 +17,7 @@ from tailor.executive.deliberation.plan_reuse import Preparation, reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Result
-from tailor.executive.interfaces.values import Belief
-from tailor.executive.refinement.course_check import risen_failure
 from tailor.schemas.messages import PlanAnswer, PlanRequest
-
-HALT_NS = 600_000_000  # in which a robot brakes before it decides anew: from 0.5 m/s at 0.8 m/s²
 
 
 def pending_request(state: State) -> PlanRequest | None:
@@ -47,7 +43,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     state = _with_deliberation(context, state)
     deliberation = state.deliberation
     if deliberation is None:
-        return state
+        return _prepared(context, state, budget)
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
@@ -75,11 +71,11 @@ def _with_deliberation(context: Context, state: State) -> State:
     if not idle:
         if task.decision is None or task.running is None:
             return state
-        risk, risen = _risk_of_course(context, state.belief, task.decision)
-        if risen and risk > context.settings.refinement.p_fail_settle:
-            return _halted(context, state)
+        cost_s, risen = risk_of_course(context, state.belief, task.decision)
+        if risen and cost_s > HALT_COST_S:
+            return halted(context, state)
         if not (risen or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
-            return state
+            return shortened(context, state)
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
@@ -119,13 +115,13 @@ def _adopted(context: Context, state: State, decision: Decision, decided: bool) 
     if task.running is None:
         return replace(state, task=_with_decision(task, decision, new_plan))
     running = _as_step_of(decision, task.running, task.plan)
-    if _starts_another(decision, running) and slow_inputs(context, state) is not None:
+    if starts_another(decision, running) and slow_inputs(context, state) is not None:
         return state
     if task.decision is not None and decision.number == task.decision.number:
         return _redirected_if_better(context, state, running, task.decision, decision)
     if not decided:
         return state
-    return replace(state, task=_redirected(context, _with_decision(task, decision, new_plan), running, state.now_ns))
+    return replace(state, task=redirected(context, _with_decision(task, decision, new_plan), running, state.now_ns))
 
 
 def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
@@ -139,16 +135,7 @@ def _redirected_if_better(context: Context, state: State, running: Running, old:
     if not early or old.choice.total_s - new.choice.total_s < settings.adopt_gain_s:
         return state
     task = replace(state.task, decision=new)
-    return replace(state, task=_redirected(context, task, running, state.now_ns))
-
-
-def _redirected(context: Context, task: Task, running: Running, now_ns: int) -> Task:
-    """The running action with new parameters if the decision begins with it, otherwise the decision's first action."""
-    assert task.decision is not None
-    following = first_action(task.decision, context.models, now_ns)
-    if _starts_another(task.decision, running):
-        return replace(task, running=following, finished=task.finished + 1)
-    return replace(task, running=running.redirected(following, now_ns))
+    return replace(state, task=redirected(context, task, running, state.now_ns))
 
 
 def _as_step_of(decision: Decision, running: Running, plan: planning.Plan | None) -> Running:
@@ -167,28 +154,6 @@ def _undertaking(plan: planning.Plan, step: int, running: Running) -> planning.F
         return action
     start = 1 + min(arguments)
     return (*action[:start], *action[start + 1 :])
-
-
-def _starts_another(decision: Decision, running: Running) -> bool:
-    """Whether a decision begins with another action than the running one."""
-    first = decision.sequence.actions[0]
-    same = (running.action.name, running.step, running.asserted)  # an action may be its own subgoal action
-    return (first.action.name, first.step, first.asserted) != same
-
-
-def _risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
-    """See `risen_failure`; (0, False) unless objects have changed."""
-    now, choice = decision.watch.among_changed_objects(belief), decision.choice
-    if now is None:
-        return 0.0, False
-    models, settings = context.models, context.settings.refinement
-    return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
-
-
-def _halted(context: Context, state: State) -> State:
-    """End an action that objects have made likely to fail. The robot brakes first, and decides at rest."""
-    task, until_ns = after_action(state.task), state.now_ns + HALT_NS
-    return replace(state, task=task, deliberation=None, coasted=context.settings.coast_ticks, halted_until_ns=until_ns)
 
 
 def _prepared(context: Context, state: State, budget: Budget) -> State:

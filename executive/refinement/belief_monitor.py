@@ -49,8 +49,16 @@ class BeliefMonitor:
         """The plan instantiated anew if an object is new, gone or moved beyond its tolerance; otherwise None."""
         if not self._objects.objects_changed(belief):
             return None
+        return self.sequence(belief)
+
+    def sequence(self, belief: Belief) -> ActionSequence | None:
+        """The plan instantiated from a belief; None if it does not fit it."""
         sequence = self._pattern.sequence(belief)
         return None if isinstance(sequence, Failure) else sequence
+
+    def of(self, sequence: ActionSequence) -> BeliefMonitor:
+        """A monitor of another sequence of the same plan."""
+        return BeliefMonitor(self._pattern, sequence)
 
     def _violated(self, identifier: int, bound: float, tolerance: float, period: float, belief: Belief) -> bool:
         believed = self._pattern.value(identifier, belief)

@@ -28,7 +28,7 @@ def risen_failure(
     models: Models,
     settings: RefinementSettings,
 ) -> tuple[float, bool]:
-    """Predicted probability that the running action fails, and whether the course has clearly become likelier to fail.
+    """Expected price of the running action's failures, s, and whether the course has clearly become likelier to fail.
 
     Later actions count for the second only: they are decided anew when this one ends, and are no reason to stop it.
 
@@ -38,12 +38,13 @@ def risen_failure(
       failure: Predicted probability of failure of each action within the horizon, when it was decided.
       now: The plan instantiated from the belief of now.
       models: Loaded models.
-      settings: Horizon and spread of arrivals.
+      settings: Horizon, spread of arrivals and prices.
     """
     course = from_here(decided.bind(values), now)
     objective = SequenceObjective(course.within(settings.horizon), course.variables, models, settings)
-    predicted = [float(prediction.failure[0]) for prediction in objective.predict(np.empty(0))]
-    return predicted[0], _any_of(predicted) > _any_of(failure) + MAX_RISE
+    predictions = objective.predict(np.empty(0))
+    risen = _any_of([float(prediction.failure[0]) for prediction in predictions]) > _any_of(failure) + MAX_RISE
+    return float(predictions[0].failure_s[0]), risen
 
 
 def from_here(course: ActionSequence, now: ActionSequence) -> ActionSequence:

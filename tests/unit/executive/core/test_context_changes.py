@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from tailor.executive.core.course import HALT_NS
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import Settings
@@ -41,6 +42,15 @@ class BesideWall:
         return np.where(arguments[:, 3] < 30.0, 0.5, 0.99)
 
 
+class RunUp:
+    """Success ahead, beyond a wall: sure from a metre behind home, where the robot takes a run-up, and nowhere else."""
+
+    card = {"sha256": "toy"}
+
+    def probability(self, arguments):
+        return np.where((arguments[:, 1] > 0.0) & (arguments[:, 0] > -1.0), 0.02, 0.999)
+
+
 class WalledLine(LineDomain):
     """The toy robot that believes walls: as many as odometry has radians, at odometry's y."""
 
@@ -57,10 +67,16 @@ class WalledLine(LineDomain):
         return belief
 
 
-def run(walls):
+class RetreatingLine(WalledLine):
+    """The same robot, which may drive elsewhere first."""
+
+    actions = {"slide": replace(SLIDE, context=replace(WALL, failure_cost_s=60.0), subgoal_action="slide")}
+
+
+def run(walls, domain=None, success=None):
     """Outputs of one tick for each (number of walls, their place)."""
-    models = Models({"slide/duration": LineModel()}, {"slide/clearance": BesideWall()})
-    context = replace(line_context(Settings()), domain=WalledLine(), models=models)
+    models = Models({"slide/duration": LineModel()}, {"slide/clearance": success or BesideWall()})
+    context = replace(line_context(Settings()), domain=domain or WalledLine(), models=models)
     state, x, ticks = initial_state(context), 0.0, []
     for tick, (count, place) in enumerate(walls, 1):
         received = inputs(tick * 100 * MS, x, context.problem.goal_text if tick == 1 else "")
@@ -110,13 +126,28 @@ def test_only_an_object_that_puts_the_course_at_risk_starts_a_new_deliberation(l
 
 
 def test_robot_brakes_before_it_decides_anew_where_the_course_will_probably_fail():
-    ticks = run([(1, 40.0)] * 6 + [(2, 9.0)] * 10)
+    ticks = run([(1, 40.0)] * 6 + [(2, 9.0)] * 12)
     (at, ended), *_ = published(ticks, ActionFinished)
     assert (at, ended.outcome, ended.reason) == (7, "aborted", "course at risk")
     commands = dict(published(ticks, VelocityCommand))
     assert commands[7].v > 0
-    assert [commands[tick].v for tick in range(8, 14)] == [0.0] * 6
-    assert [deliberations for deliberations, _ in ticks[6:13]] == [1] * 6 + [2]
+    braking = HALT_NS // (100 * MS)
+    assert [commands[tick].v for tick in range(8, 8 + braking)] == [0.0] * braking
+    assert [deliberations for deliberations, _ in ticks[6 : 7 + braking]] == [1] * braking + [2]
+
+
+def test_robot_drives_on_without_its_subgoal_once_the_object_is_gone():
+    ticks = run([(1, 40.0)] * 10 + [(0, 40.0)] * 3, RetreatingLine(), RunUp())
+    commands = dict(published(ticks, VelocityCommand))
+    assert commands[10].v < 0
+    assert [action.asserted for action in published(ticks, Subgoals)[0][1].actions][:2] == [True, False]
+    (at, ended), *_ = published(ticks, ActionFinished)
+    assert (at, ended.outcome, ended.reason) == (11, "aborted", "superseded")
+    changed, subgoals = published(ticks, Subgoals)[-1]
+    assert changed == 11
+    assert not subgoals.actions[0].asserted
+    assert commands[12].v > 0
+    assert ticks[-1][0] == 1  # without a new deliberation
 
 
 def test_the_same_inputs_give_the_same_messages():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,3 +67,11 @@ def test_object_in_the_way_of_a_later_action_is_no_risk_of_the_running_one():
     risk, risen = risen_failure(decided, {}, (0.0, 0.0), seen, BESIDE, EXACT)
     assert risen
     assert risk < 0.01
+
+
+def test_price_is_that_of_meeting_the_object_and_nothing_where_failures_have_none():
+    wall = now(((0.0, 0.1, 0.2),))
+    values, unpriced = {variable.id: 0.0 for variable in wall.free()}, replace(EXACT, risk_cost_s=0.0)
+    priced, free = (risen_failure(wall, values, (0.0,), wall, BESIDE, each) for each in (EXACT, unpriced))
+    assert priced[0] > 0.9 * EXACT.risk_cost_s
+    assert free == (0.0, True)

@@ -1,0 +1,73 @@
+"""The running course: how likely it fails among the objects believed now, and what changes it without a new search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tailor.executive.core.action_cycle import after_action
+from tailor.executive.core.execution import Running, first_action
+from tailor.executive.core.perception import slow_inputs
+from tailor.executive.core.state import State, Task
+from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.deliberation import Decision
+from tailor.executive.interfaces.values import Belief
+from tailor.executive.refinement.course_check import risen_failure
+from tailor.executive.refinement.course_shortcut import shortcut
+
+# In which a robot brakes and stops turning before it decides anew: AGILO from 0.5 m/s at 0.8 m/s², and from 1 rad/s at
+# 1.3 rad/s². Models know no turning: of 300 training starts, 4 were lost to decisions of turning robots.
+HALT_NS = 800_000_000
+HALT_COST_S = 3.0  # expected price of the failures that a halt must save: it takes half of that, and loses speed
+
+
+def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
+    """See `risen_failure`; (0, False) unless objects have changed."""
+    now, choice = decision.watch.among_changed_objects(belief), decision.choice
+    if now is None:
+        return 0.0, False
+    models, settings = context.models, context.settings.refinement
+    return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
+
+
+def halted(context: Context, state: State) -> State:
+    """End an action that objects have made likely to fail. The robot brakes first, and decides at rest."""
+    task, until_ns = after_action(state.task), state.now_ns + HALT_NS
+    return replace(state, task=task, deliberation=None, coasted=context.settings.coast_ticks, halted_until_ns=until_ns)
+
+
+def shortened(context: Context, state: State) -> State:
+    """Go on without the asserted subgoal that the robot drives to, if the way from here is better without it."""
+    task = state.task
+    assert task.running is not None
+    assert task.decision is not None
+    decided = task.decision
+    first = decided.sequence.actions[0]
+    if not (task.running.asserted and first.asserted and first.context):
+        return state
+    now = decided.watch.sequence(state.belief)
+    if now is None or slow_inputs(context, state) is not None:
+        return state
+    settings = context.settings.refinement
+    found = shortcut(decided.sequence, decided.choice.values, now, context.models, settings)
+    if found is None:
+        return state
+    sequence, choice = found
+    decision = replace(decided, sequence=sequence, choice=choice, watch=decided.watch.of(sequence))
+    task = redirected(context, replace(task, decision=decision), task.running, state.now_ns)
+    return replace(state, task=task, deliberation=None)  # its search was for the way with the subgoal
+
+
+def redirected(context: Context, task: Task, running: Running, now_ns: int) -> Task:
+    """The running action with new parameters if the decision begins with it, otherwise the decision's first action."""
+    assert task.decision is not None
+    following = first_action(task.decision, context.models, now_ns)
+    if starts_another(task.decision, running):
+        return replace(task, running=following, finished=task.finished + 1)
+    return replace(task, running=running.redirected(following, now_ns))
+
+
+def starts_another(decision: Decision, running: Running) -> bool:
+    """Whether a decision begins with another action than the running one."""
+    first = decision.sequence.actions[0]
+    same = (running.action.name, running.step, running.asserted)  # an action may be its own subgoal action
+    return (first.action.name, first.step, first.asserted) != same

@@ -1,0 +1,57 @@
+"""Shortcut of a running course: the subgoal that it leads to is dropped as soon as it is no longer worth its time.
+
+A subgoal is chosen before the robot starts, for a robot at rest that faces somewhere else. Once the robot has turned,
+or has passed the object, the way from where it is may be as safe without the rest of the subgoal, and shorter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.assertion.subgoal_comparison import with_any_risk
+from tailor.executive.refinement.course_check import from_here
+from tailor.executive.refinement.objective.choice import Choice, choice_of
+from tailor.executive.refinement.objective.objective import SequenceObjective
+from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.settings import RefinementSettings
+
+MIN_GAIN_S = 0.3  # of the shortcut: less is within the errors of the models, and the robot would turn for it
+
+
+def shortcut(
+    decided: ActionSequence,
+    values: Mapping[int, float],
+    now: ActionSequence,
+    models: Models,
+    settings: RefinementSettings,
+) -> tuple[ActionSequence, Choice] | None:
+    """The course without its first subgoal, from the state of now, and the choice for it; None if it is not better.
+
+    It is better if no action is likelier to fail than `p_fail_max`, and the expected cost, failures priced, is lower by
+    `MIN_GAIN_S` than that of the course as decided.
+
+    Args:
+      decided: Sequence whose first action leads to an asserted subgoal, and runs.
+      values: Chosen values by variable id.
+      now: The plan instantiated from the belief of now.
+      models: Loaded models.
+      settings: Horizon, limit and prices.
+    """
+    straight = from_here(replace(decided, actions=decided.actions[1:]), now)
+    short = _predicted(straight.bind(values), models, settings)
+    long = _predicted(from_here(decided.bind(values), now), models, settings)
+    if short.total_s + MIN_GAIN_S >= long.total_s or max(short.failure) > settings.p_fail_max:
+        return None
+    return straight, replace(short, values=dict(values))
+
+
+def _predicted(course: ActionSequence, models: Models, settings: RefinementSettings) -> Choice:
+    """Predictions for a bound course, whatever its risk."""
+    course = with_any_risk(course)
+    return choice_of(
+        SequenceObjective(course.within(settings.horizon), course.variables, models, settings), np.empty(0)
+    )
