@@ -67,9 +67,9 @@ def of_target(values: Mapping[str, float]) -> Pose3 | None:
     return Pose3(values["spot_x"], values["spot_y"], kitchen().table.size[2]) if known else None
 
 
-def of_object(values: Mapping[str, float]) -> Shape:
-    """The stool as a drive takes it into account: where it was seen, or where the map has it."""
-    return _stool("stool", values["obstacle_x"], values["obstacle_y"])
+def of_object(values: Mapping[str, float]) -> Shape | None:
+    """The stool as a drive takes it into account: where it was seen, or on the map. Boxes are drawn already."""
+    return None if values["box_long"] > 0.0 else _stool("stool", values["box_x"], values["box_y"])
 
 
 def _frames(pose: Place, angles: Sequence[float]) -> tuple[FrameTransform, ...]:

@@ -48,6 +48,9 @@ class ActionContext:
       failure: Failure that the object causes, as the task sampler returns it, e.g. "obstacle". Only this failure is
         learned by `success_model`; all others belong to Action.success_model.
       failure_cost_s: Seconds that meeting an object costs, if that is more than refinement's `risk_cost_s`.
+      may_meet: Whether an action may meet each object at all, shape (m, n), for arguments of shape (n, k) and rows of
+        shape (m, c); where it may not, success in spite of it is certain and `success_model` is not called. Saves time
+        among many objects. None: anywhere.
     """
 
     columns: tuple[ContextColumn, ...]
@@ -55,6 +58,7 @@ class ActionContext:
     success_model: str
     failure: str
     failure_cost_s: float = 0.0
+    may_meet: Callable[[Array, Array], Array] | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

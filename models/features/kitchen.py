@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tailor.models.features.features import FeatureSpace, Operations, Rows, direction, length, quantities, wrap
+from tailor.models.features.one_box import one_box
 
 SPOT = quantities("x:m y:m phi:rad spot_x:m spot_y:m aside:rad")
 SEEN = quantities("dist:m angle_to:rad aside:rad turned:rad")
@@ -37,4 +38,5 @@ SPACES = (
         (*SEEN, *quantities("out:1 off_handle:rad")),
         _handled,
     ),
+    one_box,
 )

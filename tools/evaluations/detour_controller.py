@@ -42,7 +42,7 @@ class DetourController:
       action: Controller of the action.
       go: Drives to the poses.
       ways: Paths that it drives.
-      context: Yields what is in the way; rows of x, y, radius.
+      context: Yields what is in the way; of this, discs count.
       field: Half the length and half the width of where poses may lie, m.
     """
 
@@ -54,7 +54,7 @@ class DetourController:
 
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller."""
-        discs: tuple[Disc, ...] = tuple((x, y, r) for x, y, r in self.context.believed(belief))
+        discs = discs_of(self.context, belief)
         if not isinstance(state, Detour) or _moved(state.discs, discs):
             state = self._planned(state, belief, arguments, discs)
         if state.poses:
@@ -76,6 +76,15 @@ class DetourController:
             return replace(state, discs=discs)
         ways = (graph.shortest(here, goal, goal_mps) for graph in graphs)
         return Detour(next((way for way in ways if way is not None), ()), discs)
+
+
+def discs_of(context: ActionContext, belief: PlanarBelief) -> tuple[Disc, ...]:
+    """The cylinders among the objects: x, y and radius are the columns that end so; one with other sizes is a box."""
+    suffix = [name.rpartition("_")[2] for name in context.names]
+    x, y, r = (suffix.index(each) for each in ("x", "y", "r"))
+    sizes = [k for k, each in enumerate(suffix) if each in ("long", "wide")]
+    rows = context.believed(belief)
+    return tuple((row[x], row[y], row[r]) for row in rows if not any(row[k] for k in sizes))
 
 
 def with_detours(domain: Any) -> Any:

@@ -7,34 +7,31 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.domains.kitchen.arm_tasks import GRIP, PUT, REACH_SPOT
-from tailor.executive.domains.kitchen.belief import KitchenBelief
+from tailor.executive.domains.kitchen.drive_context import FURNITURE
 from tailor.executive.domains.kitchen.drive_to_stand import DriveToStand
-from tailor.executive.domains.kitchen.known_places import stool_place
 from tailor.executive.interfaces.action import Action, Parameter
-from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
-from tailor.executive.interfaces.values import Array
 from tailor.schemas.kitchen.furniture import kitchen
-from tailor.schemas.kitchen.kinematics import OMEGA_MAX_RADPS, V_MAX_MPS
+from tailor.schemas.kitchen.kinematics import BASE_RADIUS_M, OMEGA_MAX_RADPS, V_MAX_MPS
 
 ASIDE_RAD = 0.3  # how far aside of the line from the shoulder a hand may point
 CRAWL_MPS = 0.07  # an exact base would else arrive with the very speed that is too fast
 NEAR_M = 0.06  # from its goal at most: the arm reaches little farther than from the edge of a stand
+WALL_M = 0.1  # from the base to a wall at least
 CUP_MOVED_M, HANDLE_TURNED_RAD = 0.05, 0.3  # a cup that turns out to stand elsewhere by this is decided anew
-STOOL_MOVED_M = 0.12  # when the stool turns out to stand elsewhere by this, the way is decided anew
-STOOL_RADII_M = (0.15, 0.19)
-TOUCHED_STOOL = "touched stool"
-TOUCH_COST_S = 30.0  # a base that has driven against it mostly stays there until the action runs out of time
+
+
+def _inside(room: tuple[float, float]) -> tuple[float, float]:
+    """Where the robot's middle may be, clear of the walls."""
+    return round(room[0] + BASE_RADIUS_M + WALL_M, 3), round(room[1] - BASE_RADIUS_M - WALL_M, 3)
 
 
 def _pose(suffix: str, argument: int) -> tuple[Parameter, ...]:
     return (
-        Parameter(f"x{suffix}", argument, "x", "m", *kitchen().x),
-        Parameter(f"y{suffix}", argument, "y", "m", *kitchen().y),
+        Parameter(f"x{suffix}", argument, "x", "m", *_inside(kitchen().x)),
+        Parameter(f"y{suffix}", argument, "y", "m", *_inside(kitchen().y)),
         Parameter(f"phi{suffix}", argument, "phi", "rad", -math.pi, math.pi, periodic=True),
     )
 
@@ -62,24 +59,6 @@ def _handle(argument: int) -> Parameter:
     return Parameter("handle", argument, "handle", "rad", -math.pi, math.pi, True, HANDLE_TURNED_RAD)
 
 
-def stool_rows(belief: KitchenBelief) -> Array:
-    """Centre and radius of the stool (m, map frame), shape (1, 3)."""
-    return np.array([[*stool_place(belief), kitchen().stool.radius]])
-
-
-# goToPose ignores what stands in its way
-STOOL = ActionContext(
-    (
-        ContextColumn("obstacle_x", "m", *kitchen().x, STOOL_MOVED_M),
-        ContextColumn("obstacle_y", "m", *kitchen().y, STOOL_MOVED_M),
-        ContextColumn("obstacle_r", "m", *STOOL_RADII_M),
-    ),
-    stool_rows,
-    "goToPose/clearance",
-    TOUCHED_STOOL,
-    TOUCH_COST_S,
-)
-
 GO_TO_POSE = Action(
     "goToPose",
     (*_pose("", 0), _at_rest("", 0), *_pose("g", 1), _at_rest("g", 1)),
@@ -94,7 +73,7 @@ GO_TO_POSE = Action(
     ),
     "goToPose/duration",
     subgoal_action="goToPose",
-    context=STOOL,
+    context=FURNITURE,
     drives=("base",),
 )
 REACH = Action("reach", _spot(0), REACH_SPOT, "reach/duration", drives=("arm",))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +19,13 @@ class ContextSuccess:
       own: Success of the action by itself; None: it never fails by itself.
       beside: Success of the action in spite of one object; its arguments end with the object's row.
       rows: The objects, shape (m, c), m >= 1; constants.
+      may_meet: See ActionContext.
     """
 
     own: SuccessModel | None
     beside: SuccessModel
     rows: Array
+    may_meet: Callable[[Array, Array], Array] | None = None
 
     def probability(self, arguments: Array) -> Array:
         """Probability of success, shape (n,), for arguments of shape (n, k); one model call for all objects."""
@@ -32,10 +35,11 @@ class ContextSuccess:
     def factors(self, arguments: Array) -> tuple[Array, Array]:
         """Probability of success by itself, and in spite of the objects, each of shape (n,)."""
         count, objects = len(arguments), len(self.rows)
-        extended = np.empty((objects, count, arguments.shape[1] + self.rows.shape[1]))
-        extended[:, :, : arguments.shape[1]] = arguments
-        extended[:, :, arguments.shape[1] :] = self.rows[:, None]
-        beside = self.beside.probability(extended.reshape(objects * count, -1)).reshape(objects, count)
+        near = np.ones((objects, count), bool) if self.may_meet is None else self.may_meet(arguments, self.rows)
+        which, each = np.nonzero(near)
+        beside = np.ones((objects, count))
+        if len(each):
+            beside[which, each] = self.beside.probability(np.hstack([arguments[each], self.rows[which]]))
         product: Array = np.ones(count)
         for probability in beside:  # in this order, on every machine
             product = product * probability
@@ -43,9 +47,9 @@ class ContextSuccess:
 
     @property
     def bounds(self) -> ContextBounds | None:
-        """Bounds of the probability; None if a model has none."""
+        """Bounds of the probability; None if a model has none, or where some objects are left out."""
         own, beside = getattr(self.own, "bounds", None), getattr(self.beside, "bounds", None)
-        if beside is None or (self.own is not None and own is None):
+        if beside is None or self.may_meet is not None or (self.own is not None and own is None):
             return None
         return ContextBounds(own, (beside,) * len(self.rows), self.rows)
 

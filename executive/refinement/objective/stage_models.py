@@ -36,7 +36,8 @@ def models_of(instance: InstantiatedAction, models: Models, settings: Refinement
         if path and path not in loaded:
             raise UsageError(f"action {action.name} needs the model {path}; loaded models: {sorted(loaded)}")
     success = models.successes[action.success_model] if action.success_model else None
-    if instance.context:
-        success = ContextSuccess(success, models.successes[beside_path], np.array(instance.context))
+    if instance.context and context is not None:
+        rows = np.array(instance.context)
+        success = ContextSuccess(success, models.successes[beside_path], rows, context.may_meet)
     energy = models.durations[energy_path] if energy_path else None
     return StageModels(models.durations[action.duration_model], success, energy)

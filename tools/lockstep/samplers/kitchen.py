@@ -8,29 +8,33 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.actions.planar import VG, XG, YG, X, Y
+from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, X, Y
 from tailor.executive.belief.angles import wrap
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.kitchen import places
 from tailor.executive.domains.kitchen.action_library import ASIDE_RAD
 from tailor.executive.domains.kitchen.arm_tasks import BACK_M, HANDLE, OUT, OVER_M, Hand
 from tailor.executive.domains.kitchen.belief import FIRST_POSES, KitchenBelief
+from tailor.executive.domains.kitchen.drive_to_stand import DriveToStand
 from tailor.executive.domains.kitchen.objects import Thing
 from tailor.executive.domains.kitchen.places import Spot
 from tailor.executive.domains.kitchen.scenario_sampling import sample_kitchen
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
+from tailor.schemas.errors import UsageError
 from tailor.schemas.kitchen.furniture import kitchen, on_table
 from tailor.schemas.kitchen.kinematics import JOINTS
 from tailor.schemas.messages import Message
 from tailor.schemas.messages.kitchen import KitchenTruth
-from tailor.tools.lockstep.samplers import stool
+from tailor.tools.lockstep.samplers import furniture, outlines
 from tailor.tools.lockstep.samplers.beside import Beside
+from tailor.tools.lockstep.samplers.free_drives import free_drive
 from tailor.tools.lockstep.samplers.kitchen_outcomes import KitchenOutcomes
 
 FROM_START = 0.3  # share of the drives that begin, or end, away from tables
 END_TICKS = 10  # a drive that ends right here is judged each tick, and a false alarm there leads to a new one
 BESIDE_STAND = {"x": 0.04, "y": 0.04, "phi": 0.1}  # by which a stand may lie outside of its ranges: drives arrive so
+BETWEEN_STANDS = 0.4  # share of the drives among objects
 CUP = "cup1"
 ASIDE_STOOL = {"stool_x": 2.75, "stool_y": -1.95}  # in a corner: the duration of a drive is that of one with a free way
 
@@ -65,23 +69,32 @@ class KitchenSampler(KitchenOutcomes):
         return start
 
     def sample_among_objects(self, action: Action, rng: np.random.Generator) -> Array:
-        """As `sample`: drives are as long among objects."""
-        return self.sample(action, rng)
+        """As `sample`, or anywhere in the open: an asserted subgoal may lie anywhere."""
+        if rng.random() < BETWEEN_STANDS:
+            return self.sample(action, rng)
+        controller: DriveToStand = action.controller  # type: ignore[assignment]
+        return free_drive(controller.far.ways, controller.near_m, rng)
 
     def beside(self, action: Action, truths: Sequence[Message], count: int, rng: np.random.Generator) -> list[Beside]:
-        """Stools beside a drive; half of them beside its rest from some tick on, half of these beside its end."""
-        ways = np.array([(truth.x, truth.y) for truth in truths if isinstance(truth, KitchenTruth)])
+        """Furniture beside a drive; half of it beside its rest from some tick on, half of this beside its end."""
+        ways = np.array([(truth.x, truth.y, truth.phi) for truth in truths if isinstance(truth, KitchenTruth)])
         last = max(0, len(ways) - END_TICKS)
         ticks = [0 if k % 2 else int(rng.integers(last if k % 4 else 0, len(ways))) for k in range(count)]
-        return [stool.beside(ways[tick:], tick, rng) for tick in ticks]
+        return [furniture.beside(ways[tick:], tick, rng) for tick in ticks]
 
     def context(self, action: Action, arguments: Array, rng: np.random.Generator) -> Array:
-        """A stool near the straight way, as it is believed: x, y, radius."""
-        ends = np.array([arguments[[X, Y]], arguments[[XG, YG]]])
-        return stool.beside(ends[0] + np.linspace(0.0, 1.0, 50)[:, None] * (ends[1] - ends[0]), 0, rng).row
+        """A piece of furniture near the straight way, as it is believed."""
+        ends = np.array([arguments[[X, Y, PHI]], arguments[[XG, YG, PHIG]]])
+        return furniture.beside(ends[0] + np.linspace(0.0, 1.0, 50)[:, None] * (ends[1] - ends[0]), 0, rng).row
 
     def context_start(self, action: Action, row: Array, rng: np.random.Generator) -> dict[str, float]:
-        """The stool at that place; its error in the belief is in the row."""
+        """The stool at that place; its error in the belief is in the row.
+
+        Raises:
+          UsageError: The row is that of a box, and no furniture of that size can be put anywhere.
+        """
+        if row[outlines.LONG] > 0.0:
+            raise UsageError("the kitchen has no furniture of any size: gather with --beside-objects N instead")
         return {"stool_x": float(row[0]), "stool_y": float(row[1])}
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> KitchenBelief:

@@ -8,14 +8,14 @@ from collections.abc import Mapping, Sequence
 
 from tailor.executive.actions.planar import PHIG, VG, XG, YG
 from tailor.executive.belief.angles import difference
-from tailor.executive.domains.kitchen.action_library import TOUCHED_STOOL
+from tailor.executive.domains.kitchen.drive_context import TOUCHED
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.kitchen.furniture import kitchen
 from tailor.schemas.messages import ActionFinished, Message
 from tailor.schemas.messages.kitchen import KitchenTruth
 
-TOUCHED, TIPPED = "touched furniture", "tipped the cup"
+TIPPED = "tipped the cup"
 SLOW_MPS, REST_MPS, REST_RADPS = 0.1, 0.005, 0.02
 TRUTH_S = 0.1  # between two true states
 MASS_KG, ROLLING_N = 120.0, 18.0  # of the B21; 1.5 % of its weight resists its rolling
@@ -28,8 +28,6 @@ class KitchenOutcomes:
         """What the truth shows: base or arm touched furniture, or a cup tipped."""
         if not isinstance(truth, KitchenTruth):
             return ""
-        if "stool" in truth.touched:
-            return TOUCHED_STOOL
         tipped = any(each.tilt > kitchen().cup.tipped_rad for each in truth.objects if each.name != truth.held)
         return TOUCHED if truth.touched else TIPPED if tipped else ""
 

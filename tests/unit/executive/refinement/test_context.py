@@ -11,6 +11,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.context_monitor import ContextMonitor
+from tailor.executive.refinement.objective.context_success import ContextSuccess
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -222,3 +223,23 @@ def recorded(given: ActionSequence) -> m.Subgoals:
         for p, v in zip(action.action.parameters, (given.variables[i] for i in action.variables), strict=True)
     )
     return m.Subgoals(0, 5, 2, (m.InstantiatedAction("goToPose", 1, False, 1.0, 0.1, parameters),))
+
+
+def test_objects_that_cannot_be_met_cost_no_model_call_and_no_success():
+    rows = np.array([(0.0, 0.35, 0.2), (1.0, -0.4, 0.25), (0.0, 9.0, 0.2)])
+    every = ContextSuccess(None, ClearanceSuccess(), rows[:2]).probability(ARGUMENTS)
+    model = ClearanceSuccess()
+    some = ContextSuccess(None, model, rows, lambda arguments, rows: np.abs(rows[:, [1]] - arguments[:, 1]) < 2.0)
+    assert some.probability(ARGUMENTS) == pytest.approx(every, rel=1e-12)
+    assert model.calls == 1
+    none = ContextSuccess(None, model, rows, lambda arguments, rows: np.zeros((3, len(arguments)), bool))
+    assert none.probability(ARGUMENTS).tolist() == [1.0, 1.0]
+    assert model.calls == 1
+    assert some.bounds is None, "those of the model alone would not hold where it is not asked"
+
+
+def test_an_action_tells_which_objects_it_may_meet():
+    context = replace(CONTEXT, may_meet=lambda arguments, rows: np.zeros((len(rows), len(arguments)), bool))
+    given = beside((IN_THE_WAY,), [replace(GO_AROUND, context=context)], [START, GOAL])
+    given = replace(given, actions=tuple(replace(each, context=(IN_THE_WAY,)) for each in given.actions))
+    assert success_of(given.actions[0], ARGUMENTS).tolist() == [1.0, 1.0]

@@ -13,8 +13,9 @@ from tailor.tools.scenes.robot_scenes import RobotScenes
 from tailor.tools.viewer.timeline import RunTimeline
 from tests.support import synthetic_run
 
-COLUMNS = ("obstacle_x", "obstacle_y", "obstacle_r")
-STOOL = m.Contexts(0, 1, (m.ActionObjects("goToPose", COLUMNS, (0.5, -0.3, 0.17)),))
+COLUMNS = ("box_x", "box_y", "box_phi", "box_long", "box_wide", "box_r", "box_high")
+ROWS = (0.5, -0.3, 0.0, 0.0, 0.0, 0.17, 0.45, 1.1, 1.95, 0.0, 0.3, 0.3, 0.0, 1.7)  # the stool, the fridge
+STOOL = m.Contexts(0, 1, (m.ActionObjects("goToPose", COLUMNS, ROWS),))
 STAND = {"x": 1.3, "y": -0.5, "phi": 0.1, "spot_x": 2.1, "spot_y": -0.4}
 
 
