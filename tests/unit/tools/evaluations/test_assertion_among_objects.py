@@ -10,10 +10,11 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.domains.soccer import robot
+from tailor.executive.interfaces.action_context import ActionContext
 from tailor.schemas.messages.soccer import OpponentsTruth
 from tailor.tools.evaluations.assertion import assertion
 from tailor.tools.evaluations.costs import Costs
-from tailor.tools.evaluations.detour_controller import with_detours
+from tailor.tools.evaluations.detour_controller import discs_of, with_detours
 from tailor.tools.evaluations.detour_graph import DetourGraph
 from tailor.tools.evaluations.outcome import Outcome, Task
 from tailor.tools.evaluations.task_runs import run_one
@@ -79,9 +80,19 @@ def test_controllers_with_detours_touch_no_opponent_in_the_way(detours):
 
 @pytest.mark.parametrize(("variant", "touched"), [(0, True), (1, False), (2, False)])
 def test_subgoals_and_detours_lead_around_the_kitchens_stool(variant, touched):
-    outcome = run_one(Task("kitchen", "to-cupboard"), assertion.variants()[variant], seed=700001)
+    outcome = run_one(Task("kitchen", "to-cupboard"), assertion.variants()[variant], seed=700002)
     assert outcome.achieved
     assert (outcome.costs.contacts > 0) == touched
+
+
+def test_the_hand_made_geometry_knows_cylinders_and_no_boxes():
+    kitchen = domains.load("kitchen")
+    context, belief = kitchen.actions["goToPose"].context, kitchen.initial_belief()
+    assert len(context.believed(belief)) > 5
+    (disc,) = discs_of(context, belief)
+    assert disc == pytest.approx((1.3, 0.55, 0.27))
+    columns = domains.load("soccer").actions["goToPose"].context.columns
+    assert discs_of(ActionContext(columns, lambda _: np.array([[1.0, 2.0, 0.2]]), "", ""), belief) == ((1.0, 2.0, 0.2),)
 
 
 NONE = Outcome(0, "", True, 5.0, "achieved", (), (), (), (), False, 0.0, (), ())
