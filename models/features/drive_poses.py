@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from tailor.models.features.drive_way import NEAR_M, Way, cosines, planned, planned_again
-from tailor.models.features.features import Operations, Rows, length
+from tailor.models.features.features import TWO_PI, Operations, Rows, length
 
 POSES = 8  # of each part of a drive
 TURNED: Any = np.linspace(0.0, 1.0, POSES, dtype=np.float32)[:, None]  # share of a turn or a bend
 LEFT: Any = 1 - TURNED
+EITHER_RAD = 2.7  # of a larger turn, noise and the next plan decide the side
 DRIVEN: Any = (np.arange(1, POSES + 1, dtype=np.float32) / POSES)[:, None]  # share of the straight piece
 FIRST, SECOND = list(range(POSES)), list(range(POSES, 2 * POSES))
 # Displacement in turning to a far goal, if the speed grows by so many m/s a radian: fitted to 1500 drives. Small turns
@@ -45,6 +46,7 @@ class Drive:
       first: As planned at the start, before the turn.
       way: As planned when the robot has turned; equal to `first` for near goals.
       turning: As the robot turns to its way.
+      other: As it turns to the other side, where about half a circle may be turned to either; else as `turning`.
       straight: On the straight piece, x and y of shape (POSES, n).
       arriving: In the bend, or the turn on the spot, into the goal.
     """
@@ -52,6 +54,7 @@ class Drive:
     first: Way
     way: Way
     turning: Poses
+    other: Poses
     straight: tuple[Rows, Rows]
     arriving: Poses
 
@@ -67,29 +70,31 @@ def drive(poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
     away = poses[[3, 4]] - poses[[0, 1]]
     near = length(away[[0]], away[[1]], ops) < NEAR_M
     first = planned(poses, goal, near, ops)
-    turning = _turning(poses, first, near, ops)
+    turning = _turning(poses, first, first.turn, near, ops)
     last = [POSES - 1]
     turned = ops.stack(turning.x[last], turning.y[last], first.facing, poses[[3, 4, 5]])
     way = planned_again(turned, goal, near, first, ops)
     arriving = _arriving(poses, way, goal, ops)
     x, y = arriving.ahead_x[[0]], arriving.ahead_y[[0]]
     straight = turned[[0]] + x * way.straight * DRIVEN, turned[[1]] + y * way.straight * DRIVEN
-    return Drive(first, way, turning, straight, arriving)
+    back = ops.where(first.turn < 0.0, first.turn + TWO_PI, first.turn - TWO_PI)
+    other = ops.where(ops.absolute(first.turn) < EITHER_RAD, first.turn, back)
+    return Drive(first, way, turning, _turning(poses, first, other, near, ops), straight, arriving)
 
 
-def _turning(poses: Rows, way: Way, near: Rows, ops: Operations) -> Poses:
+def _turning(poses: Rows, way: Way, turn: Rows, near: Rows, ops: Operations) -> Poses:
     """The turn to the way; with less than a right angle left the robot drives, faster and faster."""
-    angle, zero = ops.absolute(way.turn), way.turn * 0.0
+    angle, zero = ops.absolute(turn), turn * 0.0
     total = ops.clip(angle, 0.0, np.pi / 2)
     left = angle * LEFT
     left = ops.where(left < total, left, total)
     driven = left * -1.0 + total
-    cosine, sine = cosines(ops.stack(left, poses[[2]] + way.turn * TURNED), ops)
+    cosine, sine = cosines(ops.stack(left, poses[[2]] + turn * TURNED), ops)
     c, s, ahead_x, ahead_y = cosine[FIRST], sine[FIRST], cosine[SECOND], sine[SECOND]
     drift = ops.clip((angle * -1.0 + DRIFT_FROM_RAD) * DRIFT_SLOPE, LEAST_DRIFT, MOST_DRIFT)
     drift = ops.where(near, zero, drift)
     along, aside = (c - c[[0]] - driven * s) * drift, (driven * c + s - s[[0]]) * drift
-    aside = aside * ops.where(way.turn < 0.0, 1.0, zero - 1.0)
+    aside = aside * ops.where(turn < 0.0, 1.0, zero - 1.0)
     to_x, to_y = ahead_x[[POSES - 1]], ahead_y[[POSES - 1]]
     x, y = poses[[0]] + to_x * along - to_y * aside, poses[[1]] + to_y * along + to_x * aside
     return Poses(x, y, ahead_x, ahead_y)

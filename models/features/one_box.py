@@ -21,8 +21,8 @@ BOX = quantities("box_x:m box_y:m box_phi:rad box_long:m box_wide:m box_r:m box_
 DRIVE = quantities("v:m/s dist:m turn:rad bend:rad radius:m")
 # of the base at the start, as it turns, drives straight, bends or turns into the goal, and there; of the hand likewise
 CLEAR = quantities("clear:m clear_turn:m clear_straight:m clear_bend:m clear_g:m hand_turn:m hand_bend:m hand_g:m")
-BASES, HANDS = 3 * POSES + 1, 2 * POSES + 1  # places of the base and of each disc
-PARTS = 5  # three of the base, two of the hand
+BASES, HANDS = 4 * POSES + 1, 3 * POSES + 1  # places of the base and of each disc
+PARTS = 7  # four of the base, three of the hand
 DISCS = [list(range(BASES + k * HANDS, BASES + (k + 1) * HANDS)) for k in range(len(HAND_M))]
 PHI, PHIG, BOX_X, BOX_PHI, LONG, WIDE, MARGIN, HIGH = 2, 6, 8, 10, 11, 12, 13, 14
 
@@ -43,15 +43,17 @@ def _one_box(rows: Rows, ops: Operations) -> Rows:
 
 def _clearances(planned: Drive, goal: Poses, rows: Rows, ops: Operations) -> Rows:
     """Clearances of base and hand; see CLEAR."""
-    turning, arriving = planned.turning, planned.arriving
-    places = [(turning.x, turning.y), planned.straight, (arriving.x, arriving.y), (goal.x, goal.y)]
-    places += [part.ahead(distance_m) for distance_m in HAND_M for part in (turning, arriving, goal)]
+    turning, other, arriving = planned.turning, planned.other, planned.arriving
+    places = [(turning.x, turning.y), (other.x, other.y), planned.straight, (arriving.x, arriving.y), (goal.x, goal.y)]
+    places += [part.ahead(distance_m) for distance_m in HAND_M for part in (turning, other, arriving, goal)]
     distance = _distance(ops.stack(*(x for x, _ in places)), ops.stack(*(y for _, y in places)), rows, ops)
     base = distance[list(range(BASES))] - BASE_M
     hand = _lower(distance[DISCS[0]], distance[DISCS[1]], ops) - HAND_RADIUS_M
     hand = ops.where(rows[[HIGH]] < HAND_BOTTOM_M, hand * 0.0 + MOST_M, hand)
     parts = _least_of_parts(ops.stack(base[list(range(BASES - 1))], hand[list(range(HANDS - 1))]), ops)
-    least = ops.stack(base[[0]], parts[[0, 1, 2]], base[[BASES - 1]], parts[[3, 4]], hand[[HANDS - 1]])
+    turns = _lower(parts[[0, 4]], parts[[1, 5]], ops)
+    bases = ops.stack(base[[0]], turns[[0]], parts[[2, 3]], base[[BASES - 1]])
+    least = ops.stack(bases, turns[[1]], parts[[6]], hand[[HANDS - 1]])
     return ops.clip(least, LEAST_M, MOST_M)
 
 

@@ -137,3 +137,10 @@ def test_moving_all_things_changes_no_feature() -> None:
 
 def test_the_body_is_that_of_the_robot() -> None:
     assert space_module.BASE_M == BASE_RADIUS_M
+
+
+def test_a_turn_by_about_half_a_circle_may_go_to_either_side() -> None:
+    behind = np.array([0.0, 0.0, 0.0, 0.0, -2.0, 0.05, math.pi, 0.0])
+    sides = [features((0.2, side * 0.75, 0.0, 0.0, 0.0, 0.17, LOW), behind)["clear_turn"] for side in (1, -1)]
+    assert sides[0] == pytest.approx(sides[1], abs=0.05)
+    assert max(sides) < features((0.2, 0.75, 0.0, 0.0, 0.0, 0.17, LOW), behind)["clear"] - 0.05
