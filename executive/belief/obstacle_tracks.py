@@ -13,8 +13,7 @@ from tailor.executive.belief.planar_ekf import Pose
 
 GATE = 5.0  # standard deviations within which a percept belongs to a track; four of a million are farther off
 DRIFT_M2_PER_S = 4e-4  # errors of the robot's pose last: percepts of a second are less worth than their number
-CONFIRMED = 2  # percepts after which an obstacle counts,
-SURE_M = 0.08  # or one, if it is so sure (AGILO's camera: within 1.5 m): a robot that drives there has no time for two
+CONFIRMED = 2  # percepts after which an obstacle counts
 DOUBTED = 8  # pictures in a row without an obstacle that they should show: it is gone
 
 
@@ -101,8 +100,8 @@ def see(
 
 
 def confirmed(tracks: Sequence[ObstacleTrack]) -> tuple[ObstacleTrack, ...]:
-    """Those that were seen often enough, or from near enough, to count."""
-    return tuple(track for track in tracks if track.seen >= CONFIRMED or track.sigma_m <= SURE_M)
+    """Those that were seen often enough to count."""
+    return tuple(track for track in tracks if track.seen >= CONFIRMED)
 
 
 def _distance(track: ObstacleTrack, sighting: Sighting) -> float | None:

@@ -75,12 +75,6 @@ def test_one_percept_alone_does_not_count_yet():
     assert looked(ahead((2.0, 0.0)), 1, lost=0.0).standing == ()
 
 
-@pytest.mark.parametrize(("sigma_m", "count"), [(0.05, 1), (0.1, 0)])
-def test_one_percept_alone_counts_if_it_is_as_sure_as_from_near(sigma_m, count):
-    seen = OpponentPercepts(0, (OpponentPercept(1.0, 0.0, 0.2, sigma_m**2, sigma_m**2, 0.0),))
-    assert len(opponents.see(opponents.NONE, POSE, PICTURE_NS, seen).standing) == count
-
-
 def test_an_opponent_that_left_is_forgotten_and_one_out_of_view_is_not():
     known = looked(ahead((1.5, 0.0), (-1.5, 0.0)), 10, lost=0.0)  # nobody sees behind, but the track is there
     gone = looked(ahead((-1.5, 0.0)), 9, before=known, lost=0.0)
