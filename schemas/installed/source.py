@@ -21,13 +21,13 @@ WHOLE = (
     *CONTROL,
     *REASONING,
     "simnodes/*",
-    "models/features/*",
+    "models/features/**/*",
     "models/runtime.py",
     "models/inference.py",
     "tools/lockstep/*",
 )
 
-LEARNING = ("models/*/*.py", "models/*.py", "tools/learning/*.py", "tools/lockstep/episode_extraction.py")
+LEARNING = ("models/**/*.py", "tools/learning/*.py", "tools/lockstep/episode_extraction.py")
 
 
 @lru_cache(maxsize=8)

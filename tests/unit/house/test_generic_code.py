@@ -28,6 +28,7 @@ EXCEPTIONS = {
     "schemas/messages/soccer.py": "its messages, whose ROS types old recordings name",
     "schemas/messages/kitchen.py": "its messages",
     "schemas/kitchen/": "its geometry, shared by body and executive",
+    "models/features/kitchen/": "its feature spaces, a part of its package",
     "tools/lockstep/samplers/": "parts of the packages that ship",
     "tools/evaluations/": "tables and figures of the paper, which name its robots",
     "tools/writing/": "letters, a task of the arm alone",

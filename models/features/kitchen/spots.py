@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from tailor.models.features.features import FeatureSpace, Operations, Rows, direction, length, quantities, wrap
-from tailor.models.features.one_box import one_box
 
 SPOT = quantities("x:m y:m phi:rad spot_x:m spot_y:m aside:rad")
 SEEN = quantities("dist:m angle_to:rad aside:rad turned:rad")
@@ -29,7 +28,7 @@ def _handled(rows: Rows, ops: Operations) -> Rows:
     return ops.stack(_reached(rows, ops), ops.absolute(wrap(rows[[7]] - away, ops)))
 
 
-SPACES = (
+SPOTS = (
     FeatureSpace("spot", SPOT, SEEN, _seen),
     FeatureSpace("spot-out", (*SPOT, *quantities("out:1")), (*SEEN, *quantities("out:1")), _reached),
     FeatureSpace(
@@ -38,5 +37,4 @@ SPACES = (
         (*SEEN, *quantities("out:1 off_handle:rad")),
         _handled,
     ),
-    one_box,
 )

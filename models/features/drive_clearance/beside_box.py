@@ -1,19 +1,19 @@
 """Feature space of success beside one upright box or cylinder: clearances of a drive as planned.
 
-For a round robot whose folded arm reaches over its front. The object is a rectangle with a margin around it: a cylinder
-is its margin alone. Further objects are further rows (see executive/interfaces/action_context.py).
+The object is a rectangle with a margin around it: a cylinder is its margin alone. Further objects are further rows (see
+executive/interfaces/action_context.py).
 """
 
 from __future__ import annotations
 
-from tailor.models.features.drive_poses import POSES, Drive, Poses, drive
-from tailor.models.features.drive_way import LARGE, cosines
+from functools import partial
+
+from tailor.models.features.drive_clearance.driving_robot import DrivingRobot
+from tailor.models.features.drive_clearance.poses import POSES, Drive, Poses, drive
+from tailor.models.features.drive_clearance.way import LARGE, cosines
 from tailor.models.features.features import FeatureSpace, Operations, Rows, length, quantities
 from tailor.models.features.planar import POSE
 
-BASE_M = 0.265  # radius of the base
-HAND_M, HAND_RADIUS_M = (0.535, 0.40), 0.075  # two discs that cover the hand; ahead of the base's middle
-HAND_BOTTOM_M = 1.03  # what is lower cannot touch it
 MOST_M, LEAST_M = 1.0, -0.4  # clearances beyond these make no difference
 # place and direction in the map, half length along that direction, half width, margin around, height
 BOX = quantities("box_x:m box_y:m box_phi:rad box_long:m box_wide:m box_r:m box_high:m")
@@ -21,15 +21,20 @@ BOX = quantities("box_x:m box_y:m box_phi:rad box_long:m box_wide:m box_r:m box_
 DRIVE = quantities("v:m/s dist:m turn:rad bend:rad radius:m")
 # of the base at the start, as it turns, drives straight, bends or turns into the goal, and there; of the hand likewise
 CLEAR = quantities("clear:m clear_turn:m clear_straight:m clear_bend:m clear_g:m hand_turn:m hand_bend:m hand_g:m")
-BASES, HANDS = 4 * POSES + 1, 3 * POSES + 1  # places of the base and of each disc
+BASES, HANDS = 4 * POSES + 1, 3 * POSES + 1  # places of the base and of each disc of the hand
 PARTS = 7  # four of the base, three of the hand
-DISCS = [list(range(BASES + k * HANDS, BASES + (k + 1) * HANDS)) for k in range(len(HAND_M))]
+DISCS = [list(range(BASES + k * HANDS, BASES + (k + 1) * HANDS)) for k in range(2)]
 PHI, PHIG, BOX_X, BOX_PHI, LONG, WIDE, MARGIN, HIGH = 2, 6, 8, 10, 11, 12, 13, 14
 
 
-def _one_box(rows: Rows, ops: Operations) -> Rows:
+def beside_box(name: str, robot: DrivingRobot) -> FeatureSpace:
+    """The feature space of a robot's drives beside one object."""
+    return FeatureSpace(name, (*POSE, *BOX), (*DRIVE, *CLEAR), partial(_features, robot))
+
+
+def _features(robot: DrivingRobot, rows: Rows, ops: Operations) -> Rows:
     poses, goal = _seen_from_box(rows, ops)
-    planned = drive(poses, goal, ops)
+    planned = drive(robot, poses, goal, ops)
     away = poses[[3, 4]] - poses[[0, 1]]
     return ops.stack(
         rows[[3]],
@@ -37,19 +42,19 @@ def _one_box(rows: Rows, ops: Operations) -> Rows:
         ops.absolute(planned.first.turn),
         planned.way.bend,
         planned.way.radius,
-        _clearances(planned, Poses(poses[[3]], poses[[4]], *goal), rows, ops),
+        _clearances(robot, planned, Poses(poses[[3]], poses[[4]], *goal), rows, ops),
     )
 
 
-def _clearances(planned: Drive, goal: Poses, rows: Rows, ops: Operations) -> Rows:
+def _clearances(robot: DrivingRobot, planned: Drive, goal: Poses, rows: Rows, ops: Operations) -> Rows:
     """Clearances of base and hand; see CLEAR."""
     turning, other, arriving = planned.turning, planned.other, planned.arriving
     places = [(turning.x, turning.y), (other.x, other.y), planned.straight, (arriving.x, arriving.y), (goal.x, goal.y)]
-    places += [part.ahead(distance_m) for distance_m in HAND_M for part in (turning, other, arriving, goal)]
+    places += [part.ahead(distance_m) for distance_m in robot.hand_m for part in (turning, other, arriving, goal)]
     distance = _distance(ops.stack(*(x for x, _ in places)), ops.stack(*(y for _, y in places)), rows, ops)
-    base = distance[list(range(BASES))] - BASE_M
-    hand = _lower(distance[DISCS[0]], distance[DISCS[1]], ops) - HAND_RADIUS_M
-    hand = ops.where(rows[[HIGH]] < HAND_BOTTOM_M, hand * 0.0 + MOST_M, hand)
+    base = distance[list(range(BASES))] - robot.base_m
+    hand = _lower(distance[DISCS[0]], distance[DISCS[1]], ops) - robot.hand_radius_m
+    hand = ops.where(rows[[HIGH]] < robot.hand_bottom_m, hand * 0.0 + MOST_M, hand)
     parts = _least_of_parts(ops.stack(base[list(range(BASES - 1))], hand[list(range(HANDS - 1))]), ops)
     turns = _lower(parts[[0, 4]], parts[[1, 5]], ops)
     bases = ops.stack(base[[0]], turns[[0]], parts[[2, 3]], base[[BASES - 1]])
@@ -85,6 +90,3 @@ def _distance(x: Rows, y: Rows, rows: Rows, ops: Operations) -> Rows:
     dx, dy = ops.absolute(x) - rows[[LONG]], ops.absolute(y) - rows[[WIDE]]
     outside = length(ops.clip(dx, 0.0, LARGE), ops.clip(dy, 0.0, LARGE), ops)
     return outside + ops.clip(ops.where(dx < dy, dy, dx), -LARGE, 0.0) - rows[[MARGIN]]
-
-
-one_box = FeatureSpace("one-box", (*POSE, *BOX), (*DRIVE, *CLEAR), _one_box)

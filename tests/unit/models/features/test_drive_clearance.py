@@ -1,17 +1,19 @@
 """Clearances of planned drives: the planners' own ways, distances from boxes and cylinders, what they ignore."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tailor.executive import domains
 from tailor.executive.domains.kitchen import drive_to_stand
-from tailor.models.features import one_box as space_module
-from tailor.models.features.drive_poses import drive
-from tailor.models.features.drive_way import cosines, planned
+from tailor.models.features.drive_clearance import way as way_module
+from tailor.models.features.drive_clearance.beside_box import beside_box
+from tailor.models.features.drive_clearance.poses import drive
+from tailor.models.features.drive_clearance.way import cosines, planned
 from tailor.models.features.features import NUMPY
-from tailor.models.features.one_box import one_box
+from tailor.models.features.kitchen.spaces import B21, one_box
 from tailor.schemas.kitchen.kinematics import BASE_RADIUS_M
 
 NAMES = [quantity.name for quantity in one_box.features]
@@ -34,7 +36,7 @@ def way_of(rows):
     columns = rows.T.astype(np.float32)
     goal = np.cos(columns[[5]]), np.sin(columns[[5]])
     near = np.hypot(*(columns[3:5] - columns[:2]))[None] < 1.0
-    return planned(columns, goal, near, NUMPY)
+    return planned(B21, columns, goal, near, NUMPY)
 
 
 def features(box, drive=DRIVE):
@@ -83,7 +85,7 @@ def test_a_drive_ends_at_its_goal_or_a_run_in_before_it() -> None:
     rows = poses(2000)
     columns = rows.T.astype(np.float32)
     goal = np.cos(columns[[5]]), np.sin(columns[[5]])
-    end = drive(columns, goal, NUMPY)
+    end = drive(B21, columns, goal, NUMPY)
     x, y = end.arriving.x[-1] + goal[0][0] * end.way.run_in[0], end.arriving.y[-1] + goal[1][0] * end.way.run_in[0]
     assert np.abs(x - columns[3]).max() < 1e-5
     assert np.abs(y - columns[4]).max() < 1e-5
@@ -135,8 +137,22 @@ def test_moving_all_things_changes_no_feature() -> None:
     assert (off < 1e-3).mean() > 0.99, "but for ways that are as quick as another one"
 
 
-def test_the_body_is_that_of_the_robot() -> None:
-    assert space_module.BASE_M == BASE_RADIUS_M
+def test_ways_are_planned_with_the_numbers_of_the_controller(controller) -> None:
+    ways = controller.far.ways
+    assert (B21.v_max_mps, B21.bend_worth_radps) == (ways.v_max_mps, ways.bend_worth_radps)
+    assert (B21.near_m, B21.there_m) == (controller.near_m, controller.there_m)
+    repeated = (way_module.RADIUS_M, way_module.INSIDE, way_module.TIGHTEST_M, way_module.RUN_IN_M)
+    assert repeated == (ways.radius_m, ways.inside, ways.tightest_m, ways.run_in_m)
+    chosen = (way_module.BESIDE_M, way_module.ASIDE_S_PER_M, 1 / way_module.FACING_S_PER_RAD)
+    assert chosen == pytest.approx((ways.beside_m, ways.aside_s_per_m, ways.facing_radps))
+
+
+def test_a_robot_of_another_size_has_other_clearances() -> None:
+    wider = beside_box("wider", replace(B21, base_m=B21.base_m + 0.1))
+    rows = np.array([[*DRIVE, 1.0, 0.7, 0.0, 0.0, 0.0, 0.2, LOW]])
+    assert wider(rows)[0, NAMES.index("clear_straight")] == pytest.approx(
+        one_box(rows)[0, NAMES.index("clear_straight")] - 0.1, abs=1e-6
+    )
 
 
 def test_a_turn_by_about_half_a_circle_may_go_to_either_side() -> None:

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from tailor.models.features.drive_way import NEAR_M, Way, cosines, planned, planned_again
+from tailor.models.features.drive_clearance.driving_robot import Drift, DrivingRobot
+from tailor.models.features.drive_clearance.way import Way, cosines, planned, planned_again
 from tailor.models.features.features import TWO_PI, Operations, Rows, length
 
 POSES = 8  # of each part of a drive
@@ -19,9 +20,6 @@ LEFT: Any = 1 - TURNED
 EITHER_RAD = 2.7  # of a larger turn, noise and the next plan decide the side
 DRIVEN: Any = (np.arange(1, POSES + 1, dtype=np.float32) / POSES)[:, None]  # share of the straight piece
 FIRST, SECOND = list(range(POSES)), list(range(POSES, 2 * POSES))
-# Displacement in turning to a far goal, if the speed grows by so many m/s a radian: fitted to 1500 drives. Small turns
-# take longer for their size.
-LEAST_DRIFT, MOST_DRIFT, DRIFT_SLOPE, DRIFT_FROM_RAD = 0.42, 0.65, 0.45, 2.7
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,30 +57,31 @@ class Drive:
     arriving: Poses
 
 
-def drive(poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
+def drive(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
     """The drive between poses.
 
     Args:
+      robot: Which robot drives.
       poses: Rows x, y, phi of the start, then of the goal, in any frame; shape (6, n).
       goal: Cosine and sine of the goal's heading.
       ops: Operations of features.
     """
     away = poses[[3, 4]] - poses[[0, 1]]
-    near = length(away[[0]], away[[1]], ops) < NEAR_M
-    first = planned(poses, goal, near, ops)
-    turning = _turning(poses, first, first.turn, near, ops)
+    near = length(away[[0]], away[[1]], ops) < robot.near_m
+    first = planned(robot, poses, goal, near, ops)
+    turning = _turning(robot.drift, poses, first.turn, near, ops)
     last = [POSES - 1]
     turned = ops.stack(turning.x[last], turning.y[last], first.facing, poses[[3, 4, 5]])
-    way = planned_again(turned, goal, near, first, ops)
+    way = planned_again(robot, turned, goal, near, first, ops)
     arriving = _arriving(poses, way, goal, ops)
     x, y = arriving.ahead_x[[0]], arriving.ahead_y[[0]]
     straight = turned[[0]] + x * way.straight * DRIVEN, turned[[1]] + y * way.straight * DRIVEN
     back = ops.where(first.turn < 0.0, first.turn + TWO_PI, first.turn - TWO_PI)
     other = ops.where(ops.absolute(first.turn) < EITHER_RAD, first.turn, back)
-    return Drive(first, way, turning, _turning(poses, first, other, near, ops), straight, arriving)
+    return Drive(first, way, turning, _turning(robot.drift, poses, other, near, ops), straight, arriving)
 
 
-def _turning(poses: Rows, way: Way, turn: Rows, near: Rows, ops: Operations) -> Poses:
+def _turning(drift: Drift, poses: Rows, turn: Rows, near: Rows, ops: Operations) -> Poses:
     """The turn to the way; with less than a right angle left the robot drives, faster and faster."""
     angle, zero = ops.absolute(turn), turn * 0.0
     total = ops.clip(angle, 0.0, np.pi / 2)
@@ -91,9 +90,9 @@ def _turning(poses: Rows, way: Way, turn: Rows, near: Rows, ops: Operations) -> 
     driven = left * -1.0 + total
     cosine, sine = cosines(ops.stack(left, poses[[2]] + turn * TURNED), ops)
     c, s, ahead_x, ahead_y = cosine[FIRST], sine[FIRST], cosine[SECOND], sine[SECOND]
-    drift = ops.clip((angle * -1.0 + DRIFT_FROM_RAD) * DRIFT_SLOPE, LEAST_DRIFT, MOST_DRIFT)
-    drift = ops.where(near, zero, drift)
-    along, aside = (c - c[[0]] - driven * s) * drift, (driven * c + s - s[[0]]) * drift
+    growth = ops.clip((angle * -1.0 + drift.from_rad) * drift.slope, drift.least, drift.most)
+    growth = ops.where(near, zero, growth)
+    along, aside = (c - c[[0]] - driven * s) * growth, (driven * c + s - s[[0]]) * growth
     aside = aside * ops.where(turn < 0.0, 1.0, zero - 1.0)
     to_x, to_y = ahead_x[[POSES - 1]], ahead_y[[POSES - 1]]
     x, y = poses[[0]] + to_x * along - to_y * aside, poses[[1]] + to_y * along + to_x * aside

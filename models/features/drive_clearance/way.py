@@ -1,7 +1,8 @@
 """The way that a drive to a pose takes as planned: a turn, a straight piece, a bend or a turn into the goal.
 
-It repeats, with the operations of features alone, what `executive/actions/arrival_path.py` plans for far goals, and how
-the kitchen robot drives to near ones; a test compares them. Metres and radians.
+It repeats, with the operations of features alone, what `executive/actions/arrival_path.py` plans for far goals; to near
+ones the robot turns, drives straight, ahead or backward, and turns. A test compares both with a robot's controller.
+Metres and radians.
 """
 
 from __future__ import annotations
@@ -11,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from tailor.models.features.drive_clearance.driving_robot import DrivingRobot
 from tailor.models.features.features import TWO_PI, Operations, Rows, direction, length, wrap
 
-THERE_M, NEAR_M = 0.05, 1.0  # so near its goal the robot only turns; turns, drives straight and turns
-RADIUS_M, INSIDE, TIGHTEST_M, RUN_IN_M = 0.45, 0.8, 0.08, 0.10  # see ArrivalPath
-BESIDE_M, ASIDE_S_PER_M = 0.12, 20.0
-DRIVING_S_PER_M, BEND_S_PER_RAD, FACING_S_PER_RAD = 1 / (0.85 * 0.6), 1 / 0.6, 1 / 1.3
+RADIUS_M, INSIDE, TIGHTEST_M, RUN_IN_M = 0.45, 0.8, 0.08, 0.10  # see ArrivalPath, of which these are the defaults
+BESIDE_M, ASIDE_S_PER_M, FACING_S_PER_RAD, DRIVING_SHARE = 0.12, 20.0, 1 / 1.3, 0.85
 NO_BEND = 1e-4  # rad short of a full circle: a bend of zero length with rounding errors
 TIE = 1e-6  # between two choices the first one is taken
 LARGE = 1e3
@@ -59,34 +59,37 @@ def cosines(angle: Rows, ops: Operations) -> tuple[Rows, Rows]:
     return cosine, sine * angle
 
 
-def planned(poses: Rows, goal: tuple[Rows, Rows], near: Rows, ops: Operations) -> Way:
+def planned(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], near: Rows, ops: Operations) -> Way:
     """The way between poses.
 
     Args:
+      robot: Which robot drives.
       poses: Rows x, y, phi of the start, then of the goal, in any frame; shape (6, n).
       goal: Cosine and sine of the goal's heading.
       near: Where the robot drives as to a near goal, shape (1, n).
       ops: Operations of features.
     """
-    return _way(ops.where(near, _straight(poses, ops), _bent(poses, goal, ops)))
+    return _way(ops.where(near, _straight(robot, poses, ops), _bent(robot, poses, goal, ops)))
 
 
-def planned_again(poses: Rows, goal: tuple[Rows, Rows], near: Rows, first: Way, ops: Operations) -> Way:
+def planned_again(
+    robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], near: Rows, first: Way, ops: Operations
+) -> Way:
     """The way from where the robot has turned to a far goal; to a near one it stays as it was planned first."""
     before = ops.stack(*(getattr(first, name) for name in Way.__slots__))
-    return _way(ops.where(near, before, _bent(poses, goal, ops)))
+    return _way(ops.where(near, before, _bent(robot, poses, goal, ops)))
 
 
 def _way(rows: Rows) -> Way:
     return Way(*(rows[[k]] for k in range(len(Way.__slots__))))
 
 
-def _straight(poses: Rows, ops: Operations) -> Rows:
+def _straight(robot: DrivingRobot, poses: Rows, ops: Operations) -> Rows:
     """Turn, drive straight, ahead or back, whichever needs less turning, and turn; the fields of a Way, (7, n)."""
     away = poses[[3, 4]] - poses[[0, 1]]
     dx, dy, phi = away[[0]], away[[1]], poses[[2]]
     dist = length(dx, dy, ops)
-    bearing = ops.where(dist < THERE_M, phi, direction(dx, dy, dist, phi, ops))
+    bearing = ops.where(dist < robot.there_m, phi, direction(dx, dy, dist, phi, ops))
     headings = ops.stack(bearing, bearing + np.pi)
     turns = wrap(ops.stack(headings - phi, poses[[5]] - headings), ops)
     turning = ops.absolute(turns)
@@ -98,7 +101,7 @@ def _straight(poses: Rows, ops: Operations) -> Rows:
     return ops.stack(chosen[[0, 2, 3]], side, ops.absolute(end), zero, zero)
 
 
-def _bent(poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Rows:
+def _bent(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Rows:
     """The quickest: with a bend to the left, to the right, or along the goal's line; the fields of a Way, (7, n)."""
     away, phig, (c, s) = poses[[0, 1]] - poses[[3, 4]], poses[[5]], goal
     dx, dy = away[[0]], away[[1]]
@@ -107,12 +110,14 @@ def _bent(poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Rows:
     heading, straight, bend, radius = _into_arc(x + RUN_IN_M, y * SIDES, ops)
     heading = heading * SIDES
     turn = wrap(heading - start, ops)
-    bends_s = ops.absolute(turn) * FACING_S_PER_RAD + (straight + RUN_IN_M) * DRIVING_S_PER_M + bend * BEND_S_PER_RAD
+    driving_s_per_m = 1 / (DRIVING_SHARE * robot.v_max_mps)
+    bends_s = ops.absolute(turn) * FACING_S_PER_RAD + (straight + RUN_IN_M) * driving_s_per_m
+    bends_s = bends_s + bend * (1 / robot.bend_worth_radps)
     both = ops.stack(turn, heading + phig, straight, zero + SIDES, bend, radius, zero + RUN_IN_M, zero, bends_s)
     left = bends_s[[0]] < bends_s[[1]] + TIE
     arc = ops.where(left, both[[0, 2, 4, 6, 8, 10, 12, 14]], both[[1, 3, 5, 7, 9, 11, 12, 15]])
     aside, dist = ops.absolute(y), x * -1.0
-    along_s = ops.absolute(start) * FACING_S_PER_RAD + dist * DRIVING_S_PER_M + aside * ASIDE_S_PER_M
+    along_s = ops.absolute(start) * FACING_S_PER_RAD + dist * driving_s_per_m + aside * ASIDE_S_PER_M
     along_s = ops.where(x < 0.0, ops.where(aside < BESIDE_M, along_s, zero + LARGE), zero + LARGE)
     line = ops.stack(start * -1.0, phig, dist, zero + 1.0, zero, zero, zero)
     return ops.where(along_s < arc[[7]], line, arc[[0, 1, 2, 3, 4, 5, 6]])

@@ -1,0 +1,1 @@
+"""Feature spaces of the B21 in its kitchen."""
