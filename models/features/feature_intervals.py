@@ -13,6 +13,7 @@ from tailor.models.features.intervals import ARGUMENT_ERROR, Span, direction, le
 from tailor.models.features.lifted_intervals import joints_lifted
 from tailor.models.features.obstacle_intervals import one_obstacle
 from tailor.models.features.sight_intervals import Case, Spans, may_lie_in_half, sight, wrapped
+from tailor.models.features.spot_intervals import spot, spot_handle, spot_out
 
 AT_REST = 1e-7  # well below SAME_PLACE of features.py
 
@@ -84,6 +85,9 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "projective-turn": _projective_turn,
     "projective-periodic": _projective_periodic,
     "one-obstacle": one_obstacle,
+    "spot": spot,
+    "spot-out": spot_out,
+    "spot-handle": spot_handle,
     "joints": _joints,
     "joints-relative": _joints_relative,
     "joints-lifted": joints_lifted,

@@ -139,6 +139,21 @@ def test_gap_that_is_good_enough_is_proven_for_one_subgoal_and_for_three():
         assert proof.gap_pct <= 1.0 + 1e-9
 
 
+def test_a_parameter_whose_range_is_a_point_neither_stops_a_proof_nor_is_split():
+    start, target = {"x": -2.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 0.0, "y": 1.5, "phi": 2.6, "v": 0.0}
+    given_sequence = sequence([GO, GO], [start, {}, target])
+    variables = tuple(
+        replace(v, lower=0.0, upper=0.0) if v.free and v.unit == "m/s" else v for v in given_sequence.variables
+    )
+    models = Models({"goToPose/duration": Trees.random(0, trees=3)}, {})
+    cost = SequenceObjective(given_sequence.actions, variables, models, RefinementSettings())
+    assert (cost.ranges.width == 0).sum() == 1
+    with np.errstate(all="raise"):
+        proof = certificate(cost, cost.vector({}), RefinementSettings())
+        proof.advance(CheckBudget(60))
+    assert 0.8 * proof.value < proof.bound <= proof.value
+
+
 def test_better_choice_than_the_given_one_is_found_on_the_way():
     cost, _ = objective("waypoints", 3, 1.0, True)
     worst = max(cost.ranges.draw(200, np.random.default_rng(0)), key=lambda one: cost(one[None])[0])

@@ -34,6 +34,9 @@ spaces = st.sampled_from(
         "joints",
         "joints-lifted",
         "one-obstacle",
+        "spot",
+        "spot-out",
+        "spot-handle",
     ]
 )
 seeds = st.integers(0, 2**32 - 1)
@@ -43,10 +46,12 @@ def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A box of arguments: each wide, narrow or a point; often with the same place at both ends, or at rest."""
     scale = np.array([WIDTHS.get(q.name.rstrip("g"), 2.0) for q in feature_space(space).arguments])
     lower = rng.uniform(-0.5, 0.5, len(scale)) * scale
-    if not space.startswith("joints"):
+    of_spot = space.startswith("spot")
+    if not of_spot and not space.startswith("joints"):
         lower[[3, 7]] = rng.uniform(0, 0.5, 2)
     if rng.random() < 0.2:
-        lower[4:8] = lower[:4]
+        there, here = (slice(3, 5), slice(0, 2)) if of_spot else (slice(4, 8), slice(0, 4))
+        lower[there] = lower[here]
     if rng.random() < 0.2:
         lower[[1, 3]] = 0.0
     if len(lower) > 8 and rng.random() < 0.4:
@@ -79,7 +84,10 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
 @settings(max_examples=150, deadline=None)
 @given(
     st.sampled_from(
-        ["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted", "one-obstacle"]
+        [
+            *["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted"],
+            *["one-obstacle", "spot-handle"],
+        ]
     ),
     seeds,
     st.integers(1, 4),

@@ -16,11 +16,13 @@ from tailor.executive.refinement.certificates.boxes import NO_PARAMETERS, Boxes,
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.joint_bounds import joint_bounds
 from tailor.executive.refinement.certificates.stage_bounds import StageBound, stage_bound
+from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain_structure import blocks_of, links_of
 from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.models.runtime import load_robot
 from tailor.tools.benchmarks.refinement.cases import Case, cases
+from tailor.tools.benchmarks.refinement.decisions import first_decision
 
 TASKS = 2
 
@@ -75,6 +77,31 @@ def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, ta
     share = rng.choice([0.0, 1.0, 0.5, np.nan], (400, cost.ranges.count))
     inside = lower + np.where(np.isnan(share), rng.random(share.shape), share) * (upper - lower)
     assert_no_stage_costs_less(cost, chosen, lower, upper, inside)
+
+
+@pytest.fixture(scope="module")
+def fetching() -> SequenceObjective:
+    """The first two actions of a fetched cup: a drive beside all furniture, and the grip."""
+    pytest.importorskip("pybullet")
+    models, case = first_decision("kitchen", "one-cup", 3)
+    drive, grip = case.actions[:2]
+    assert len(drive.context) > 10
+    return SequenceObjective((drive, grip), case.variables, models, RefinementSettings())
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_no_values_cost_less_than_a_bound_that_ignores_furniture(fetching, seed):
+    rng = np.random.default_rng(seed)
+    lower, upper = drawn_boxes(fetching.ranges, rng)
+    inside = lower + rng.random((400, fetching.ranges.count)) * (upper - lower)
+    assert_no_stage_costs_less(fetching, RefinementSettings(), lower, upper, inside)
+
+
+def test_a_drive_beside_furniture_and_a_grip_are_certified_within_three_percent(fetching):
+    _, proof = searched_and_proven(fetching, RefinementSettings())
+    assert proof.gap_pct is not None
+    assert proof.gap_pct < 3.0
 
 
 def searched_and_proven(cost, chosen) -> tuple[Any, Certificate]:

@@ -24,6 +24,7 @@ RANGES = {  # where the features of the spaces lie, for thresholds to fall withi
         *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"
         *[(-3, 6), (-3, 3), (-0.5, 3), (-0.5, 5), (-0.5, 5), (0, np.pi), (0, np.pi)],
     ],
+    "spot-handle": [(0, 3), (0, np.pi), (0, 1), (-1, 1), (-0.5, 1.5), (0, np.pi)],
     "joints": [(0, 1), (0, 1), (0, 3), (-np.pi, np.pi), (-np.pi, np.pi)],
     "joints-lifted": [(-1, 1), (0, 2), (-2, 2), (0, 3), (-1, 1), (-1, 1), (-1, 1), (-1, 1)],
 }

@@ -134,8 +134,8 @@ class Proof:
         boxes, through = chain.boxes[index], costs.through[index]
         kept = through < self._limit
         open_boxes = np.flatnonzero(through < self._goal)
-        ranges = self._objective.ranges.width[self._blocks[index]]
-        widest = (boxes.width[open_boxes] / ranges).max(axis=1, initial=0.0)
+        ranges, width = self._objective.ranges.width[self._blocks[index]], boxes.width[open_boxes]
+        widest = np.divide(width, ranges, out=np.zeros_like(width), where=ranges > 0).max(axis=1, initial=0.0)
         wide = open_boxes[widest > MIN_WIDTH]
         wide = wide[np.argsort(through[wide], kind="stable")] if len(boxes) < MAX_BOXES else wide[:0]
         chosen = wide[: self._partition.max_split_boxes]

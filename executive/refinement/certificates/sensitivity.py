@@ -30,5 +30,6 @@ def sensitivity(objective: SequenceObjective) -> Array:
     valid = np.isfinite(costs[:-1]) & np.isfinite(costs[-1])
     change = np.abs(np.subtract(costs[:-1], costs[-1], out=np.zeros_like(costs[:-1]), where=valid))
     mean = change.sum(axis=1) / np.maximum(valid.sum(axis=1), 1)
-    weight: Array = np.maximum(mean, MIN_CHANGE_S) / ranges.width
+    weight: Array = np.zeros(count)  # a parameter whose range is a point is never split
+    np.divide(np.maximum(mean, MIN_CHANGE_S), ranges.width, out=weight, where=ranges.width > 0)
     return weight

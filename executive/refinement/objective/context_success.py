@@ -47,10 +47,16 @@ class ContextSuccess:
 
     @property
     def bounds(self) -> ContextBounds | None:
-        """Bounds of the probability; None if a model has none, or where some objects are left out."""
+        """Bounds of the probability; None if that of the action by itself has none.
+
+        Objects without bounds count as never met, and so do all where some are left out: what the model says of one
+        does not hold where it is not asked. So the upper bound is still one.
+        """
         own, beside = getattr(self.own, "bounds", None), getattr(self.beside, "bounds", None)
-        if beside is None or self.may_meet is not None or (self.own is not None and own is None):
+        if self.own is not None and own is None:
             return None
+        if beside is None or self.may_meet is not None:
+            return ContextBounds(own, (), self.rows[:0], ignores=True)
         return ContextBounds(own, (beside,) * len(self.rows), self.rows)
 
 
@@ -61,11 +67,12 @@ class ContextBounds:
     own: ModelBounds | None
     beside: tuple[ModelBounds, ...]  # (m,)
     rows: Array  # (m, c)
+    ignores: bool = False  # that there are further objects: whether these are met is unknown
 
     def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
         """Lower bound of the probability; it has no standard deviation."""
         own, in_spite = self._factored([bound.lower_bound(*box) for bound, box in self._factors(lower, upper)])
-        return own * in_spite
+        return own * in_spite * (not self.ignores)
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """Upper bound of the probability."""
@@ -80,7 +87,7 @@ class ContextBounds:
         """Bounds that are valid only for arguments in this box, each object's with the leaves near it."""
         restricted = [bound.within(*box) for bound, box in self._factors(lower, upper)]
         own = None if self.own is None else restricted.pop(0)
-        return ContextBounds(own, tuple(restricted), self.rows)
+        return ContextBounds(own, tuple(restricted), self.rows, self.ignores)
 
     is_linear = False
 

@@ -20,6 +20,7 @@ from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas import messages as m
 from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.explanations.explanation import sequence_of
+from tests.support.random_trees import Trees
 from tests.support.synthetic_models import DRIBBLE, MODELS, ConeSuccess, sequence
 from tests.unit.executive.refinement.synthetic_context import (
     APPROACH_AROUND,
@@ -235,7 +236,19 @@ def test_objects_that_cannot_be_met_cost_no_model_call_and_no_success():
     none = ContextSuccess(None, model, rows, lambda arguments, rows: np.zeros((3, len(arguments)), bool))
     assert none.probability(ARGUMENTS).tolist() == [1.0, 1.0]
     assert model.calls == 1
-    assert some.bounds is None, "those of the model alone would not hold where it is not asked"
+
+
+@pytest.mark.parametrize("may_meet", [None, lambda arguments, rows: np.zeros((len(rows), len(arguments)), bool)])
+def test_objects_without_bounds_or_perhaps_left_out_bound_success_between_nothing_and_that_without_them(may_meet):
+    own, beside = Trees.random(1, success=True), Trees.random(2, "one-obstacle", success=True)
+    beside = beside if may_meet else ClearanceSuccess()
+    bounds = ContextSuccess(own, beside, np.array([IN_THE_WAY, ASIDE]), may_meet).bounds
+    columns = tuple(np.full((1, 1, 1), value) for value in ARGUMENTS[0])
+    assert bounds.lower_bound(columns, columns).item() == 0.0
+    for restricted in (bounds, bounds.within(columns, columns)):
+        assert restricted.upper_bound(columns, columns) == own.bounds.upper_bound(columns, columns)
+        assert [bound.item() for bound in restricted.upper_bounds(columns, columns)][1] == 1.0
+    assert ContextSuccess(ConeSuccess(), beside, np.array([ASIDE]), may_meet).bounds is None
 
 
 def test_an_action_tells_which_objects_it_may_meet():
