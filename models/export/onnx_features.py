@@ -65,6 +65,19 @@ class Tracing:
         ends = (a.sink.constant(single(end)) for end in (low, high))
         return Symbol(a.sink, a.sink.add("Clip", a.name, *ends))
 
+    def lower(self, a: Symbol, b: Symbol) -> Symbol:
+        """The lower element of each pair."""
+        return Symbol(a.sink, a.sink.add("Min", a.name, b.name))
+
+    def higher(self, a: Symbol, b: Symbol) -> Symbol:
+        """The higher element of each pair."""
+        return Symbol(a.sink, a.sink.add("Max", a.name, b.name))
+
+    def least(self, a: Symbol, groups: int, size: int) -> Symbol:
+        """Least row of each group of `size` neighbours: from (groups · size, n) to (groups, n)."""
+        grouped = a.sink.add("Reshape", a.name, a.sink.constant(np.array([groups, size, -1])))
+        return Symbol(a.sink, a.sink.add("ReduceMin", grouped, a.sink.constant(np.array([1])), keepdims=0))
+
     def where(self, condition: Symbol, a: Symbol | float, b: Symbol) -> Symbol:
         """Elements of `a` where the condition holds, of `b` elsewhere."""
         first = a.name if isinstance(a, Symbol) else b.sink.constant(single(a))

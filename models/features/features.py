@@ -39,6 +39,15 @@ class Operations(Protocol):
     def clip(self, a: Rows, low: float, high: float) -> Rows:
         """Values clipped to [low, high]."""
 
+    def lower(self, a: Rows, b: Rows) -> Rows:
+        """The lower element of each pair."""
+
+    def higher(self, a: Rows, b: Rows) -> Rows:
+        """The higher element of each pair."""
+
+    def least(self, a: Rows, groups: int, size: int) -> Rows:
+        """Least row of each group of `size` neighbours: from (groups · size, n) to (groups, n)."""
+
     def where(self, condition: Rows, a: Rows, b: Rows) -> Rows:
         """Elements of `a` where the condition holds, of `b` elsewhere."""
 
@@ -51,7 +60,13 @@ class _Numpy:
     absolute = staticmethod(np.absolute)
     round = staticmethod(np.round)
     clip = staticmethod(np.clip)
+    lower = staticmethod(np.minimum)
+    higher = staticmethod(np.maximum)
     where = staticmethod(np.where)
+
+    @staticmethod
+    def least(a: Rows, groups: int, size: int) -> Rows:
+        return a.reshape(groups, size, -1).min(axis=1)
 
     @staticmethod
     def stack(*parts: Rows) -> Rows:

@@ -21,9 +21,6 @@ BOX = quantities("box_x:m box_y:m box_phi:rad box_long:m box_wide:m box_r:m box_
 DRIVE = quantities("v:m/s dist:m turn:rad bend:rad radius:m")
 # of the base at the start, as it turns, drives straight, bends or turns into the goal, and there; of the hand likewise
 CLEAR = quantities("clear:m clear_turn:m clear_straight:m clear_bend:m clear_g:m hand_turn:m hand_bend:m hand_g:m")
-BASES, HANDS = 4 * POSES + 1, 3 * POSES + 1  # places of the base and of each disc of the hand
-PARTS = 7  # four of the base, three of the hand
-DISCS = [list(range(BASES + k * HANDS, BASES + (k + 1) * HANDS)) for k in range(2)]
 PHI, PHIG, BOX_X, BOX_PHI, LONG, WIDE, MARGIN, HIGH = 2, 6, 8, 10, 11, 12, 13, 14
 
 
@@ -49,29 +46,33 @@ def _features(robot: DrivingRobot, rows: Rows, ops: Operations) -> Rows:
 def _clearances(robot: DrivingRobot, planned: Drive, goal: Poses, rows: Rows, ops: Operations) -> Rows:
     """Clearances of base and hand; see CLEAR."""
     turning, other, arriving = planned.turning, planned.other, planned.arriving
-    places = [(turning.x, turning.y), (other.x, other.y), planned.straight, (arriving.x, arriving.y), (goal.x, goal.y)]
-    places += [part.ahead(distance_m) for distance_m in robot.hand_m for part in (turning, other, arriving, goal)]
-    distance = _distance(ops.stack(*(x for x, _ in places)), ops.stack(*(y for _, y in places)), rows, ops)
-    base = distance[list(range(BASES))] - robot.base_m
-    hand = _lower(distance[DISCS[0]], distance[DISCS[1]], ops) - robot.hand_radius_m
+    ways = [(turning.x, turning.y), (other.x, other.y), planned.straight, (arriving.x, arriving.y)]
+    ways += [part.ahead(distance_m) for distance_m in robot.hand_m for part in (turning, other, arriving)]
+    ends = [(turning.x[[0]], turning.y[[0]]), (goal.x, goal.y), *map(goal.ahead, robot.hand_m)]
+    way, end = _least_distances(ways, POSES, rows, ops), _least_distances(ends, 1, rows, ops)
+    base = ops.stack(end[[0]], ops.lower(way[[0]], way[[1]]), way[[2, 3]], end[[1]]) - robot.base_m
+    hand = ops.lower(ops.stack(way[[4, 5, 6]], end[[2]]), ops.stack(way[[7, 8, 9]], end[[3]])) - robot.hand_radius_m
+    hand = ops.stack(ops.lower(hand[[0]], hand[[1]]), hand[[2, 3]])
     hand = ops.where(rows[[HIGH]] < robot.hand_bottom_m, hand * 0.0 + MOST_M, hand)
-    parts = _least_of_parts(ops.stack(base[list(range(BASES - 1))], hand[list(range(HANDS - 1))]), ops)
-    turns = _lower(parts[[0, 4]], parts[[1, 5]], ops)
-    bases = ops.stack(base[[0]], turns[[0]], parts[[2, 3]], base[[BASES - 1]])
-    least = ops.stack(bases, turns[[1]], parts[[6]], hand[[HANDS - 1]])
-    return ops.clip(least, LEAST_M, MOST_M)
+    return ops.clip(ops.stack(base, hand), LEAST_M, MOST_M)
 
 
-def _least_of_parts(rows: Rows, ops: Operations) -> Rows:
-    """Least of each part's POSES rows, shape (PARTS, n): halved until one is left."""
-    for count in (POSES // 2, POSES // 4, POSES // 8):
-        first = [k for k in range(PARTS * 2 * count) if k % (2 * count) < count]
-        rows = _lower(rows[first], rows[[k + count for k in first]], ops)
-    return rows
+def _least_distances(parts: list[tuple[Rows, Rows]], size: int, rows: Rows, ops: Operations) -> Rows:
+    """Least distance of each part's places from the object, negative inside.
 
-
-def _lower(first: Rows, second: Rows, ops: Operations) -> Rows:
-    return ops.where(first < second, first, second)
+    Args:
+      parts: x and y of places in the rectangle's frame, each of shape (size, n).
+      size: Number of places of each part.
+      rows: The arguments.
+      ops: Operations of features.
+    """
+    x, y = ops.stack(*(x for x, _ in parts)), ops.stack(*(y for _, y in parts))
+    dx, dy = ops.absolute(x) - rows[[LONG]], ops.absolute(y) - rows[[WIDE]]
+    ox, oy = ops.clip(dx, 0.0, LARGE), ops.clip(dy, 0.0, LARGE)
+    outside, inside = ox * ox + oy * oy, ops.higher(dx, dy)
+    if size > 1:  # roots and sums keep the order, so few are left to be computed
+        outside, inside = ops.least(outside, len(parts), size), ops.least(inside, len(parts), size)
+    return ops.sqrt(outside) + ops.clip(inside, -LARGE, 0.0) - rows[[MARGIN]]
 
 
 def _seen_from_box(rows: Rows, ops: Operations) -> tuple[Rows, tuple[Rows, Rows]]:
@@ -83,10 +84,3 @@ def _seen_from_box(rows: Rows, ops: Operations) -> tuple[Rows, tuple[Rows, Rows]
     x, y = c * dx + s * dy, c * dy - s * dx
     poses = ops.stack(x, y, headings)
     return poses[[0, 2, 4, 1, 3, 5]], (cosine[[1]], sine[[1]])
-
-
-def _distance(x: Rows, y: Rows, rows: Rows, ops: Operations) -> Rows:
-    """Distances of places in the rectangle's frame from the object; negative inside."""
-    dx, dy = ops.absolute(x) - rows[[LONG]], ops.absolute(y) - rows[[WIDE]]
-    outside = length(ops.clip(dx, 0.0, LARGE), ops.clip(dy, 0.0, LARGE), ops)
-    return outside + ops.clip(ops.where(dx < dy, dy, dx), -LARGE, 0.0) - rows[[MARGIN]]
