@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,11 +20,14 @@ ALIGN = "align"  # controller state while the robot turns on the spot at its goa
 
 @dataclass(frozen=True, slots=True)
 class GoToPose:
-    """Turns towards the path into the goal, follows it, and turns on the spot only after a miss.
+    """Turns towards the path into the goal, follows it, and turns on the spot only after a miss, or to look.
 
     The path is planned anew each tick until its bend is near. From there on it is kept, in the goal's frame, and
     deviations decay over `settle_m`. With a new path near the goal, a few centimetres of noise beside it would swing
     the robot round where it must face ahead.
+
+    `unseen`, if given, tells from the belief whether the robot has not looked yet where a turn by an angle (rad) leads.
+    What stands there would be seen too late to brake, so the robot turns on the spot until it has looked.
 
     Controller state: None, then a `Progress` on the kept path, then perhaps ALIGN.
     """
@@ -51,6 +55,7 @@ class GoToPose:
     still_radps: float = 0.4
     speed_mps: float = 0.10  # tolerance of the arrival speed
     crawl_mps: float = 0.10  # minimum, so that it arrives
+    unseen: Callable[[Any, float], bool] | None = None
 
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
@@ -64,14 +69,16 @@ class GoToPose:
         return followed or self._face(belief, pose, vg)
 
     def _face(self, belief: PlanarBelief, pose: Pose, vg: float) -> Control:
-        """Turn towards the path; the speed grows as the heading error falls."""
+        """Turn towards the path; the speed grows as the heading error falls, from when the robot sees its way."""
         way = Progress(self.ways.quickest((pose.x, pose.y, pose.phi), vg), 0.0)
         error = difference(way.path.start[2], pose.phi)
         if abs(error) < self.keep_rad and way.path.pieces[0][1] < self.keep_m + self.keep_s * max(0.0, belief.v):
             followed = self._follow(way, belief, pose, vg)
             if followed is not None:
                 return followed
-        return Control(None, (self._speed(way, vg) * max(0.0, math.cos(error)), self._turn(error)))
+        blind = self.unseen is not None and self.unseen(belief, error)
+        ahead_mps = 0.0 if blind else self._speed(way, vg) * max(0.0, math.cos(error))
+        return Control(None, (ahead_mps, self._turn(error)))
 
     def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
         """Follow the kept path; None when the robot has left it."""

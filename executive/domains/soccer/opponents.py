@@ -11,14 +11,12 @@ import numpy as np
 from tailor.executive.belief.obstacle_tracks import ObstacleTrack, Sighting, confirmed, in_map
 from tailor.executive.belief.obstacle_tracks import see as see_obstacles
 from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.soccer.pictures import Pictures, in_view, shown_after, with_picture
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
 
 MOST = 4  # of another team, that telemetry includes
 FRESH_S = 0.5  # six pictures: without them the robot does not drive among opponents
-# where a picture shows an opponent for certain, with a margin to what the camera sees: 0.87 rad, 0.25 to 6 m
-VIEW_RAD = 0.7
-VIEW_M = (0.5, 4.5)
 CREDIBLE_M = 20.0  # a percept farther off is none
 VARIANCES = (1e-6, 25.0)  # m²: a millimetre's, and that of 5 m; senders without a covariance send zeros
 RADII_M = (0.05, 0.35)
@@ -29,10 +27,11 @@ NAMES = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Opponents:
-    """Tracks in the map frame, and when the last picture came; 0 before the first."""
+    """Tracks in the map frame, when the last picture came (0 before the first), and the poses of pictures."""
 
     tracks: tuple[ObstacleTrack, ...] = ()
     seen_ns: int = 0
+    pictures: Pictures = ()
 
     @property
     def standing(self) -> tuple[ObstacleTrack, ...]:
@@ -46,14 +45,22 @@ NONE = Opponents()
 def see(opponents: Opponents, pose: Pose, now_ns: int, percepts: OpponentPercepts) -> Opponents:
     """Fuse a picture, taken from a pose."""
 
-    def in_view(track: ObstacleTrack) -> bool:
-        dx, dy = track.x - pose.x, track.y - pose.y
-        bearing = math.remainder(math.atan2(dy, dx) - pose.phi, math.tau)
-        return abs(bearing) < VIEW_RAD and VIEW_M[0] < math.hypot(dx, dy) < VIEW_M[1]
+    def expected(track: ObstacleTrack) -> bool:
+        return in_view((pose.x, pose.y, pose.phi), (track.x, track.y))
 
     near = [percept for percept in percepts.opponents if math.hypot(percept.x, percept.y) < CREDIBLE_M]
     sightings = [in_map(pose, _sighting(percept)) for percept in near]
-    return Opponents(see_obstacles(opponents.tracks, sightings, now_ns, in_view), now_ns)
+    tracks = see_obstacles(opponents.tracks, sightings, now_ns, expected)
+    return Opponents(tracks, now_ns, with_picture(opponents.pictures, pose))
+
+
+def unseen(belief: Any, turn: float) -> bool:
+    """Whether a turn by an angle (rad) leads where an opponent may stand that no picture has shown, of a SoccerBelief.
+
+    Never before a picture was searched for opponents: nobody expects any.
+    """
+    known = belief.opponents
+    return bool(known.seen_ns) and not shown_after(known.pictures, belief.pose, turn)
 
 
 def fresh(opponents: Opponents, now_ns: int) -> bool:
