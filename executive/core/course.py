@@ -44,11 +44,10 @@ def shortened(context: Context, state: State) -> State:
     first = decided.sequence.actions[0]
     if not (task.running.asserted and first.asserted and first.context):
         return state
-    now = decided.watch.sequence(state.belief)
-    if now is None or slow_inputs(context, state) is not None:
+    now = decided.watch.sequence(state.belief) if slow_inputs(context, state) is None else None
+    if now is None:
         return state
-    settings = context.settings.refinement
-    found = shortcut(decided.sequence, decided.choice.values, now, context.models, settings)
+    found = shortcut(decided.sequence, decided.choice.values, now, context.models, context.settings.refinement)
     if found is None:
         return state
     sequence, choice = found

@@ -213,7 +213,7 @@ def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
     """The manifest entries that determine the episodes of a data set; None if they were not drawn from a seed."""
     if manifest.get("seed") is None:
         return None
-    return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256")]
+    return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256", "profile")]
 
 
 def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Episode]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Manifest = Mapping[str, Any]
 
 # entries of a manifest that determine the episodes, with "source": random, on-policy, active, recordings
-DRAW = ("source", "seed", "stream", "scenarios", "situations", "recordings", "models_sha256")
+DRAW = ("source", "seed", "stream", "scenarios", "situations", "recordings", "models_sha256", "profile")
 PROBE = 6  # first episodes of a data set that a card repeats, to be run again where the source has changed
 SHORT = 12  # digits of a hash of a file in a card
 
@@ -53,8 +53,8 @@ def probe_of(manifest: Manifest, ends: Sequence[Sequence[float]]) -> dict[str, A
     if not drawn or len(ends) < PROBE or manifest.get("on_policy"):
         return None
     about = {"seed": manifest["seed"], "stream": manifest["stream"], "ends": list(map(list, ends))}
-    objects = {"objects": manifest["objects"]} if manifest.get("objects") else {}
-    return about | ({"beside": True} if beside else {}) | objects
+    more = {key: manifest[key] for key in ("objects", "profile") if manifest.get(key)}
+    return about | ({"beside": True} if beside else {}) | more
 
 
 def end_of(duration_s: float, ticks: NDArray[np.float64]) -> list[float]:

@@ -16,13 +16,13 @@ from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.schemas.installed.source import runs_sha256
 from tailor.simnodes.world import World
-from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.learning.run_gathering import cached_models
+from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import events_of
 from tailor.tools.parallel.pool import completed

@@ -23,6 +23,7 @@ from tailor.tools.learning.refined_choices import Choice, refined_choices
 from tailor.tools.learning.run_gathering import prepare_chosen
 from tailor.tools.learning.steps import Step, counted
 from tailor.tools.lockstep import action_run
+from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
 
 FIRST_SEED = 3_000_000_000  # of situations; disjoint from those of evaluations and of on-policy runs
@@ -42,6 +43,7 @@ class Active:
       seed: Of situations and noise.
       zoo: Folder of the models that choose.
       folder: Folder of the data sets.
+      profile: Of the body; empty: the one that ships.
     """
 
     domain: str
@@ -51,6 +53,7 @@ class Active:
     seed: int
     zoo: str
     folder: Path
+    profile: str = ""
 
     @property
     def situations(self) -> list[tuple[str, int]]:
@@ -103,7 +106,7 @@ def _refine_all(active: Active, missing: Sequence[int], jobs: int) -> Iterator[i
 
 def _refine(active: Active, first: int) -> list[Choice]:
     """The choices of some situations."""
-    body = action_run.new_body(domains.load(active.domain))
+    body = body_of(active.domain, active.profile)
     return [
         choice
         for scenario, seed in _some(active, first)
@@ -143,7 +146,7 @@ def _run_all(
 def _run(active: Active, data_set: str, first: int, choices: Sequence[Choice]) -> list[Episode]:
     """Run some choices, each from the state in which its action begins."""
     domain = domains.load(active.domain)
-    body = action_run.new_body(domain)
+    body = body_of(active.domain, active.profile)
     episodes = []
     for number, choice in enumerate(choices, first):
         rng = np.random.default_rng([ACTIVE_STREAM, active.seed, zlib.crc32(data_set.encode()), number])

@@ -29,6 +29,7 @@ from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning.object_gathering import runs_beside_objects
 from tailor.tools.lockstep import action_run
+from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
@@ -54,6 +55,7 @@ class DataSetSpec:
     stream: int = TRAINING_STREAM
     beside: bool = False  # each episode beside one random object of the action's context
     objects: int = 0
+    profile: str = ""  # of the body; empty: the one that ships
 
     def rng(self, number: int) -> np.random.Generator:
         """Random generator of one episode: its arguments and all its noise."""
@@ -111,7 +113,7 @@ def part_of(spec: DataSetSpec, first: int) -> tuple[bytes, float, float]:
     Writing Parquet takes tens of milliseconds, so it belongs to the part: files of many workers are only stored.
     """
     domain, started = domains.load(spec.domain), time.perf_counter()
-    body = action_run.new_body(domain)
+    body = body_of(spec.domain, spec.profile)
     numbers = range(first, min(first + PART, spec.episodes))
     episodes, simulated_s = run_episodes(spec, domain, body, numbers)
     names = [entry["name"] for entry in _columns(spec, domain)]
@@ -187,6 +189,7 @@ def _manifest(spec: DataSetSpec) -> dict[str, Any]:
         "arguments": argument_ranges(domain, spec),
         **(context_entry(domain, spec.action, columns) if columns else {}),
         **({"objects": spec.objects} if spec.objects else {}),
+        **({"profile": spec.profile} if spec.profile else {}),
         "episodes": spec.episodes,
         "seed": spec.seed,
         "stream": spec.stream,

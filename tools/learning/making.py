@@ -32,6 +32,7 @@ from tailor.tools.learning.training_request import (
     data_sets,
 )
 from tailor.tools.learning.training_run import train_models
+from tailor.tools.lockstep.bodies import body_of
 
 WHOLE = "whole"  # marker of a folder of models, written last
 CHOOSING = ("duration", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
@@ -65,8 +66,9 @@ class Making:
 
     @property
     def random(self) -> Path:
-        """Folder of the random episodes; other controllers, bodies or seeds have another one."""
-        return self.work / self.robot / f"random-{episodes_sha256(self.domain)[:12]}-{self.recipe.seed}"
+        """Folder of the random episodes; other controllers, bodies, profiles or seeds have another one."""
+        profile = f"-{self.recipe.profile}" if self.recipe.profile else ""
+        return self.work / self.robot / f"random-{episodes_sha256(self.domain)[:12]}-{self.recipe.seed}{profile}"
 
     @property
     def beside(self) -> Path:
@@ -99,9 +101,10 @@ def make(making: Making) -> Iterator[Step]:
     """Gather and train all that is missing; yields progress. The models are in `making.zoo` at the end.
 
     Raises:
-      UsageError: An unknown scenario, learner or feature space, too few episodes, or a model that an action names and
-        that could not be learned.
+      UsageError: An unknown scenario, profile, learner or feature space, too few episodes, or a model that an action
+        names and that could not be learned.
     """
+    body_of(making.domain, making.recipe.profile)  # raises on an unknown profile before anything runs
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
         zoo = making.chooser(number)
@@ -158,7 +161,8 @@ def _random_episodes(making: Making) -> Iterator[Step]:
     recipe = making.recipe
     for action, count, folder, beside in _random_sets(making):
         objects = recipe.objects if beside else 0
-        spec = DataSetSpec(making.domain, action, count, recipe.seed, folder / action, beside=beside, objects=objects)
+        drawn = (making.domain, action, count, recipe.seed, folder / action)
+        spec = DataSetSpec(*drawn, beside=beside, objects=objects, profile=recipe.profile)
         gathering.prepare(spec, resume=True)
         missing = gathering.missing_parts(spec)
         left = sum(min(gathering.PART, count - first) for first in missing)
@@ -168,13 +172,14 @@ def _random_episodes(making: Making) -> Iterator[Step]:
 
 
 def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
-    folder, seed, title = making.data[number + 1], making.recipe.seed + number, f"round {number + 1}"
+    seed, title = making.recipe.seed + number, f"round {number + 1}"
+    where = (seed, str(zoo), making.data[number + 1], making.recipe.profile)
     if each.source == "active":
-        active = Active(making.domain, each.scenarios, each.episodes, each.pool, seed, str(zoo), folder)
+        active = Active(making.domain, each.scenarios, each.episodes, each.pool, *where)
         for step in run_active(active, making.jobs):
             yield Step(f"{title}: {step.title}", step.done, step.total)
         return
-    policy = run_gathering.Policy(making.domain, each.scenarios, each.episodes, seed, str(zoo), folder)
+    policy = run_gathering.Policy(making.domain, each.scenarios, each.episodes, *where)
     running = run_gathering.run_policy(policy, making.jobs)
     yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
 

@@ -65,6 +65,7 @@ class Recipe:
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
       training: How each model is trained.
+      profile: Of the body; empty: the usual one.
     """
 
     episodes: int
@@ -74,6 +75,7 @@ class Recipe:
     random: tuple[RandomEpisodes, ...] = ()
     rounds: tuple[Round, ...] = ()
     training: Training = field(default_factory=Training)
+    profile: str = ""
 
     def episodes_of(self, action: str) -> int:
         """Number of random episodes of an action."""

@@ -26,7 +26,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.world import World
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
-from tailor.tools.lockstep import action_run
+from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.software import models_sha256
@@ -48,6 +48,7 @@ class Policy:
     seed: int
     zoo: str
     folder: Path
+    profile: str = ""  # of the body; empty: the one that ships
 
     @property
     def jobs(self) -> list[tuple[str, int]]:
@@ -78,6 +79,11 @@ def models_hash(robot: str, zoo: str) -> str:
 
 class Chosen(Protocol):
     """Data sets of choices by the current models; see `Policy` and `active_gathering.Active`."""
+
+    @property
+    def profile(self) -> str:
+        """Of the body; empty: the one that ships."""
+        ...
 
     @property
     def domain(self) -> str:
@@ -111,6 +117,7 @@ def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], r
         **about,
         "seed": chosen.seed,
         "scenarios": list(chosen.scenarios),
+        **({"profile": chosen.profile} if chosen.profile else {}),
         "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
     }
     prepare(chosen.domain, chosen.folder, modelled_actions(chosen.domain), entries, runs, resume)
@@ -228,7 +235,7 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     settings = Settings(seed=seed, refinement=UNPROVEN)
     context = make_context(domain, drawn, cached_models(domain.robot, policy.zoo), settings, SENDER)
-    world = World(action_run.new_body(domain), start, seed)
+    world = World(body_of(policy.domain, policy.profile), start, seed)
     return EpisodeExtractor(domain).read(run_lockstep(context, world).messages)
 
 

@@ -18,7 +18,7 @@ from tailor.models.episodes.sources import end_of
 from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.learning import gathering
-from tailor.tools.lockstep import action_run
+from tailor.tools.lockstep.bodies import body_of
 
 END_TOLERANCE = 1e-4  # seconds, metres, radians: other builds of the physics round otherwise
 NAMED = 4  # files that a message names
@@ -51,9 +51,9 @@ def differing_episodes(card: Card) -> str:
         return f"{name} has no action '{action}'"
     ends, objects = probe["ends"], probe.get("objects", 0)
     drawn = (len(ends), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")), objects)
-    spec = gathering.DataSetSpec(name, action, *drawn)
+    spec = gathering.DataSetSpec(name, action, *drawn, probe.get("profile", ""))
     runs = range(ceil(len(ends) / max(1, objects)))
-    episodes, _ = gathering.run_episodes(spec, domain, action_run.new_body(domain), runs)
+    episodes, _ = gathering.run_episodes(spec, domain, body_of(name, spec.profile), runs)
     for number, (episode, then) in enumerate(zip(episodes, ends, strict=False)):
         now = end_of(episode.duration_s, episode.ticks)
         if len(now) != len(then) or not np.allclose(now, then, rtol=0, atol=END_TOLERANCE):

@@ -8,7 +8,7 @@ import joblib
 import numpy as np
 import pytest
 
-from tailor.models.episodes.episodes import read_data_set
+from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, DataSetSpec
@@ -75,6 +75,17 @@ def test_the_manifest_says_how_it_was_made(gathered: Path) -> None:
     assert len(manifest["source_sha256"]) == 64
 
 
+def test_another_profile_of_the_body_gives_other_episodes_of_the_same_tasks(gathered: Path, tmp_path: Path) -> None:
+    usual = read_data_set(gathered)
+    assert gather(tmp_path, "--profile", "degraded") == 0
+    degraded = read_data_set(tmp_path / "goToPose")
+    assert (usual.manifest.get("profile"), degraded.manifest["profile"]) == (None, "degraded")
+    pairs = list(zip(usual.episodes, degraded.episodes, strict=True))
+    assert all(np.array_equal(one.arguments, other.arguments) for one, other in pairs)
+    assert all(one.ticks[-1].tolist() != other.ticks[-1].tolist() for one, other in pairs)
+    assert len(merge([usual, degraded]).episodes) == 2 * COUNT  # the draw is another one, so they may be merged
+
+
 def test_gathering_over_other_episodes_is_refused(gathered: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert gather(gathered.parent) == 2
     assert "--resume" in capsys.readouterr().err
@@ -126,6 +137,8 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
         (["agilo", "--on-policy", "approach", "--zoo", "nowhere"], "no action models for robot 'agilo' in nowhere"),
         (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
+        (["agilo", "--profile", "x"], "no profile 'x' of soccer's body, expected one of: nominal, degraded"),
+        (["agilo", "--profile", "degraded", "--from", "a.mcap"], "expected none with --from"),
     ],
 )
 def test_bad_input_is_told_before_anything_starts(wrong: list[str], message: str, tmp_path: Path, capsys) -> None:

@@ -19,6 +19,7 @@ from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.steps import Step, counted, show
+from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
 
@@ -31,6 +32,7 @@ examples:
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo --episodes 30000 --on tcp://lab-7:8786 --out data/agilo   (on a cluster: docs/cluster.md)
+  tailor gather agilo --profile degraded --out data/agilo-degraded   (a worse camera, other tyres)
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
 
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
@@ -80,6 +82,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=4,
         help="--active: situations per episode (default: %(default)s)",
     )
+    parser.add_argument(
+        "--profile", default="", help="profile of the body, e.g. degraded (default: the one that ships)"
+    )
     parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
     parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
@@ -89,6 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
     name = gathering.domain_of(arguments.robot)
     check_package(name)
+    body_of(name, arguments.profile)  # raises on an unknown profile before anything runs
     out = arguments.out or Path("data") / arguments.robot
     chosen = arguments.on_policy or arguments.active
     if arguments.on and arguments.zoo:
@@ -111,6 +117,7 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
             out / action,
             beside=beside,
             objects=arguments.beside_objects,
+            profile=arguments.profile,
         )
         for action in actions_of(name, arguments.actions, beside)
     ]
@@ -137,6 +144,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
+    if arguments.recordings and arguments.profile:
+        raise UsageError("--profile chooses a simulated body, expected none with --from")
     if arguments.recordings:
         counts = run_gathering.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
@@ -148,9 +157,10 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         from tailor.tools.learning.active_gathering import Active, run_active
 
         episodes, pool = arguments.episodes, arguments.pool
-        active = Active(domain, scenarios, episodes, pool, arguments.seed, arguments.zoo, out)
+        active = Active(domain, scenarios, episodes, pool, arguments.seed, arguments.zoo, out, arguments.profile)
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
-    policy = run_gathering.Policy(domain, scenarios, arguments.episodes, arguments.seed, arguments.zoo, out)
+    drawn = (scenarios, arguments.episodes, arguments.seed, arguments.zoo, out, arguments.profile)
+    policy = run_gathering.Policy(domain, *drawn)
     running = run_gathering.run_policy(policy, arguments.jobs, arguments.resume)
     return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.bodies import body_of
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.refinement.paired_outcomes import costs_no_more
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
 from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.lockstep.bodies import body_of
 
 REMARKS = (
     "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "

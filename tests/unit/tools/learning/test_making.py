@@ -69,6 +69,24 @@ def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_othe
     making_module.check_complete(making)
 
 
+def test_a_recipe_may_name_a_profile_of_the_body(tmp_path: Path, trained: list, monkeypatch) -> None:
+    drawn = []
+    prepare = making_module.gathering.prepare
+    monkeypatch.setattr(
+        making_module.gathering, "prepare", lambda spec, resume: (drawn.append(spec.profile), prepare(spec, resume))
+    )
+    monkeypatch.setattr(
+        making_module.run_gathering, "run_policy", lambda policy, _: drawn.append(policy.profile) or iter((1,))
+    )
+    usual, degraded = (Making("agilo", replace(TINY, profile=name), tmp_path, 1, "make") for name in ("", "degraded"))
+    list(make(degraded))
+    assert set(drawn) == {"degraded"}
+    assert len(drawn) > 1
+    assert usual.random != degraded.random
+    with pytest.raises(UsageError, match="no profile 'x' of soccer's body"):
+        list(make(replace(usual, recipe=replace(TINY, profile="x"))))
+
+
 def test_an_action_may_have_another_number_of_episodes_and_a_robot_fewer_kinds(tmp_path: Path, trained: list) -> None:
     few = Recipe(20, random=(RandomEpisodes("goToPose", 60),), training=Training(kinds=("duration",)))
     steps = {step.title: step.total for step in make(Making("agilo", few, tmp_path, 1, "make"))}

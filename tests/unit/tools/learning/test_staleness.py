@@ -139,3 +139,14 @@ def test_no_model_that_ships_is_stale() -> None:
 def test_a_robot_that_is_not_installed_is_told(card) -> None:
     with pytest.raises(UsageError, match="no robot 'r2d2'"):
         staleness_of({**card, "robot": "r2d2"})
+
+
+def test_a_model_of_another_profile_is_judged_by_that_body(tmp_path: Path, altered) -> None:
+    spec = DataSetSpec("soccer", "goToPose", 6, 1, tmp_path, profile="degraded")
+    gathering.prepare(spec, resume=False)
+    list(gathering.gather(spec, [0], jobs=1))
+    probe = merge([read_data_set(tmp_path)]).manifest["probe"]
+    card = {"robot": "agilo", "action": "goToPose", "episodes": {"probe": probe}}
+    assert differing_episodes(card) == ""
+    del probe["profile"]
+    assert "random episode 0 now takes" in differing_episodes(card)

@@ -1,10 +1,10 @@
-"""Evaluations find the profiles of a robot beside its body."""
+"""The profiles of a robot are found beside its body."""
 
 import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.agilo.body import AgiloBody
-from tailor.tools.evaluations.bodies import body_of
+from tailor.tools.lockstep.bodies import body_of
 
 
 def test_a_profile_is_found_beside_the_body():

@@ -1,4 +1,4 @@
-"""Bodies of evaluations: the one that training used, or one of another profile in place of the real robot."""
+"""Simulated bodies by profile: the one that ships, or another one, for example in place of the real robot."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def body_of(domain: str, profile: str) -> Body:
 
     Args:
       domain: Name of the domain.
-      profile: Name of the body's profile, e.g. "degraded"; empty: the one that training used.
+      profile: Name of the body's profile, e.g. "degraded"; empty: the one that ships.
 
     Raises:
       UsageError: The robot has no such profile.
