@@ -32,7 +32,7 @@ from tailor.tools.learning.training_request import (
     data_sets,
 )
 from tailor.tools.learning.training_run import train_models
-from tailor.tools.lockstep.bodies import body_of
+from tailor.tools.lockstep.bodies import check_profile
 
 WHOLE = "whole"  # marker of a folder of models, written last
 CHOOSING = ("duration", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
@@ -104,7 +104,7 @@ def make(making: Making) -> Iterator[Step]:
       UsageError: An unknown scenario, profile, learner or feature space, too few episodes, or a model that an action
         names and that could not be learned.
     """
-    body_of(making.domain, making.recipe.profile)  # raises on an unknown profile before anything runs
+    check_profile(making.domain, making.recipe.profile)
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
         zoo = making.chooser(number)

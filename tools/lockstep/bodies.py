@@ -25,14 +25,25 @@ def body_of(domain: str, profile: str) -> Body:
     Raises:
       UsageError: The robot has no such profile.
     """
+    check_profile(domain, profile)
     if not profile:
         return new_body(domains.load(domain))
+    body: Body = _profiles(domain).body(profile)
+    return body
+
+
+def check_profile(domain: str, profile: str) -> None:
+    """Check the name of a profile without making a body: recordings need none, and workers make their own.
+
+    Raises:
+      UsageError: The robot has no such profile.
+    """
+    if not profile:
+        return
     profiles = _profiles(domain)
     known = tuple(profiles.PROFILES) if profiles else ()
     if profile not in known:
         raise UsageError(f"no profile '{profile}' of {domain}'s body, expected one of: {', '.join(known) or 'none'}")
-    body: Body = profiles.body(profile)
-    return body
 
 
 def _profiles(domain: str) -> Any:

@@ -12,6 +12,7 @@ from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, DataSetSpec
+from tailor.tools.lockstep import bodies
 from tailor.tools.main import main
 from tests.support import far_backend
 
@@ -181,6 +182,15 @@ def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_p
     assert {path.name for path in tmp_path.iterdir()} == {action for action, count in counts.items() if count}
     assert main(cut) == 2  # what is there is not overwritten
     assert "holds episodes already" in capsys.readouterr().err
+
+
+def test_recordings_need_no_simulated_body(tmp_path: Path, monkeypatch) -> None:
+    def none(_: object) -> None:
+        raise UsageError("the robot has no body")
+
+    bodies.body_of.cache_clear()
+    monkeypatch.setattr(bodies, "new_body", none)
+    assert main(["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]) == 0
 
 
 def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:

@@ -19,7 +19,7 @@ from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.steps import Step, counted, show
-from tailor.tools.lockstep.bodies import body_of
+from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
 
@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
     name = gathering.domain_of(arguments.robot)
     check_package(name)
-    body_of(name, arguments.profile)  # raises on an unknown profile before anything runs
+    check_profile(name, arguments.profile)
     out = arguments.out or Path("data") / arguments.robot
     chosen = arguments.on_policy or arguments.active
     if arguments.on and arguments.zoo:
@@ -144,23 +144,22 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
-    if arguments.recordings and arguments.profile:
-        raise UsageError("--profile chooses a simulated body, expected none with --from")
     if arguments.recordings:
+        if arguments.profile:
+            raise UsageError("--profile chooses a simulated body, expected none with --from")
         counts = run_gathering.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
     scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))
     for scenario in scenarios:
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
+    where = (arguments.seed, arguments.zoo, out, arguments.profile)
     if arguments.active:
         from tailor.tools.learning.active_gathering import Active, run_active
 
-        episodes, pool = arguments.episodes, arguments.pool
-        active = Active(domain, scenarios, episodes, pool, arguments.seed, arguments.zoo, out, arguments.profile)
+        active = Active(domain, scenarios, arguments.episodes, arguments.pool, *where)
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
-    drawn = (scenarios, arguments.episodes, arguments.seed, arguments.zoo, out, arguments.profile)
-    policy = run_gathering.Policy(domain, *drawn)
+    policy = run_gathering.Policy(domain, scenarios, arguments.episodes, *where)
     running = run_gathering.run_policy(policy, arguments.jobs, arguments.resume)
     return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
 
