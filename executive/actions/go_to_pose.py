@@ -37,6 +37,7 @@ class GoToPose:
     ways: ArrivalPath
     steer_gain: float = 3.5  # rad/s per rad of heading error
     braking_mps2: float = 0.55  # of the motor board, with a reserve
+    brake_preview_s: float = 0.0  # lag of the speed behind the command
     keep_m: float = 0.15  # the way is kept when its bend is so near,
     keep_s: float = 0.5  # and so much time,
     keep_rad: float = 0.6  # and the robot faces it
@@ -77,7 +78,7 @@ class GoToPose:
             if followed is not None:
                 return followed
         blind = self.unseen is not None and self.unseen(belief, error)
-        ahead_mps = 0.0 if blind else self._speed(way, vg) * max(0.0, math.cos(error))
+        ahead_mps = 0.0 if blind else self._speed(way, vg, belief.v) * max(0.0, math.cos(error))
         return Control(None, (ahead_mps, self._turn(error)))
 
     def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
@@ -89,12 +90,14 @@ class GoToPose:
         v = max(belief.v, self.crawl_mps)
         off = Deviation(off.aside_m, off.turned + swing)
         omega = v * tracking_curvature(way, off, v * self.preview_s, self.settle_m)
-        return Control(way, (self._speed(way, vg), self._within(omega)))
+        return Control(way, (self._speed(way, vg, v), self._within(omega)))
 
-    def _speed(self, way: Progress, vg: float) -> float:
+    def _speed(self, way: Progress, vg: float, v: float) -> float:
+        """Speed (m/s) for where the robot will be when its speed `v` has followed the command."""
         bend_mps = self.ways.bend_radps * way.path.radius
         pace = Pace(self.v_max_mps, bend_mps, self.braking_mps2, self.braking_mps2)
-        return max(self.crawl_mps, speed_limit(way, vg, pace))
+        then = Progress(way.path, way.s + v * self.brake_preview_s)
+        return max(self.crawl_mps, speed_limit(then, vg, pace))
 
     def _aligns(self, state: Any, pose: Pose) -> bool:
         """Whether the robot is at its goal, or past it, with a wrong heading; with hysteresis against noise."""

@@ -50,7 +50,9 @@ behind_goal = Behind((4,), robot.BEHIND_BALL_M)
 behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
 _ways = ArrivalPath(robot.V_MAX_MPS)
-_go = GoToPose(robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways, unseen=opponents.unseen)
+_go = GoToPose(
+    robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways, brake_preview_s=robot.SPEED_LAG_S, unseen=opponents.unseen
+)
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 V_MAX_MPS = 0.9
 OMEGA_MAX_RADPS = 1.75
+SPEED_LAG_S = 0.08  # of the speed behind the command: half a tick until the next command, and 0.03 s of the servos
 IN_RAIL_M = 0.31  # from the axle to the centre of a ball that lies in the rail
 RAIL_TIP_M = (0.288, 0.119)  # of the left tip, ahead of the axle and left of it
 BALL_AND_RAIL_M = 0.115  # from the axis of the rail's rod to the centre of a ball that touches it
