@@ -188,7 +188,8 @@ def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) 
     """Both predict an amount, and both are loaded together."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "tailor.tools.evaluations.models.fresh.noise_floor", lambda *_: {"mae_s": 0.1, "accuracy_pct": 99.0}
+        "tailor.tools.evaluations.models.floors.noise_floor",
+        lambda robot, action, tasks, seed, jobs: (np.full(len(tasks), 0.05), np.ones(len(tasks))),
     )  # takes half a minute
     main(["evaluate", "table1", "--episodes", "12", "--jobs", "1", "--json"])
     rows = json.loads(capsys.readouterr().out)["rows"]
@@ -196,5 +197,6 @@ def test_table_1_is_of_durations_not_of_energies(monkeypatch, tmp_path, capsys) 
     assert all(row["relative_pct"] < 25 for row in rows)
     promised = {"domain", "action", "episodes", "mean_duration_s", "mae_s", "mae_ci95", "noise_floor_s", "coverage_pct"}
     assert all(promised <= row.keys() for row in rows)
+    assert all(row["over_floor"] == pytest.approx(row["mae_s"] / 0.05) for row in rows)
     assert [row["paper_mae_s"] for row in rows if row["action"] == "goToPose"] == [0.22]
     assert [row["action"] for row in rows if "missed_failures_pct" in row] == ["approachBall"]

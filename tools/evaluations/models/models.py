@@ -23,6 +23,7 @@ from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns
+from tailor.tools.evaluations.models.floors import floor_columns
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
@@ -30,7 +31,8 @@ from tailor.tools.evaluations.seeds import seeds_of
 Row = dict[str, Any]
 REMARKS = (
     "MAE: of the fresh episodes that finished, 95 % interval over episodes; bias: predicted minus observed; noise "
-    "floor: repeated runs of the same tasks with other noise; failures: predicted and observed, of all fresh episodes; "
+    "floor: repeated runs of the first 100 of these tasks with other noise; over floor: the error on the same tasks as "
+    "a multiple of it, bootstrap over tasks; failures: predicted and observed, of all fresh episodes; "
     "coverage: share of durations within the interval that is to hold 90 %, and in thirds of predicted spread",
 )
 
@@ -77,13 +79,9 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     made = []
     for name, action in tracked(sorted(declared.actions.items()), "actions"):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
-        floor = fresh.noise_floor(declared.robot, name, seed, arguments.jobs) if floors else {}
         row = {"domain": domain, "action": name, **_duration(durations[action.duration_model], data, seed)}
-        failures = _failures(successes[action.success_model], data) if action.success_model else {}
-        row |= failures
-        if floors:
-            row["noise_floor_s"] = floor["mae_s"]
-            row |= {"floor_accuracy_pct": floor["accuracy_pct"]} if failures else {}
+        row |= _failures(successes[action.success_model], data) if action.success_model else {}
+        row |= floor_columns(row, data, (declared.robot, name, seed, arguments.jobs)) if floors else {}
         made.append(row)
     return made
 

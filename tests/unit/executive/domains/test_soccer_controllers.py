@@ -124,6 +124,13 @@ def test_robot_passes_its_goal_at_the_goal_speed():
     assert max(speeds) < 0.7
 
 
+def test_robot_has_braked_to_a_low_goal_speed_when_it_arrives():
+    arguments = np.array([0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.3])
+    runs = [run_action(BODY, SOCCER, "goToPose", arguments, np.random.default_rng(n), traced=True) for n in range(20)]
+    faster = np.mean([run.trace[-1].truth.v for run in runs]) - 0.3
+    assert abs(faster) < 0.03, "a robot that brakes a tick late rolls into the ball"
+
+
 @settings(max_examples=200, deadline=None)
 @given(*(st.floats(-3.0, 3.0) for _ in range(3)), st.floats(-0.3, 0.9), st.floats(-1.75, 1.75), st.floats(0.0, 0.6))
 def test_commands_are_within_the_robots_limits(x, y, phi, v, omega, vg):

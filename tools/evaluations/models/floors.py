@@ -1,0 +1,82 @@
+"""Noise floors: how much repeated runs of a task differ, which no model of these tasks can predict."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.executive import domains
+from tailor.models.episodes.episodes import DataSet
+from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import NOISE_STREAM
+from tailor.tools.lockstep import action_run
+from tailor.tools.parallel.pool import completed, in_order
+
+Array = NDArray[Any]
+REPEATS = 8  # runs of the same task with other noise
+REPEATED_TASKS = 100
+RESAMPLES = 2000
+
+
+def floor_columns(row: Mapping[str, Any], data: DataSet, action: tuple[str, str, int, int]) -> dict[str, Any]:
+    """Columns of the noise floor, over the first tasks that finished, and of the model's error on the same ones.
+
+    A few hard tasks make most of either, so floor and error of different tasks do not compare.
+
+    Args:
+      row: With the model's `predicted_s` and `observed_s`, one for each finished episode.
+      data: The fresh episodes.
+      action: Robot, action, seed, jobs.
+    """
+    robot, name, seed, jobs = action
+    tasks = np.array([episode.arguments for episode in data.episodes if episode.finished][:REPEATED_TASKS])
+    floor_s, alike = noise_floor(robot, name, tasks, seed, jobs)
+    off_s = np.abs(row["predicted_s"] - row["observed_s"])[: len(tasks)]
+    found: dict[str, Any] = {"noise_floor_s": float(floor_s.mean())}
+    if np.median(floor_s) > 0.0:  # a simulation without noise has none
+        found["over_floor"], found["over_floor_ci95"] = _ratio(off_s, floor_s, np.random.default_rng(seed))
+    if "failure_accuracy_pct" in row:
+        found["floor_accuracy_pct"] = float(100 * alike.mean())
+    return found
+
+
+def noise_floor(robot: str, action: str, tasks: Array, seed: int, jobs: int) -> tuple[Array, Array]:
+    """Noise floor of any model on each task: repeated runs with other noise.
+
+    Args:
+      robot: Name of the robot.
+      action: Name of the action.
+      tasks: Arguments of the tasks, shape (n, k).
+      seed: Of the noise.
+      jobs: Processes.
+
+    Returns:
+      For each task, shape (n,): mean distance of its durations to their median (s, corrected for the number of runs),
+      and the share of runs that end as most of them do.
+    """
+    wanted = [(robot, action, arguments, seed, number) for number, arguments in enumerate(tasks)]
+    runs = in_order(completed(_repeated, wanted, jobs))
+    durations, successes = (np.array(column) for column in zip(*runs, strict=True))
+    off = np.abs(durations - np.median(durations, axis=1, keepdims=True)).mean(axis=1)
+    share = successes.mean(axis=1)
+    return off * REPEATS / (REPEATS - 1), np.maximum(share, 1 - share)
+
+
+def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -> tuple[Array, Array]:
+    domain = domains.load(gathering.domain_of(robot))
+    body = action_run.new_body(domain)
+    runs = [
+        action_run.run_action(body, domain, action, arguments, np.random.default_rng([NOISE_STREAM, seed, task, k]))
+        for k in range(REPEATS)
+    ]
+    return np.array([run.duration_s for run in runs]), np.array([run.success for run in runs])
+
+
+def _ratio(off_s: Array, floor_s: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
+    """Ratio of the means over the same tasks, and its 95 % interval."""
+    drawn = rng.integers(len(off_s), size=(RESAMPLES, len(off_s)))
+    low, high = np.percentile(off_s[drawn].mean(axis=1) / floor_s[drawn].mean(axis=1), (2.5, 97.5))
+    return float(off_s.mean() / floor_s.mean()), (float(low), float(high))
