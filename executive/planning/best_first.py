@@ -99,15 +99,16 @@ class BestFirst(Generic[P]):
                     return
                 continue
             self.visited += 1
-            queue.generated += self._push(space.refine(plan, queue.order), plans)
+            queue.generated += self._push(space.refine(plan, queue.order), plans, queue.limit - queue.generated)
             yield None
 
-    def _push(self, children: list[P], plans: list[Ranked]) -> int:
-        """Pushes the plans of finite rank; returns their number."""
+    def _push(self, children: list[P], plans: list[Ranked], most: float) -> int:
+        """Pushes the plans of finite rank, at most so many; returns their number."""
         rank, number = self._space.rank, self.generated
+        most += number
         for child in children:
             ranked = rank(child, number)
-            if ranked is not None:
+            if ranked is not None and number < most:
                 heapq.heappush(plans, (*ranked, child))
                 number += 1
         pushed = number - self.generated

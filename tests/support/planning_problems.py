@@ -5,6 +5,11 @@ from pathlib import Path
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import MATCHING, Search, parse_domain, parse_problem
+from tailor.executive.planning.ground.ground_task import make_task
+from tailor.executive.planning.ground.grounding import ground_actions, static_world
+from tailor.executive.planning.ground_plans.open_conditions import refine_open
+from tailor.executive.planning.ground_plans.partial_plan import initial_plan
+from tailor.executive.planning.plans.portions import completed_work
 from tailor.tools.benchmarks.planning_scale import problem_text
 
 DATA = Path(__file__).parents[1] / "data" / "pddl"
@@ -30,6 +35,17 @@ def read(domain_text, problem_text):
 
 def solve(domain, problem, settings=MATCHING):
     return Search(domain, problem, settings).advance(CheckBudget(UNLIMITED))
+
+
+def refined(domain_text, problem_text, times):
+    """The ground task, and the plan in which the newest condition got its first resolver so many times."""
+    _, problem = read(domain_text, problem_text)
+    *_, grounded = ground_actions(problem, static_world(problem), 0.01, 1000)
+    task = completed_work(make_task(problem, grounded))
+    plan = initial_plan(task)
+    for _ in range(times):
+        plan = refine_open(task, plan, plan.open)[0]
+    return task, plan
 
 
 def printed(name):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
@@ -29,7 +29,8 @@ class GroundAction:
     Durations are in units of the time grid, `longest` is None without an upper limit; both are 0 if the
     domain has no durative actions. `bits` maps each literal that the action may make true to a bit mask of moments.
     `external_conditions` must be achieved by other steps: see the function of that name. `restored` are deletions of
-    what the action adds again at that moment: no effects.
+    what the action adds again at that moment: no effects. `upheld` maps, as `bits` does, the literals that it makes
+    true although its own conditions require them at that moment: no effects either.
     """
 
     number: int  # grounding order
@@ -44,6 +45,7 @@ class GroundAction:
     simple: bool = True  # no conditional effects
     cost: float = 0.0  # by which it increases the total cost
     restored: tuple[GroundEffect, ...] = ()
+    upheld: dict[int, int] = field(default_factory=dict)
 
     def __str__(self) -> str:
         return f"({' '.join(self.name)})"

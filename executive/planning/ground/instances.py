@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 
 from tailor.executive.planning.ground.durations import duration_range, evaluate, range_ns
@@ -41,12 +42,12 @@ def instance(
     cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
     if bounds is None or conditions is None or cost is None or cost < 0:
         return None
-    effects, restored = _useful(conditions, _effects(schema, binding, world, facts))
+    stated = _effects(schema, binding, world, facts)
+    required = {(part, span[1]) for part, span in conditions}
+    useful = [effect for effect in stated if (effect.literal, effect.moment) not in required]
+    effects, restored = _without_restored(useful, stated)
     if not effects:
         return None
-    bits: dict[int, int] = {}
-    for effect in effects:
-        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
     name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
     return GroundAction(
         number,
@@ -54,12 +55,13 @@ def instance(
         conditions,
         external_conditions(conditions, effects),
         effects,
-        bits,
+        _bits(effects),
         *((0, 0) if bounds is _INSTANT else range_ns(bounds)),
         float(bounds[0]),
         not any(effect.conditions for effect in effects),
         float(cost),
         restored,
+        _bits(effect for effect in stated if (effect.literal, effect.moment) in required),
     )
 
 
@@ -99,26 +101,32 @@ def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTa
     return list(effects)
 
 
-def _useful(
-    conditions: tuple[tuple[GroundCondition, Span], ...], effects: list[GroundEffect]
-) -> tuple[tuple[GroundEffect, ...], tuple[GroundEffect, ...]]:
-    """The effects without no-ops: those that a condition of the action implies, or that the action undoes at once.
-
-    The latter are returned apart. An effect is a no-op if a condition of the action holds up to that very moment. A
-    delete effect whose literal the same action adds at that moment neither achieves nor threatens: add effects win.
-    """
-    required = {(part, span[1]) for part, span in conditions}
-    at: dict[tuple[int, int], list[GroundEffect]] = {}
+def _bits(effects: Iterable[GroundEffect]) -> dict[int, int]:
+    """The bit mask of moments by literal."""
+    bits: dict[int, int] = {}
     for effect in effects:
+        bits[effect.literal] = bits.get(effect.literal, 0) | 1 << effect.moment
+    return bits
+
+
+def _without_restored(
+    effects: list[GroundEffect], stated: list[GroundEffect]
+) -> tuple[tuple[GroundEffect, ...], tuple[GroundEffect, ...]]:
+    """The effects without those that the action undoes at once, and the latter.
+
+    A delete effect whose literal the same action adds at that moment neither achieves nor threatens: add effects win,
+    also those (in `stated`) that achieve nothing because a condition of the action holds up to that very moment.
+    """
+    at: dict[tuple[int, int], list[GroundEffect]] = {}
+    for effect in stated:
         at.setdefault((effect.literal, effect.moment), []).append(effect)
     kept: list[GroundEffect] = []
     restored: list[GroundEffect] = []
     for effect in effects:
-        if (effect.literal, effect.moment) not in required:
-            additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
-            variants = _unless_added(effect, additions)
-            kept += variants
-            restored += [] if variants else [effect]
+        additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+        variants = _unless_added(effect, additions)
+        kept += variants
+        restored += [] if variants else [effect]
     return tuple(kept), tuple(restored)
 
 

@@ -63,5 +63,9 @@ class GroundFlawMeasures:
         return self._task.estimates.of(condition.condition)
 
     def has_old_achiever(self, plan: PartialPlan, condition: OpenCondition) -> bool:
-        """See `FlawMeasures`."""
-        return isinstance(condition.condition, int) and bool(reusable(plan, condition))
+        """See `FlawMeasures`; as in the estimate with reuse, also one whose own conditions require the literal."""
+        literal = condition.condition
+        if not isinstance(literal, int):
+            return False
+        upheld = plan.effects.upheld.get(literal, 0) & ~plan.orderings.late[condition.first]
+        return bool(reusable(plan, condition) or upheld)

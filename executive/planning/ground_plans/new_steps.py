@@ -7,7 +7,6 @@ from typing import NamedTuple
 from tailor.executive.planning.ground.ground_action import GroundAction, GroundEffect
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, Threat, new
-from tailor.executive.planning.ground_plans.step_effects import StepEffects
 from tailor.executive.planning.ground_plans.threat_detection import Spanned, guarded_links, threats_by, threats_to
 from tailor.executive.planning.structures.orderings import Orderings
 
@@ -35,7 +34,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
         return []
     steps, _, effects, links, opened, _, open_count, _, cost = plan
     node = len(plan.orderings.late)
-    masks, guarded = effects.masks(), guarded_links(links)
+    guarded = guarded_links(links)
     insertions: dict[tuple[int, int, int | None, int], _Insertion | None] = {}
     children = []
     for action, effect in achievers:
@@ -55,7 +54,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
                 (
                     (*steps, action),
                     orderings,
-                    StepEffects(masks, action.bits, node),
+                    effects.with_step(action, node),
                     link,
                     opened_by(conditions, node, opened),
                     threats,

@@ -28,10 +28,13 @@ class GroundEstimates:
         return cost, work
 
     def reusing(self, plan: PartialPlan) -> Estimate:
-        """See `PlanEstimates`; without calls, as it is the planner's hottest loop."""
+        """See `PlanEstimates`; without calls, as it is the planner's hottest loop.
+
+        As for VHPOP 2.2.1, an effect that its action's own conditions require can be reused as well.
+        """
         costs, works = self._costs, self._works
         late, effects = plan.orderings.late, plan.effects
-        base, bits, node = effects.base, effects.bits, effects.node
+        base, bits, node, upheld = effects.base, effects.bits, effects.node, effects.upheld
         cost: float = 0
         work: float = 0
         cell = plan.open
@@ -41,6 +44,8 @@ class GroundEstimates:
                 mask = base[condition]
                 if bits is not None and condition in bits:
                     mask |= bits[condition] << node
+                if upheld and condition in upheld:
+                    mask |= upheld[condition]
                 if mask & ~late[first]:
                     work += 1
                 else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tailor.executive.planning.ground.ground_action import GroundAction
 
 Masks = list[int] | dict[int, int]  # bit mask of nodes by literal; read only
+_NONE: dict[int, int] = {}
 MAX_TABLE = 4096  # literals of a table that is copied whole
 
 
@@ -30,18 +31,33 @@ class StepEffects:
     Most plans are dropped before their masks are read, so a new step is only noted; `masks()` copies the table.
     """
 
-    __slots__ = ("_masks", "base", "bits", "node")
+    __slots__ = ("_masks", "base", "bits", "node", "upheld")
 
-    def __init__(self, base: Masks, bits: dict[int, int] | None = None, node: int = 0) -> None:
-        """A base table and, on top of it, the bits of one more step whose first node is `node`."""
+    def __init__(
+        self,
+        base: Masks,
+        bits: dict[int, int] | None = None,
+        node: int = 0,
+        upheld: dict[int, int] = _NONE,
+    ) -> None:
+        """A base table and, on top of it, the bits of one more step whose first node is `node`.
+
+        `upheld` are the masks of the nodes that make a literal true which their own conditions require.
+        """
         self.base = base
         self.bits = bits
         self.node = node
+        self.upheld = upheld
         self._masks = base if bits is None else None
 
     def with_step(self, action: GroundAction, node: int) -> StepEffects:
         """The table with one more step."""
-        return StepEffects(self.masks(), action.bits, node)
+        upheld = self.upheld
+        if action.upheld:
+            upheld = upheld.copy()
+            for literal, bits in action.upheld.items():
+                upheld[literal] = upheld.get(literal, 0) | bits << node
+        return StepEffects(self.masks(), action.bits, node, upheld)
 
     def masks(self) -> Masks:
         """Bit mask of the nodes that make each literal true, by literal; read only."""

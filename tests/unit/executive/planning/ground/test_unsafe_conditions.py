@@ -2,14 +2,9 @@
 
 import pytest
 
-from tailor.executive.planning.ground.ground_task import make_task
-from tailor.executive.planning.ground.grounding import ground_actions, static_world
 from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasures
-from tailor.executive.planning.ground_plans.open_conditions import refine_open
-from tailor.executive.planning.ground_plans.partial_plan import initial_plan
-from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.structures.linked_list import cells_of
-from tests.support.planning_problems import read
+from tests.support.planning_problems import refined
 
 DOMAIN = """(define (domain radio) (:predicates (free) (reported) (sent))
   (:action report :precondition (free) :effect (and {} (reported)))
@@ -19,12 +14,7 @@ PROBLEM = "(define (problem p) (:domain radio) (:init (free)) (:goal (sent)))"
 
 def unsafe_conditions(effects):
     """Steps of the unsafe conditions of the plan in which `send` (0) has its condition from `report` (1)."""
-    _, problem = read(DOMAIN.format(effects), PROBLEM)
-    *_, grounded = ground_actions(problem, static_world(problem), 0.01, 1000)
-    task = completed_work(make_task(problem, grounded))
-    plan = initial_plan(task)
-    for _ in range(2):
-        plan = refine_open(task, plan, plan.open)[0]
+    task, plan = refined(DOMAIN.format(effects), PROBLEM, 2)
     assert [step.name for step in plan.steps] == [("send",), ("report",)]
     measures = GroundFlawMeasures(task)
     return [measures.step(condition) for condition in cells_of(plan.open) if measures.is_unsafe(plan, condition)]
