@@ -47,6 +47,8 @@ class GoToPose:
     off_path_m: float = 0.25  # beyond, a new path is planned
     off_path_rad: float = 0.8
     past_m: float = 0.10
+    sharp_radps: float = math.inf  # the robot slows down where its way asks it to turn faster,
+    late_m: float = math.inf  # and where it would still turn towards its way so far into the bend
     near_m: float = 0.15  # within this distance of the goal only the heading is corrected
     stay_m: float = 0.30  # maximum drift while turning on the spot
     reached_m: float = 0.03  # along the goal's heading
@@ -78,8 +80,13 @@ class GoToPose:
             if followed is not None:
                 return followed
         blind = self.unseen is not None and self.unseen(belief, error)
-        ahead_mps = 0.0 if blind else self._speed(way, vg, belief.v) * max(0.0, math.cos(error))
-        return Control(None, (ahead_mps, self._turn(error)))
+        ahead_mps = self._speed(way, vg, belief.v) * max(0.0, math.cos(error))
+        return Control(None, (0.0 if blind else min(ahead_mps, self._facing_mps(way, error)), self._turn(error)))
+
+    def _facing_mps(self, way: Progress, error: float) -> float:
+        """Speed (m/s) at which the robot has turned by `error` (rad), speeding up and stopping, when the bend comes."""
+        turning_s = 2.0 * math.sqrt(abs(error) / self.stopping_radps2)
+        return (way.path.pieces[0][1] + self.late_m) / max(turning_s, 1e-6)
 
     def _follow(self, way: Progress, belief: PlanarBelief, pose: Pose, vg: float) -> Control | None:
         """Follow the kept path; None when the robot has left it."""
@@ -89,8 +96,9 @@ class GoToPose:
         swing = self.swing_s * (belief.omega - belief.v * way.path.at(way.s)[3])
         v = max(belief.v, self.crawl_mps)
         off = Deviation(off.aside_m, off.turned + swing)
-        omega = v * tracking_curvature(way, off, v * self.preview_s, self.settle_m)
-        return Control(way, (self._speed(way, vg, v), self._within(omega)))
+        curvature = tracking_curvature(way, off, v * self.preview_s, self.settle_m)
+        sharp_mps = max(self.crawl_mps, self.sharp_radps / max(abs(curvature), 1e-6))
+        return Control(way, (min(sharp_mps, self._speed(way, vg, v)), self._within(v * curvature)))
 
     def _speed(self, way: Progress, vg: float, v: float) -> float:
         """Speed (m/s) for where the robot will be when its speed `v` has followed the command."""

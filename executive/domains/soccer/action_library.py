@@ -51,7 +51,13 @@ behind_both = Behind((0, 4), robot.IN_RAIL_M)
 
 _ways = ArrivalPath(robot.V_MAX_MPS)
 _go = GoToPose(
-    robot.V_MAX_MPS, robot.OMEGA_MAX_RADPS, _ways, brake_preview_s=robot.SPEED_LAG_S, unseen=opponents.unseen
+    robot.V_MAX_MPS,
+    robot.OMEGA_MAX_RADPS,
+    _ways,
+    brake_preview_s=robot.SPEED_LAG_S,
+    sharp_radps=robot.SHARP_RADPS,
+    late_m=robot.LATE_M,
+    unseen=opponents.unseen,
 )
 _grip = RailGrip(robot.IN_RAIL_M, robot.BALL_ROLLING_MPS2)
 _dribble = DribbleBall(FetchBall(robot.IN_RAIL_M), _grip)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 V_MAX_MPS = 0.9
 OMEGA_MAX_RADPS = 1.75
+# Without these two, approaches over a metre that turn one way and bend the other passed 0.1 m beside the ball
+SHARP_RADPS = 1.4  # where its way asks it to turn faster, the robot slows down
+LATE_M = 0.1  # so far into a bend it may still turn towards its way
 SPEED_LAG_S = 0.08  # of the speed behind the command: half a tick until the next command, and 0.03 s of the servos
 IN_RAIL_M = 0.31  # from the axle to the centre of a ball that lies in the rail
 RAIL_TIP_M = (0.288, 0.119)  # of the left tip, ahead of the axle and left of it
