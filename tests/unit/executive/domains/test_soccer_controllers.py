@@ -131,6 +131,16 @@ def test_robot_has_braked_to_a_low_goal_speed_when_it_arrives():
     assert abs(faster) < 0.03, "a robot that brakes a tick late rolls into the ball"
 
 
+def test_robot_that_turns_one_way_and_bends_the_other_over_a_metre_arrives_on_the_line_of_its_goal():
+    arguments = np.array([0.0, 0.0, 0.0, 0.0, 0.69, -0.79, -0.15, 0.3])
+    ends = [
+        run_action(BODY, SOCCER, "goToPose", arguments, np.random.default_rng(n), traced=True).trace[-1].truth
+        for n in range(12)
+    ]
+    aside = [math.cos(-0.15) * (end.y + 0.79) - math.sin(-0.15) * (end.x - 0.69) for end in ends]
+    assert abs(np.mean(aside)) < 0.06, "a ball is met by the tip of the rail"
+
+
 @settings(max_examples=200, deadline=None)
 @given(*(st.floats(-3.0, 3.0) for _ in range(3)), st.floats(-0.3, 0.9), st.floats(-1.75, 1.75), st.floats(0.0, 0.6))
 def test_commands_are_within_the_robots_limits(x, y, phi, v, omega, vg):
