@@ -22,7 +22,7 @@ class ApproachBall:
 
     go: GoToPose
     behind_m: float  # from the axle to the ball where an approach ends
-    follow_m: float  # a ball farther off has been moved; the executive then deliberates anew
+    follow_m: float  # a ball farther off along either axis has been moved; the executive then deliberates anew
 
     def __call__(self, state: Any, now_ns: int, belief: BallBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
@@ -34,7 +34,7 @@ class ApproachBall:
         heading = arguments[PHIG]
         dx = ball_xy[0] - (arguments[XG] + self.behind_m * math.cos(heading))
         dy = ball_xy[1] - (arguments[YG] + self.behind_m * math.sin(heading))
-        if math.hypot(dx, dy) > self.follow_m:
+        if max(abs(dx), abs(dy)) > self.follow_m:
             return arguments
         goal = arguments.copy()
         goal[XG] += dx

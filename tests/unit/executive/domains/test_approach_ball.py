@@ -37,6 +37,12 @@ def test_goal_follows_the_ball_as_far_as_it_was_seen_elsewhere() -> None:
     assert APPROACHING(None, 0, belief, GOAL) != GO(None, 0, belief, GOAL)
 
 
+def test_goal_follows_the_ball_until_the_executive_takes_it_for_moved_along_either_axis() -> None:
+    shifted = GOAL + np.array([0, 0, 0, 0, 0.2, 0.2, 0, 0])
+    belief = believing((2.2, 0.2))
+    assert APPROACHING(None, 0, belief, GOAL) == GO(None, 0, belief, shifted)
+
+
 @pytest.mark.parametrize("ball_xy", [None, (2.0, 0.3)], ids=["not seen", "moved: another task"])
 def test_goal_stays_where_there_is_no_ball_to_follow(ball_xy) -> None:
     belief = believing(ball_xy)
