@@ -15,6 +15,8 @@ from tailor.models.cards.card import Card
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-6  # of a sum of single-precision probabilities
+
 
 @dataclass(frozen=True, slots=True)
 class OnnxDuration:
@@ -105,9 +107,11 @@ class OnnxSuccess:
         """
         rows = np.ascontiguousarray(arguments, np.float64)
         (probability,) = self.session.run(None, {"arguments": rows})
+        # the sum of an ensemble's shares may round to just above one
+        within = np.minimum(np.maximum(probability, 0), 1)
         # a tree assigns NaN to some leaf, so the inputs are checked, too
-        valid = (probability >= 0) & (probability <= 1) & np.isfinite(rows.sum(axis=1))
-        return np.where(valid, probability, np.nan).astype(np.float64)
+        valid = (np.abs(probability - within) <= ROUNDING) & np.isfinite(rows.sum(axis=1))
+        return np.where(valid, within, np.nan).astype(np.float64)
 
 
 OnnxModel = OnnxDuration | OnnxSuccess

@@ -57,6 +57,21 @@ def test_an_answer_out_of_range_is_invalid() -> None:
     assert np.isnan(narrow.predict(np.array([[0, 0, 0, 0, 2.0, 0, 0, 0]]))[0]).all()
 
 
+class Answering:
+    """A session whose answer is fixed."""
+
+    def __init__(self, *shares: float) -> None:
+        self.shares = np.array(shares, np.float32)
+
+    def run(self, *_: object) -> list[np.ndarray]:
+        return [self.shares]
+
+
+def test_a_sure_success_stays_sure_though_its_shares_add_up_to_just_above_one() -> None:
+    model = inference.OnnxSuccess(Answering(np.nextafter(np.float32(1), np.float32(2)), -1e-8, 1.1, -0.1), {}, 0.5)
+    assert np.array_equal(model.probability(np.zeros((4, 1))), [1.0, 0.0, np.nan, np.nan], equal_nan=True)
+
+
 def test_probability_of_what_is_not_a_number_is_invalid() -> None:
     model = runtime.load_model("agilo/approachBall/success")
     assert np.isnan(model.probability(np.array([[0, 0, np.nan, 0, 2.0, 0, 0, 0]]))).all()
