@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tailor.executive.deliberation.context import Context
-from tailor.schemas.messages import Message, Subgoals
+from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.task_runs import run_task
@@ -16,19 +16,26 @@ from tailor.tools.parallel.pool import completed, in_order
 
 @dataclass(frozen=True, slots=True)
 class TracedRun:
-    """One run: outcome, track, and choices in order."""
+    """One run: outcome, track, choices in order, and the objects that they were made among."""
 
     outcome: Outcome
     track: Track
     subgoals: tuple[Subgoals, ...]
+    contexts: tuple[Contexts, ...] = ()
+
+    @property
+    def first_contexts(self) -> Contexts | None:
+        """Objects of the first choice; None without any."""
+        return next((each for each in self.contexts if each.tick == self.subgoals[0].tick), None)
 
 
 def trace_run(task: Task, variant: Variant, seed: int) -> tuple[TracedRun, Context]:
     """Run a task and keep track and subgoals."""
     run, context = run_task(task, variant, seed)
-    messages: Sequence[Message] = run.messages
     outcome = outcome_of(run, context.domain, variant.name, seed)
-    return TracedRun(outcome, track_of(variant.name, messages, context.domain.name), tuple(run.subgoals)), context
+    track = track_of(variant.name, run.messages, context.domain.name)
+    contexts = tuple(message for message in run.messages if isinstance(message, Contexts))
+    return TracedRun(outcome, track, tuple(run.subgoals), contexts), context
 
 
 def trace_all(

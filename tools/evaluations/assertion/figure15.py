@@ -1,6 +1,7 @@
 """The paper's Figure 15: valid places of an asserted subgoal and their cost, with the runs without and with it.
 
-The starts are Figure 16's: approaches to a random heading. This evaluation selects those with an asserted subgoal.
+The approach that ships bends into its goal and needs no subgoal on an empty field (Figure 16), so the starts are those
+of an approach among opponents. This evaluation selects the ones with an asserted subgoal.
 """
 
 from __future__ import annotations
@@ -15,20 +16,23 @@ import numpy as np
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.assertion.figure16 import approached_s, assertion_task, succeeded, variants
+from tailor.tools.evaluations.assertion.assertion import AFTER, BEFORE, succeeded, variants
 from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import Outcome, Task
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import share_interval
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run
 
+SCENARIO = "opponents-approach"
+COMPARED = variants()[:2]  # without assertion and with it
 REMARKS = (
     "Above: predicted seconds by the subgoal's place, heading and speed there being the best of all; blank places are "
-    "INVALID, because the approach from there is not sure enough to succeed. Below: that prediction (black line: the "
-    "limit), and both runs. Square: start; grey cross and arrow: the subgoal as chosen; black arrow: the goal.",
+    "INVALID, because the way there or the approach from there is not sure enough to succeed. Below: that prediction "
+    "(black line: the limit), and both runs. Square: start; grey cross and arrow: the subgoal as chosen; black arrow: "
+    "the goal.",
     "Drawn: the first starts of the evaluation at which a subgoal was asserted, not picked.",
 )
 
@@ -49,10 +53,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, draw and publish the report; 0 if more approaches succeed with their subgoals than without."""
-    task = assertion_task(arguments.zoo)
+    task = Task("soccer", SCENARIO, zoo=arguments.zoo)
     seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    found = run_all(task, variants(), seeds, arguments.jobs, arguments.store, "figure 15")
-    asserted = [seed for seed in seeds if found["asserted"][seed].asserted]
+    found = run_all(task, COMPARED, seeds, arguments.jobs, arguments.store, "figure 15")
+    asserted = [seed for seed in seeds if found[AFTER][seed].asserted]
     if not asserted:
         raise UsageError(f"--episodes {arguments.episodes}: no subgoal was asserted, expected more starts")
     rows = [_summary(found, asserted)]
@@ -74,18 +78,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _summary(found: Mapping[str, Mapping[int, Outcome]], seeds: Sequence[int]) -> dict[str, Any]:
     """All starts at which a subgoal was asserted."""
-    before, after = (sum(succeeded(found[name][seed]) for seed in seeds) for name in ("blind", "asserted"))
+    before, after = (sum(succeeded(found[name][seed]) for seed in seeds) for name in (BEFORE, AFTER))
     n = len(seeds)
-    reached = [found["asserted"][seed] for seed in seeds if succeeded(found["asserted"][seed])]
-    off = [sum(s for *_, s in outcome.predicted_actions) - approached_s(outcome) for outcome in reached]
+    reached = [found[AFTER][seed] for seed in seeds if succeeded(found[AFTER][seed])]
+    off = [_predicted_s(outcome) - outcome.duration_s for outcome in reached]
     return {
         "start": "all asserted",
         "n": n,
         "success_before_pct": 100 * before / n,
         "success_after_pct": 100 * after / n,
         "ci95_after": share_interval(after, n),
-        "predicted_s": float(np.mean([sum(s for *_, s in outcome.predicted_actions) for outcome in reached])),
-        "took_s": float(np.mean([approached_s(outcome) for outcome in reached])),
+        "predicted_s": float(np.mean([_predicted_s(outcome) for outcome in reached])),
+        "took_s": float(np.mean([outcome.duration_s for outcome in reached])),
         "bias_s": float(np.mean(off)),
     }
 
@@ -94,18 +98,18 @@ def _looked_at(
     task: Task, seed: int, found: Mapping[str, Mapping[int, Outcome]]
 ) -> tuple[dict[str, Any], SubgoalMap | None]:
     """One start with a subgoal; the ground is None if two subgoals were asserted in a row."""
-    traced, context = trace_run(task, _asserting(), seed)
-    ground = subgoal_map_of(traced.subgoals[0], context)
-    before, after = found["blind"][seed], found["asserted"][seed]
+    traced, context = trace_run(task, COMPARED[1], seed)
+    ground = subgoal_map_of(traced.subgoals[0], context, traced.first_contexts)
+    before, after = found[BEFORE][seed], found[AFTER][seed]
     row = {
         "start": str(seed),
         "n": 1,
         "success_before_pct": 100.0 * succeeded(before),
         "success_after_pct": 100.0 * succeeded(after),
-        "predicted_s": sum(s for *_, s in after.predicted_actions),
-        "took_s": approached_s(after) if succeeded(after) else float("nan"),
-        "ball_moved_before_m": before.disturbance_m,
-        "ball_moved_after_m": after.disturbance_m,
+        "predicted_s": _predicted_s(after),
+        "took_s": after.duration_s if succeeded(after) else float("nan"),
+        "contacts_before": before.costs.contacts,
+        "contacts_after": after.costs.contacts,
     }
     if ground is not None:
         row |= {
@@ -119,14 +123,15 @@ def _looked_at(
 
 def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     tracks = []
-    for variant, title in zip(variants(), ("without assertion", "with the subgoal"), strict=True):
+    for variant, title in zip(COMPARED, ("without assertion", "with the subgoal"), strict=True):
         traced, _ = trace_run(task, variant, seed)
-        result = "succeeded" if succeeded(traced.outcome) else f"ball moved {traced.outcome.disturbance_m:.2f} m"
+        contacts = traced.outcome.costs.contacts
+        result = "succeeded" if succeeded(traced.outcome) else f"failed, {contacts} contacts"
         tracks.append(replace(traced.track, title=f"{title} ({result})"))
-    first = tracks[0].points[0]
-    draw_subgoal_map(ground, first.objects["ball"][:2], tracks, f"start {seed}", path)
+    draw_subgoal_map(ground, "approachBall", tracks, f"start {seed}", path)
     return path
 
 
-def _asserting() -> Variant:
-    return next(variant for variant in variants() if variant.name == "asserted")
+def _predicted_s(outcome: Outcome) -> float:
+    """Predicted for the sequence as first chosen."""
+    return sum(s for *_, s in outcome.predicted_actions)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tailor.executive.deliberation.context import Context
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
-from tailor.schemas.messages import Subgoals
+from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.explanations.explanation import chosen_values, sequence_of
 
 Array = NDArray[np.float64]
@@ -33,11 +33,11 @@ class SubgoalMap:
     y: Array
     first_s: Array  # to the subgoal
     second_s: Array  # from there to the goal
-    success: Array  # of the second action, wherever it may arrive, by the best heading and speed there
-    limit: float  # of its failure, that the executive kept
+    success: Array  # of the less sure one of both actions, wherever they may arrive, by the best heading and speed there
+    limit: float  # of failure, that the executive kept
     subgoal: tuple[float, float, float]  # as chosen: x, y, heading
     start: tuple[float, float]
-    goal: tuple[float, float, float]  # place and heading of the ball's approach
+    goal: tuple[float, float, float]  # place and heading where the second action leads
     chosen_s: tuple[float, float]  # predicted for the subgoal as chosen
 
     @property
@@ -78,9 +78,9 @@ class _Decision:
         return x, y, phi
 
 
-def subgoal_map_of(message: Subgoals, context: Context) -> SubgoalMap | None:
-    """The ground for the first decision of an episode; None unless it asserts one subgoal before its next action."""
-    decision = _decision(message, context)
+def subgoal_map_of(message: Subgoals, context: Context, objects: Contexts | None = None) -> SubgoalMap | None:
+    """The ground for a decision among objects; None unless it asserts one subgoal before its next action."""
+    decision = _decision(message, context, objects)
     if decision is None:
         return None
     start, subgoal, goal = decision.pose(0, 0), decision.pose(0, 4), decision.pose(1, 4)
@@ -97,15 +97,14 @@ def subgoal_map_of(message: Subgoals, context: Context) -> SubgoalMap | None:
     return SubgoalMap(x, y, first_s, second_s, success, decision.limit, subgoal, start[:2], goal, chosen_s)
 
 
-def _decision(message: Subgoals, context: Context) -> _Decision | None:
-    sequence = sequence_of(message, context.domain.actions)
+def _decision(message: Subgoals, context: Context, objects: Contexts | None) -> _Decision | None:
+    sequence = sequence_of(message, context.domain.actions, objects)
     if sequence is None or [action.asserted for action in sequence.actions[:2]] != [True, False]:
         return None
     settings = context.settings.refinement
     objective = SequenceObjective(sequence.actions[:2], sequence.variables, context.models, settings)
     chosen = objective.vector(chosen_values(message))
-    second = objective.stages[1]
-    worst = float(second.predict(chosen[None, second.columns]).worst_failure[0])
+    worst = max(float(prediction.worst_failure[0]) for prediction in objective.predict(chosen[None]))
     # Where no subgoal kept the limit, the least risk was settled for.
     return _Decision(sequence, objective, chosen, max(settings.p_fail_max, worst + 1e-9))
 
@@ -120,7 +119,7 @@ def _best(decision: _Decision, places: Array) -> tuple[Array, Array, Array]:
     """Both durations and the success at some places, each of shape (n,), by the best heading and speed."""
     candidates, objective = _candidates(decision, places), decision.objective
     first, second = (stage.predict(candidates[:, stage.columns]) for stage in objective.stages)
-    failure = second.worst_failure.reshape(len(places), -1)
+    failure = np.maximum(first.worst_failure, second.worst_failure).reshape(len(places), -1)
     first_s, second_s = (prediction.duration_s.reshape(len(places), -1) for prediction in (first, second))
     total = np.where(failure <= decision.limit, first_s + second_s, np.inf)
     rows, best = np.arange(len(places)), total.argmin(axis=1)

@@ -10,38 +10,35 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from tailor.simnodes.agilo.dimensions import BALL_RADIUS_M
 from tailor.tools.evaluations.assertion.subgoal_map import Array, SubgoalMap
-from tailor.tools.figures.paths import draw_side_by_side
+from tailor.tools.figures.paths import corners, draw_side_by_side
 from tailor.tools.figures.track import Track
 
 ARROW_M = 0.3
 
 
-def draw_subgoal_map(
-    ground: SubgoalMap, ball: tuple[float, float], tracks: Sequence[Track], title: str, path: Path
-) -> None:
+def draw_subgoal_map(ground: SubgoalMap, action: str, tracks: Sequence[Track], title: str, path: Path) -> None:
     """Draw into a PNG: seconds to the subgoal, from it, and their sum; below, predicted success and two runs.
 
     Args:
       ground: The search space.
-      ball: Where the ball lies, metres.
-      tracks: The run without and the run with assertion.
+      action: Name of the action after the subgoal.
+      tracks: The run without and the run with assertion; the first has the objects.
       title: Above all.
       path: Where to; its folder is made.
     """
     figure = Figure(figsize=(15, 9.6), layout="constrained")
-    figure.suptitle(f"{title}; blank: approachBall from there fails in more than {100 * ground.limit:.0f} %")
+    figure.suptitle(f"{title}; blank: the way there or the one from there fails in more than {100 * ground.limit:.0f} %")
     axes = figure.subplots(2, 3)
     tables = (
         ("goToPose to the subgoal (s)", ground.first_s),
-        ("approachBall from there (s)", ground.second_s),
+        (f"{action} from there (s)", ground.second_s),
         ("sum (s)", ground.total_s),
     )
     for axis, (name, table) in zip(axes[0], tables, strict=True):
-        _map(figure, axis, ground, ball, table, name)
+        _map(figure, axis, ground, tracks[0], table, name)
     _mark_least(axes[0, 2], ground)
-    _map(figure, axes[1, 0], ground, ball, ground.success, "predicted success of approachBall from there", "RdYlGn")
+    _map(figure, axes[1, 0], ground, tracks[0], ground.success, "predicted success, there and from there", "RdYlGn")
     axes[1, 0].contour(ground.x, ground.y, ground.success, levels=[1 - ground.limit], colors="black", linewidths=1)
     draw_side_by_side(axes[1, 1:], tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -60,18 +57,18 @@ def _map(
     figure: Figure,
     axis: Any,
     ground: SubgoalMap,
-    ball: tuple[float, float],
+    track: Track,
     table: Array,
     name: str,
     cmap: str = "viridis",
 ) -> None:
-    """One table over the ground, with start, ball, goal and the subgoal as chosen."""
-    from matplotlib.patches import Circle
-
+    """One table over the ground, with objects, start, goal and the subgoal as chosen."""
     limits = (0.0, 1.0) if cmap != "viridis" else (None, None)
     shown = axis.pcolormesh(ground.x, ground.y, table, cmap=cmap, shading="nearest", vmin=limits[0], vmax=limits[1])
     figure.colorbar(shown, ax=axis, shrink=0.85)
-    axis.add_patch(Circle(ball, BALL_RADIUS_M, color="orangered", zorder=3))
+    for each, outline in track.outlines.items():
+        first = next(point.objects[each] for point in track.points if each in point.objects)
+        axis.fill(*corners(outline, first), facecolor=outline.colour[:3], zorder=3)
     axis.plot(*ground.start, "s", color="black", markersize=7, zorder=4)
     axis.annotate("start", ground.start, xytext=(6, 6), textcoords="offset points", fontsize="small")
     for (x, y, phi), colour in ((ground.goal, "black"), (ground.subgoal, "dimgrey")):

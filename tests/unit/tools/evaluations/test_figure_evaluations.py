@@ -10,9 +10,9 @@ import pytest
 
 from tailor.schemas.messages import ActionFinished
 from tailor.tools.evaluations.assertion import figure15
-from tailor.tools.evaluations.assertion.figure16 import assertion_task, variants
 from tailor.tools.evaluations.assertion.subgoal_map import subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
+from tailor.tools.evaluations.costs import NO_COSTS
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.refinement import figure11
 from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
@@ -109,14 +109,13 @@ def test_other_noise_is_another_run_from_the_same_start():
 
 @pytest.fixture(scope="module")
 def asserted():
-    """The first approach with a subgoal before it."""
-    _, asserting = variants()
-    for seed in range(TRAINING_SEED, TRAINING_SEED + 40):
-        watched, context = trace_run(assertion_task(""), asserting, seed)
-        ground = subgoal_map_of(watched.subgoals[0], context) if watched.subgoals else None
+    """The first approach with one subgoal before it."""
+    for seed in range(TRAINING_SEED, TRAINING_SEED + 10):
+        watched, context = trace_run(Task("soccer", figure15.SCENARIO), figure15.COMPARED[1], seed)
+        ground = subgoal_map_of(watched.subgoals[0], context, watched.first_contexts) if watched.subgoals else None
         if ground is not None:
             return watched, ground
-    raise AssertionError("no subgoal was asserted in 40 approaches")
+    raise AssertionError("no subgoal was asserted in 10 approaches")
 
 
 def test_ground_is_valid_exactly_where_the_approach_is_predicted_to_succeed(asserted):
@@ -134,16 +133,17 @@ def test_the_chosen_subgoal_costs_what_was_predicted_for_it(asserted):
 
 def test_ground_is_drawn(asserted, tmp_path):
     watched, ground = asserted
-    draw_subgoal_map(ground, (0.0, 0.0), [watched.track] * 2, "start", tmp_path / "ground.png")
+    draw_subgoal_map(ground, "approachBall", [watched.track] * 2, "start", tmp_path / "ground.png")
     assert (tmp_path / "ground.png").stat().st_size > 10_000
 
 
 def test_figure_15_counts_the_starts_at_which_a_subgoal_was_asserted():
-    approach = replace(DONE, actions=("approachBall",), outcomes=("done",), predicted_s=(4.0,), actual_s=(4.0,))
+    approach = replace(DONE, duration_s=4.0)
     with_subgoal = replace(
         approach, asserted=True, predicted_actions=(("goToPose", True, 2.0), ("approachBall", False, 1.5))
     )
-    found = {"blind": {1: replace(approach, disturbance_m=0.2)}, "asserted": {1: with_subgoal}}
+    touched = replace(approach, costs=replace(NO_COSTS, contacts=1))
+    found = {figure15.BEFORE: {1: touched}, figure15.AFTER: {1: with_subgoal}}
     row = figure15._summary(found, [1])
     assert (row["n"], row["success_before_pct"], row["success_after_pct"]) == (1, 0.0, 100.0)
     assert (row["predicted_s"], row["took_s"], row["bias_s"]) == (3.5, 4.0, -0.5)
