@@ -13,6 +13,7 @@ from skl2onnx.common.data_types import FloatTensorType, Int64TensorType, guess_t
 from tailor.models.export.onnx_features import as_rows
 from tailor.models.export.onnx_graph import ML, ML_OPSET, OPSET
 from tailor.models.export.onnx_trees import add_bag, add_probability, add_tree
+from tailor.models.failure.constant_success import ConstantSuccess
 from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
@@ -49,7 +50,7 @@ def register() -> None:
     """Register all converters; may be called repeatedly."""
     for regressor in (ModelTreeRegressor, DistilledModelTree, BaggedModelTrees):
         update_registered_converter(regressor, f"Tailor{regressor.__name__}", _regressor_shape, _convert_regressor)
-    for classifier in (FailureTree, FailureForest, DistilledForest, DistilledFailureTree):
+    for classifier in (ConstantSuccess, FailureTree, FailureForest, DistilledForest, DistilledFailureTree):
         update_registered_converter(
             classifier,
             f"Tailor{classifier.__name__}",

@@ -12,6 +12,7 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
+from tailor.models.failure.constant_success import ConstantSuccess
 from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
@@ -82,8 +83,9 @@ SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "network": lambda seed: SklearnClassifier(_network(seed), COST_RATIO),
     "networks": lambda seed: SklearnClassifier(_networks(seed), COST_RATIO),
     "svm": lambda seed: SklearnClassifier(_svm(seed), COST_RATIO),
+    "constant": lambda _: ConstantSuccess(COST_RATIO),
 }
-LEAST_OUTCOMES = {"network": 2, "networks": 2, "svm": 5}  # of each kind: parts of their training need some of both
+LEAST_OUTCOMES = {"network": 2, "networks": 2, "svm": 5, "constant": 0}  # of each kind; parts need some of both
 
 
 # Names in the commands of older model cards, which still reproduce their models.

@@ -56,7 +56,7 @@ def train_success(episodes: Sequence[Episode], space: FeatureSpace, learner: str
 
 def _check_outcomes(rows: Examples, learner: str) -> None:
     rarer, least = _rarer(rows), learners.least_outcomes(learner)
-    if not rarer:
+    if not rarer and least:
         raise UsageError("all episodes have the same outcome, expected some successes and some failures")
     if rarer < least:
         raise UsageError(f"{rarer} episodes with the rarer outcome, expected at least {least} for {learner}")

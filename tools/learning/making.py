@@ -118,7 +118,7 @@ def check_complete(making: Making) -> None:
     """Check that the zoo has every model of durations and successes that the robot's actions name.
 
     Raises:
-      UsageError: One is missing: no episode failed, say.
+      UsageError: One is missing: there were too few episodes, say.
     """
     for action in domains.load(making.domain).actions.values():
         for name in filter(None, (action.duration_model, action.success_model)):

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Train = Callable[[Sequence[Episode], FeatureSpace, str, int], Trained]
 
 MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
+NEVER_FAILED = "constant"  # the learner for an action that never failed, but names a model of success
 
 
 def train_models(
@@ -140,6 +141,8 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
     if failures >= MIN_FAILURE_SHARE * len(data.episodes) or (failures and _needs_success(request.robot, data)):
         yield "success", request.failure_learner, success_training.train_success
+    elif _needs_success(request.robot, data):
+        yield "success", NEVER_FAILED, success_training.train_success
 
 
 def _beside_objects(objects: int, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:

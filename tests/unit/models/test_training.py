@@ -117,6 +117,18 @@ def test_failures_of_too_few_runs_to_split_are_refused(data) -> None:
         train_success(episodes, projective, "tree", 0)
 
 
+def test_an_action_that_never_failed_has_one_probability_and_no_certainty(data, tmp_path) -> None:
+    trained = train_success(with_failures(data, 0), projective, "constant", seed=3)
+    model = runtime.load_model(publish(tmp_path, data, trained, Publication("success", "constant", projective, 3, "x")))
+    probability = model.probability(np.stack([e.ticks[0] for e in data.episodes]))
+    assert np.allclose(probability, 50.5 / 51)
+
+
+def test_other_learners_need_both_outcomes(data) -> None:
+    with pytest.raises(UsageError, match="all episodes have the same outcome"):
+        train_success(with_failures(data, 0), projective, "tree", 0)
+
+
 def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
     trained = train_success(data.episodes, projective, "tree", seed=3)
     about = Publication("success", "tree", projective, 3, "tailor train toy")

@@ -24,7 +24,7 @@ from tailor.tools.learning.training_run import train_models
 
 # named here so that --help loads no learning library
 DURATION_LEARNERS = "best, stack, bag, robust, distilled-tree, linear, m5, boosting, network"
-SUCCESS_LEARNERS = "distilled-forest, forest, distilled-tree, tree, boosting, network, svm"
+SUCCESS_LEARNERS = "distilled-forest, forest, distilled-tree, tree, boosting, network, networks, svm, constant"
 
 EPILOG = """\
 examples:
