@@ -28,7 +28,9 @@ def draw_subgoal_map(ground: SubgoalMap, action: str, tracks: Sequence[Track], t
       path: Where to; its folder is made.
     """
     figure = Figure(figsize=(15, 9.6), layout="constrained")
-    figure.suptitle(f"{title}; blank: the way there or the one from there fails in more than {100 * ground.limit:.0f} %")
+    figure.suptitle(
+        f"{title}; blank: the way there or the one from there fails in more than {100 * ground.limit:.0f} %"
+    )
     axes = figure.subplots(2, 3)
     tables = (
         ("goToPose to the subgoal (s)", ground.first_s),
