@@ -17,7 +17,7 @@ from tailor.tools.parallel.pool import completed, in_order
 
 Array = NDArray[Any]
 REPEATS = 8  # runs of the same task with other noise
-REPEATED_TASKS = 100
+REPEATED_TASKS = 300
 RESAMPLES = 2000
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from tailor.models.episodes.episodes import DataSet, read_data_set
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning import gathering
 from tailor.tools.learning.gathering import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
+from tailor.tools.learning.run_gathering import Policy, models_hash, run_policy
 
 
 def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: Path, stream: int) -> DataSet:
@@ -35,3 +37,23 @@ def evaluation(robot: str, action: str, count: int, seed: int, jobs: int, store:
 def training(robot: str, action: str, count: int, seed: int, jobs: int, store: Path) -> DataSet:
     """Episodes to train on, the same as `tailor gather` makes with that seed."""
     return episodes(robot, action, count, seed, jobs, store, TRAINING_STREAM)
+
+
+def chosen(robot: str, scenarios: Sequence[str], runs: int, seed: int, zoo: str, jobs: int, store: Path) -> Path:
+    """Folder of the data sets, one an action, of runs of the executive with the models of `zoo`; made once.
+
+    Args:
+      robot: Name of the robot.
+      scenarios: Of its domain.
+      runs: Of each scenario.
+      seed: Of starts and noise; `Policy` keeps them apart from those of evaluations.
+      zoo: Folder of the models that choose; empty: those that ship.
+      jobs: Processes.
+      store: Folder for all data sets; other controllers or models, other data sets.
+    """
+    domain = gathering.domain_of(robot)
+    made_by, chosen_by = episodes_sha256(domain)[:12], models_hash(robot, zoo)[:12]
+    folder = store / "policy" / "-".join([made_by, chosen_by, *scenarios, str(runs), str(seed)])
+    for _ in run_policy(Policy(domain, tuple(scenarios), runs, seed, zoo, folder), jobs):
+        pass
+    return folder

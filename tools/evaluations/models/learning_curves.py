@@ -20,7 +20,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.cli.number_checks import at_least
-from tailor.tools.evaluations.models import models
+from tailor.tools.evaluations.models import model_rows
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_curves
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
@@ -167,7 +167,7 @@ def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[
 def _errors(settings: argparse.Namespace, zoo: Path) -> dict[str, float]:
     """Mean over the actions of errors on fresh random episodes; missed failures if failures are learned."""
     asked = {**vars(settings), "zoo": str(zoo), "episodes": settings.fresh}
-    made = models.rows(settings.domain, argparse.Namespace(**asked), floors=False)
+    made = model_rows.rows(settings.domain, argparse.Namespace(**asked), floors=False)
     columns = {"error_pct": "relative_pct", "missed_failures_pct": "missed_failures_pct"}
     return {
         name: float(np.mean([row[key] for row in made if key in row]))

@@ -16,13 +16,13 @@ from tailor.models.features.planar import projective
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_EPISODES
 from tailor.models.training.training import fit
-from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import Policy, modelled_actions, models_hash, run_policy
+from tailor.tools.learning.run_gathering import modelled_actions
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]
@@ -43,7 +43,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Gather both rounds, compare and publish the report; exit code 0."""
     arguments = seeded(arguments)
     domain = gathering.domain_of(arguments.robot)
-    folders = [_gathered(domain, seed, arguments) for seed in (ROUND_SEED, FRESH_SEED)]
+    runs = arguments.robot, arguments.scenarios, arguments.episodes
+    where = arguments.zoo, arguments.jobs, arguments.store
+    folders = [fresh.chosen(*runs, seed, *where) for seed in (ROUND_SEED, FRESH_SEED)]
     rows = [
         row
         for action in tracked(list(modelled_actions(domain)), "actions")
@@ -57,23 +59,9 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _gathered(domain: str, seed: int, arguments: argparse.Namespace) -> Path:
-    chooses = models_hash(arguments.robot, arguments.zoo)[:12]
-    made_by = episodes_sha256(domain)[:12]
-    folder = (
-        arguments.store
-        / "policy"
-        / "-".join([made_by, chooses, *arguments.scenarios, str(arguments.episodes), str(seed)])
-    )
-    policy = Policy(domain, tuple(arguments.scenarios), arguments.episodes, seed, arguments.zoo, folder)
-    for _ in run_policy(policy, arguments.jobs):
-        pass
-    return Path(folder)
-
-
 def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
     random = read_data_set((arguments.data or Path("data") / arguments.robot) / action)
-    chosen, fresh = (read_data_set(folder / action) for folder in folders)
+    chosen, later = (read_data_set(folder / action) for folder in folders)
     kept, apart = split(np.arange(len(random.episodes)), 0.25, np.random.default_rng(arguments.seed))
     known = [random.episodes[k] for k in kept]
     unseen = [random.episodes[k] for k in apart]
@@ -83,7 +71,7 @@ def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -
     kinds = (("random", known, more), ("random and on-policy", both, [more[k] for k in held]))
     rows = []
     for name, episodes, apart_chosen in kinds:
-        judges = _Judges(unseen, apart_chosen, fresh.episodes)
+        judges = _Judges(unseen, apart_chosen, later.episodes)
         figures = _judged([e for e in episodes if e.finished], judges, arguments)
         rows.append({"action": action, "training_data": name, "episodes": len(episodes), **figures})
     return rows

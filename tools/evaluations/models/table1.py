@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from tailor.tools.evaluations.models import models
+from tailor.tools.evaluations.models import model_rows
 
 DOMAINS = ("soccer", "arm")
 PAPER: dict[tuple[str, str], tuple[float, float, float]] = {  # episodes, mean duration, MAE (simulated where both)
@@ -17,14 +17,14 @@ PAPER: dict[tuple[str, str], tuple[float, float, float]] = {  # episodes, mean d
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table1`."""
-    models.configure(parser)
+    model_rows.configure(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if no action's relative error is worse than the paper's."""
-    made = [row | _paper(row) for row in models.rows(arguments.domain or DOMAINS[0], arguments)]
-    remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration", *models.REMARKS]
-    models.publish("table1", "Table 1: duration models", made, remarks, arguments)
+    made = [row | _paper(row) for row in model_rows.rows(arguments.domain or DOMAINS[0], arguments)]
+    remarks = ["paper: section 5.3.1, Table 1; relative: MAE over mean duration", *model_rows.REMARKS]
+    model_rows.publish("table1", "Table 1: duration models", made, remarks, arguments)
     known = [row for row in made if "paper_mae_s" in row]
     return 0 if all(row["relative_pct"] <= row["paper_relative_pct"] for row in known) else 1
 

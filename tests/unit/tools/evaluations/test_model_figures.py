@@ -1,0 +1,29 @@
+"""tailor evaluate models: rows of random arguments, and of the executive's own choices."""
+
+import json
+
+import pytest
+
+from tailor.tools.main import main
+
+
+def test_models_are_judged_on_random_arguments_and_on_the_executives_choices(tmp_path, capsys):
+    words = ["evaluate", "models", "--domain", "arm", "--episodes", "6", "--on-policy", "letter-I", "--runs", "2"]
+    assert main([*words, "--jobs", "1", "--json", "--store", str(tmp_path)]) == 0
+    random, chosen = json.loads(capsys.readouterr().out)["rows"]
+    assert (random["chosen_in"], random["episodes"]) == ("", 6)
+    assert (chosen["chosen_in"], chosen["action"]) == ("letter-I", "reach")
+    assert chosen["episodes"] >= 2
+    assert len(chosen["coverage_thirds_pct"]) == 3
+    assert "noise_floor_s" in random
+
+
+@pytest.mark.parametrize("name", ["table1", "table2"])
+def test_the_papers_tables_are_of_random_arguments_alone(name, capsys):
+    assert main(["evaluate", name, "--on-policy", "waypoints"]) == 2
+    assert "--on-policy" in capsys.readouterr().err
+
+
+def test_an_unknown_scenario_is_a_usage_error(capsys):
+    assert main(["evaluate", "models", "--domain", "arm", "--on-policy", "chess"]) == 2
+    assert "--on-policy chess: no such scenario of arm, expected some of letter-A" in capsys.readouterr().err
