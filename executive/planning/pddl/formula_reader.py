@@ -23,6 +23,7 @@ from tailor.executive.planning.pddl.substitution import substituted
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 COMPARISONS = frozenset({"<", ">", "<=", ">="})
+CONNECTIVES = COMPARISONS | {"and", "or", "not", "imply", "forall", "exists", "=", "when", "preference"}
 MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end"): "end", ("over", "all"): "over"}
 
 
