@@ -297,6 +297,25 @@ def test_one_file_or_standard_input_may_hold_both(capsys, tmp_path, monkeypatch,
         assert plan(capsys, *files) == (0, expected, "")
 
 
+@pytest.mark.parametrize(
+    ("content", "place"),
+    [
+        (b"(define\r (domain \xff", "2:10: the byte 0xff"),
+        (b"\xef\xbb\xbf;\xc3\xb6 \xe9", "1:4: the byte 0xe9"),
+        (b"\x89PNG", "1:1: the byte 0x89"),
+    ],
+)
+def test_the_first_byte_that_is_no_text_is_named_with_its_place(capsys, tmp_path, content, place):
+    path = tmp_path / "binary.pddl"
+    path.write_bytes(content)
+    assert plan(capsys, str(path), PROBLEM) == (2, "", f"tailor plan: {path}:{place} is not UTF-8\n")
+
+
+def test_standard_input_is_read_for_one_file_only(capsys):
+    code, _, err = plan(capsys, "-", "-")
+    assert (code, "standard input is named twice" in err) == (2, True)
+
+
 def test_errors_of_a_text_with_both_name_its_lines(capsys, tmp_path):
     both = tmp_path / "both.pddl"
     text = Path(DOMAIN).read_text() + "\n" + Path(PROBLEM).read_text()
