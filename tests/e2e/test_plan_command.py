@@ -225,6 +225,15 @@ def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
         ([DOMAIN, PROBLEM, "-S", "-1"], "expected a seed of at least 0"),
         ([DOMAIN, PROBLEM, "-t", "1e-9"], "expected a tolerance in [1e-6, 1000] s"),
         ([DOMAIN, "/dev/zero"], "/dev/zero: more than the 1000000 bytes"),
+        ([DOMAIN, PROBLEM, "-t", "soon"], "--tolerance: expected a tick in seconds, found 'soon'"),
+        ([DOMAIN, PROBLEM, "--planner", " "], "--planner: expected a command, found ''"),
+        (
+            [DOMAIN, PROBLEM, "--planner", "cat", "--anytime"],
+            "planner does not use --anytime: leave it out",
+        ),
+        ([DOMAIN, PROBLEM, "--planner", "cat", "-l", "9", "-t", "1"], "planner does not use -l, -t: leave them out"),
+        ([DOMAIN, PROBLEM, "--engine", "kairos", "--lifted"], "--engine kairos does not use --lifted: leave it out"),
+        ([DOMAIN, PROBLEM, "--engine", "forward", "-h", "ADD"], "--engine forward does not use -h: leave it out"),
         ([DOMAIN, PROBLEM, "--planner", "no-such-planner"], "planner command 'no-such-planner': cannot be started"),
     ],
 )
@@ -263,6 +272,14 @@ def test_an_external_planners_unsound_plan_is_rejected(capsys, tmp_path):
     code, out, err = plan(capsys, DOMAIN, PROBLEM, "--planner", f"{sys.executable} {program}")
     assert (code, out) == (1, "")
     assert "unsound" in err
+
+
+@pytest.mark.parametrize("output", ["", ";idle"])
+def test_an_external_planner_may_find_that_nothing_is_to_be_done(capsys, tmp_path, output):
+    idle = tmp_path / "idle.pddl"
+    idle.write_text("(define (problem idle) (:domain kitchen) (:init (hand-empty)) (:goal (hand-empty)))")
+    assert plan(capsys, DOMAIN, str(idle), "--planner", f"sh -c 'echo \"{output}\"'")[:2] == (0, ";idle\n")
+    assert plan(capsys, DOMAIN, PROBLEM, "--planner", "true")[0] == 1
 
 
 def test_help_teaches():
