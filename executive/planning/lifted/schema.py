@@ -50,6 +50,7 @@ def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple
     ]
     expanded: list[Schema] = []
     for action, names in renamed:
+        limit.subject = f"'{action.name}'"
         expanded += _schemata(action, names, Lifter(world, parameters, limit), world, grid)
     return tuple(sorted(expanded, key=lambda schema: schema.name))
 
