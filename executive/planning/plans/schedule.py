@@ -1,4 +1,4 @@
-"""Arithmetic on orderings of steps: levels and transitive closure."""
+"""Arithmetic on orderings of steps: levels, transitive closure, bounds of a schedule."""
 
 from __future__ import annotations
 
